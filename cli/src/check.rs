@@ -1,0 +1,176 @@
+//! `canspec check`.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use canspec_codegen::diagnostic::Diagnostics;
+use canspec_codegen::source::Source;
+use canspec_codegen::{Outcome, Summary, compile};
+use canspec_specs::SPECS;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::failure::{Failure, Finish, tell};
+use crate::line::Members;
+
+/// Check specs and the examples of their documents.
+///
+/// Without files, all built-in specs. What is wrong goes to standard error with its place; a summary of each spec goes
+/// to standard output.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec check protocol.yaml")]
+pub struct Check {
+    /// Summaries as text, or as a JSON object a spec.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// What is wrong with the text underlined, in a line each, or as a JSON object each.
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Style::Human)]
+    message_format: Style,
+    /// The spec files.
+    #[arg(value_name = "SPEC")]
+    specs: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Style {
+    Human,
+    Short,
+    Json,
+}
+
+impl Check {
+    /// Checks the specs one after the other.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let mut out = io::stdout().lock();
+        let mut finish = Finish::Done;
+        for (diagnostics, summary) in self.outcomes() {
+            self.report(&diagnostics)?;
+            self.summarise(&mut out, &summary)?;
+            if diagnostics.has_errors() {
+                finish = Finish::Errors;
+            }
+        }
+        Ok(finish)
+    }
+
+    /// Compiles the specs, each when it is its turn.
+    fn outcomes(&self) -> Box<dyn Iterator<Item = (Diagnostics, Object)> + '_> {
+        if self.specs.is_empty() {
+            return Box::new(SPECS.iter().map(|spec| outcome(spec.file, Source::new(spec.file, spec.text.into()))));
+        }
+        Box::new(self.specs.iter().map(|path| outcome(&path.display().to_string(), Source::read(path))))
+    }
+
+    fn report(&self, diagnostics: &Diagnostics) -> io::Result<()> {
+        let text = match self.message_format {
+            Style::Human => diagnostics.render(true),
+            Style::Short => diagnostics.concise(),
+            Style::Json => json_lines(diagnostics)?,
+        };
+        if !text.trim_end().is_empty() {
+            tell(text.trim_end());
+        }
+        Ok(())
+    }
+
+    fn summarise(&self, out: &mut impl Write, summary: &Object) -> io::Result<()> {
+        match self.format {
+            Format::Text => writeln!(out, "{}", sentence(summary)),
+            Format::Json => {
+                serde_json::to_writer(&mut *out, summary)?;
+                writeln!(out)
+            }
+        }
+    }
+}
+
+/// Compiles a source; of one that cannot be read only the name is known.
+fn outcome(name: &str, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
+    match source.map(compile) {
+        Ok(Outcome { diagnostics, summary, .. }) => (diagnostics, summary.into()),
+        Err(diagnostics) => {
+            let object = Object { spec: name.to_owned(), errors: diagnostics.errors(), ..Object::default() };
+            (diagnostics, object)
+        }
+    }
+}
+
+fn json_lines(diagnostics: &Diagnostics) -> io::Result<String> {
+    let mut lines = Vec::new();
+    for located in diagnostics.located() {
+        lines.push(serde_json::to_string(&located)?);
+    }
+    Ok(lines.join("\n"))
+}
+
+/// Sums a spec up in a line; of one with errors there is nothing to say but how many.
+fn sentence(summary: &Object) -> String {
+    let Object { spec, errors, warnings, .. } = summary;
+    match (errors, warnings) {
+        (0, 0) => format!("{spec}: good: {}", content(summary)),
+        (0, _) => format!("{spec}: {}: {}", count(*warnings, "warning"), content(summary)),
+        (_, 0) => format!("{spec}: {}", count(*errors, "error")),
+        _ => format!("{spec}: {}, {}", count(*errors, "error"), count(*warnings, "warning")),
+    }
+}
+
+fn content(summary: &Object) -> String {
+    let Object { messages, signals, status_bits, examples, frames, identifiers, expected_failures, errata, .. } =
+        summary;
+    let contents = [count(*messages, "message"), count(*signals, "signal"), count(*status_bits, "status bit")];
+    let outcomes = [
+        format!("{} both ways", count(*frames, "frame")),
+        count(*identifiers, "identifier"),
+        count(*expected_failures, "expected failure"),
+    ];
+    format!("{}; {}: {}; {errata} errata", contents.join(", "), count(*examples, "example"), outcomes.join(", "))
+}
+
+fn count(number: usize, noun: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{ending}")
+}
+
+/// The JSON object of a spec.
+#[derive(Default, Serialize)]
+struct Object {
+    spec: String,
+    protocol: Option<String>,
+    messages: usize,
+    selectors: Members<String, usize>,
+    signals: usize,
+    status_bits: usize,
+    examples: usize,
+    frames: usize,
+    identifiers: usize,
+    expected_failures: usize,
+    errata: usize,
+    errors: usize,
+    warnings: usize,
+}
+
+impl From<Summary> for Object {
+    fn from(summary: Summary) -> Self {
+        Self {
+            spec: summary.spec,
+            protocol: summary.protocol,
+            messages: summary.messages,
+            selectors: Members(summary.selectors),
+            signals: summary.signals,
+            status_bits: summary.status_bits,
+            examples: summary.examples,
+            frames: summary.frames,
+            identifiers: summary.identifiers,
+            expected_failures: summary.expected_failures,
+            errata: summary.errata,
+            errors: summary.errors,
+            warnings: summary.warnings,
+        }
+    }
+}

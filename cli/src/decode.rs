@@ -1,0 +1,98 @@
+//! `canspec decode`.
+
+use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
+
+use canspec_codegen::interpret::{self, Decoded, Frame, Unrecognised};
+use canspec_codegen::model::Protocol;
+use clap::{Args, ValueEnum};
+
+use crate::failure::{Failure, Finish};
+use crate::input::Input;
+use crate::line::{self, Origin};
+use crate::log::{self, Entry};
+use crate::protocols::Several;
+use crate::table::Table;
+
+/// Decode a candump log.
+///
+/// The log has lines in the form `(SECONDS) CHANNEL ID#DATA`, as `candump -L` prints them and `candump -l` stores
+/// them; stamp and channel may be missing. Unreadable lines are reported and skipped.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  candump -L can0 | canspec decode --protocol NAME")]
+pub struct Decode {
+    #[command(flatten)]
+    protocols: Several,
+    /// A table, or a JSON object a frame.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// The log; standard input without one, or for `-`.
+    file: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Jsonl,
+}
+
+enum Printer {
+    Text(Table),
+    Jsonl,
+}
+
+impl Decode {
+    /// Writes each frame of the log as the chosen protocols understand it.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let protocols = self.protocols.load()?;
+        let mut printer = self.printer(&protocols);
+        let mut input = Input::open(self.file.as_deref())?;
+        let mut out = BufWriter::new(io::stdout().lock());
+        let mut finish = Finish::Done;
+        while let Some(line) = input.next_line()? {
+            match line.text.and_then(log::read) {
+                Ok(None) => {}
+                Ok(Some(entry)) => printer.frame(&mut out, &protocols, line.number, &entry)?,
+                Err(why) => {
+                    input.complain(&why);
+                    finish = Finish::Errors;
+                }
+            }
+            if input.may_wait() {
+                out.flush()?;
+            }
+        }
+        Ok(finish)
+    }
+
+    fn printer(&self, protocols: &[Protocol]) -> Printer {
+        match self.format {
+            Format::Text => Printer::Text(Table::new(protocols)),
+            Format::Jsonl => Printer::Jsonl,
+        }
+    }
+}
+
+impl Printer {
+    fn frame(
+        &mut self,
+        out: &mut impl Write,
+        protocols: &[Protocol],
+        line: usize,
+        entry: &Entry<'_>,
+    ) -> io::Result<()> {
+        let Some((protocol, decoded)) = decode(protocols, &entry.frame) else { return Ok(()) };
+        let Entry { time, channel, frame } = entry;
+        let origin = Origin { line, time: time.as_deref(), channel: *channel, frame, protocol };
+        match self {
+            Self::Text(table) => table.write(out, &origin, &decoded),
+            Self::Jsonl => line::write(out, &origin, &decoded),
+        }
+    }
+}
+
+/// Decodes by the first protocol that recognises the frame, else says what the first one has against it.
+fn decode<'a>(protocols: &'a [Protocol], frame: &Frame) -> Option<(&'a Protocol, Result<Decoded, Unrecognised>)> {
+    let by = |protocol: &'a Protocol| (protocol, interpret::decode(protocol, frame));
+    protocols.iter().map(by).find(|(_, decoded)| decoded.is_ok()).or_else(|| protocols.first().map(by))
+}

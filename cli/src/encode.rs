@@ -1,0 +1,148 @@
+//! `canspec encode`.
+
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use canspec_codegen::interpret::{self, Frame, Target};
+use canspec_codegen::model::Protocol;
+use clap::{Args, ValueEnum};
+
+use crate::failure::{Failure, Finish};
+use crate::input::Input;
+use crate::line::Content;
+use crate::log;
+use crate::protocols::One;
+
+/// Make a request, or turn decoded lines back into frames.
+///
+/// A request is named by its message, preceded by the access where the message has several; its signals are set as
+/// NAME=VALUE, with a unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become
+/// a log again.
+#[derive(Args)]
+#[command(
+    verbatim_doc_comment,
+    after_long_help = "\
+Examples:
+  canspec encode --protocol NAME set_output --to module:3 voltage=750V current=15A
+  canspec encode --protocol NAME --from jsonl frames.jsonl"
+)]
+pub struct Encode {
+    #[command(flatten)]
+    protocol: One,
+    /// Read decoded lines from the file, or from standard input.
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["to", "source"])]
+    from: Option<Format>,
+    /// Whom to address: `module:3`, `broadcast`, or `MODE:N` with an addressing mode.
+    #[arg(long, value_name = "TARGET", required_unless_present = "from")]
+    to: Option<String>,
+    /// The sender's address, instead of the one that the spec names.
+    #[arg(long, value_name = "ADDRESS", value_parser = address)]
+    source: Option<i64>,
+    /// `[ACCESS] MESSAGE NAME=VALUE...`, or after --from the file.
+    #[arg(value_name = "WORD")]
+    words: Vec<String>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Jsonl,
+}
+
+/// Reads a decimal or `0x` hexadecimal number.
+fn address(text: &str) -> Result<i64, String> {
+    let number = match text.strip_prefix("0x") {
+        Some(digits) => i64::from_str_radix(digits, 16),
+        None => text.parse(),
+    };
+    number.map_err(|_| "an address is a number such as 240 or 0xF0".to_owned())
+}
+
+impl Encode {
+    /// Prints the frames asked for.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let protocol = self.protocol.load()?;
+        match (&self.to, self.from) {
+            (Some(to), None) => self.request(&protocol, to),
+            _ => lines(&protocol, self.file()?),
+        }
+    }
+
+    fn file(&self) -> Result<Option<&Path>, Failure> {
+        match self.words.as_slice() {
+            [] => Ok(None),
+            [file] => Ok(Some(Path::new(file))),
+            _ => Err(Failure::Call("--from reads one file".to_owned())),
+        }
+    }
+
+    fn request(&self, protocol: &Protocol, to: &str) -> Result<Finish, Failure> {
+        let (signals, names): (Vec<&String>, Vec<&String>) = self.words.iter().partition(|word| word.contains('='));
+        let (access, message) = match names.as_slice() {
+            [message] => (None, message),
+            [access, message] => (Some(access.as_str()), message),
+            _ => return Err(Failure::Call("name one message, or an access and a message".to_owned())),
+        };
+        let pair = |word: &&String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let signals: Vec<_> = signals.iter().filter_map(pair).collect();
+        let target = Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string()))?;
+        let frame = interpret::request(protocol, access, message, &target, self.source, &signals);
+        let frame = frame.map_err(|refusal| Failure::Input(refusal.to_string()))?;
+        log::write(&mut io::stdout().lock(), None, None, &frame)?;
+        Ok(Finish::Done)
+    }
+}
+
+/// Turns decoded lines into a log.
+fn lines(protocol: &Protocol, file: Option<&Path>) -> Result<Finish, Failure> {
+    let mut input = Input::open(file)?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    let mut finish = Finish::Done;
+    while let Some(line) = input.next_line()? {
+        match line.text.and_then(|text| read(protocol, text)) {
+            Ok(None) => {}
+            Ok(Some((content, frame))) => {
+                let time = content.time.as_ref().map(|time| time.get());
+                log::write(&mut out, time, content.channel.as_deref(), &frame)?;
+            }
+            Err(why) => {
+                input.complain(&why);
+                finish = Finish::Errors;
+            }
+        }
+        if input.may_wait() {
+            out.flush()?;
+        }
+    }
+    Ok(finish)
+}
+
+fn read(protocol: &Protocol, line: &str) -> Result<Option<(Content, Frame)>, String> {
+    let Some(content) = Content::read(line)? else { return Ok(None) };
+    check_protocol(protocol, &content)?;
+    check_units(protocol, &content)?;
+    let frame = interpret::encode(protocol, &content.frame).map_err(|refusal| refusal.to_string())?;
+    Ok(Some((content, frame)))
+}
+
+fn check_protocol(protocol: &Protocol, content: &Content) -> Result<(), String> {
+    match &content.protocol {
+        Some(name) if *name != protocol.name => {
+            Err(format!("the line is of protocol {name:?}, not `{}`", protocol.name))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a value whose stated unit is not that of its signal.
+fn check_units(protocol: &Protocol, content: &Content) -> Result<(), String> {
+    let message = protocol.messages.iter().find(|message| message.name == content.frame.message);
+    let signals = message.map_or(&[][..], |message| &message.signals);
+    for (name, unit) in &content.units {
+        let signal = signals.iter().find(|signal| signal.name == *name);
+        let expected = signal.map(|signal| signal.unit.map_or("none", |unit| unit.symbol));
+        if let Some(expected) = expected.filter(|expected| expected != unit) {
+            return Err(format!("signal `{name}`: the unit is {expected}, not {unit:?}"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,100 @@
+//! `canspec examples`.
+
+use std::io::{self, BufWriter, Write};
+
+use canspec_codegen::model::{Example, Protocol};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::columns::{self, Row};
+use crate::failure::{Failure, Finish};
+use crate::log;
+use crate::protocols::One;
+
+/// List the example frames of a protocol's document.
+///
+/// Each is shown with its section, and with what decoding it must give: `ok`, or the failure that an erratum explains.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec examples --protocol NAME --format jsonl")]
+pub struct Examples {
+    #[command(flatten)]
+    protocol: One,
+    /// A table, or a JSON object a frame.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Jsonl,
+}
+
+impl Examples {
+    /// Writes the frames that the document prints.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let protocol = self.protocol.load()?;
+        let mut out = BufWriter::new(io::stdout().lock());
+        let documented = protocol.examples.iter().filter(|example| !example.ours);
+        match self.format {
+            Format::Text => {
+                let rows: Vec<Row> = documented.map(|example| row(&protocol, example)).collect();
+                columns::write(&mut out, &["FRAME", "KIND", "MESSAGE", "SECTION", "EXPECT"], "ERRATA", &rows)?;
+            }
+            Format::Jsonl => documented.map(Object::new).try_for_each(|object| object.write(&mut out))?,
+        }
+        out.flush()?;
+        Ok(Finish::Done)
+    }
+}
+
+fn row(protocol: &Protocol, example: &Example) -> Row {
+    let Object { id, data, section, expect, .. } = Object::new(example);
+    let cells = vec![
+        data.map_or(id.clone(), |data| format!("{id}#{data}")),
+        example.kind.name().to_owned(),
+        example.message.map_or(String::new(), |message| protocol.messages[message].name.clone()),
+        section.unwrap_or_default().to_owned(),
+        expect.to_owned(),
+    ];
+    Row { cells, last: example.doc.errata.clone(), separator: ", " }
+}
+
+#[derive(Serialize)]
+struct Object<'a> {
+    id: String,
+    /// `None` where the document prints an identifier alone.
+    data: Option<String>,
+    section: Option<&'a str>,
+    expect: &'static str,
+    erratum: Option<Erratum<'a>>,
+}
+
+/// As in the spec language: a name, or a list of names.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Erratum<'a> {
+    One(&'a str),
+    Several(&'a [String]),
+}
+
+impl<'a> Object<'a> {
+    fn new(example: &'a Example) -> Self {
+        Self {
+            id: log::identifier_digits(example.id, example.extended),
+            data: example.data.as_deref().map(log::hexadecimal),
+            section: example.doc.section.as_deref(),
+            expect: example.fails.map_or("ok", canspec_codegen::model::Failure::name),
+            erratum: match example.doc.errata.as_slice() {
+                [] => None,
+                [name] => Some(Erratum::One(name)),
+                names => Some(Erratum::Several(names)),
+            },
+        }
+    }
+
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        serde_json::to_writer(&mut *out, self)?;
+        writeln!(out)
+    }
+}

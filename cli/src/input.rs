@@ -1,0 +1,148 @@
+//! The lines of a file or of standard input, with their numbers.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+use crate::failure::{Failure, tell};
+
+/// Longer lines are unreadable.
+const LONGEST: usize = 1 << 16;
+
+/// A text to be read line by line.
+pub struct Input {
+    name: String,
+    reader: BufReader<Box<dyn Read>>,
+    number: usize,
+    line: Vec<u8>,
+}
+
+/// A line of the input.
+pub struct Line<'a> {
+    /// Its number, the first being 1.
+    pub number: usize,
+    /// The line without its end, or why it is unreadable.
+    pub text: Result<&'a str, String>,
+}
+
+impl Input {
+    /// Opens a file; without one, or for `-`, standard input.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be opened.
+    pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
+        match path.filter(|path| *path != Path::new("-")) {
+            None => Ok(Self::new("<stdin>", Box::new(io::stdin()))),
+            Some(path) => {
+                let name = path.display().to_string();
+                let file = File::open(path).map_err(|error| Failure::input(&name, &error))?;
+                Ok(Self::new(&name, Box::new(file)))
+            }
+        }
+    }
+
+    fn new(name: &str, reader: Box<dyn Read>) -> Self {
+        Self { name: name.to_owned(), reader: BufReader::with_capacity(LONGEST, reader), number: 0, line: Vec::new() }
+    }
+
+    /// Reads the next line; `None` at the end.
+    ///
+    /// # Errors
+    ///
+    /// Where the input cannot be read any further.
+    pub fn next_line(&mut self) -> Result<Option<Line<'_>>, Failure> {
+        self.line.clear();
+        let more = self.fill().map_err(|error| Failure::input(&self.name, &error))?;
+        self.number += 1;
+        Ok(more.then(|| Line { number: self.number, text: self.text() }))
+    }
+
+    /// Reads up to the end of a line, and drops what is too much of it.
+    fn fill(&mut self) -> io::Result<bool> {
+        let limit = u64::try_from(LONGEST).unwrap_or(u64::MAX).saturating_add(1);
+        let count = self.reader.by_ref().take(limit).read_until(b'\n', &mut self.line)?;
+        if count > LONGEST && self.line.last() != Some(&b'\n') {
+            self.reader.skip_until(b'\n')?;
+        }
+        Ok(count > 0)
+    }
+
+    fn text(&self) -> Result<&str, String> {
+        let line = self.line.strip_suffix(b"\n").unwrap_or(&self.line);
+        if line.len() > LONGEST {
+            return Err(format!("the line is longer than {LONGEST} bytes"));
+        }
+        str::from_utf8(line).map_err(|error| format!("byte {} of the line is not UTF-8", error.valid_up_to() + 1))
+    }
+
+    /// Tests whether the next line may have to be waited for, so that what is known should be shown first.
+    pub fn may_wait(&self) -> bool {
+        !self.reader.buffer().contains(&b'\n')
+    }
+
+    /// Says on standard error what is wrong with the line read last.
+    pub fn complain(&self, why: &str) {
+        tell(format_args!("{}:{}: {}", self.name, self.number, without_controls(why)));
+    }
+}
+
+/// Escapes what could steer a terminal.
+fn without_controls(text: &str) -> String {
+    let escape = |letter: char| if letter.is_control() { letter.escape_default().to_string() } else { letter.into() };
+    text.chars().map(escape).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads all lines of a text.
+    fn lines(text: Vec<u8>) -> Vec<(usize, Result<String, String>)> {
+        let mut input = Input::new("test", Box::new(io::Cursor::new(text)));
+        let mut lines = Vec::new();
+        while let Ok(Some(Line { number, text })) = input.next_line() {
+            lines.push((number, text.map(str::to_owned)));
+        }
+        lines
+    }
+
+    fn good(number: usize, text: &str) -> (usize, Result<String, String>) {
+        (number, Ok(text.to_owned()))
+    }
+
+    fn bad(number: usize, why: &str) -> (usize, Result<String, String>) {
+        (number, Err(why.to_owned()))
+    }
+
+    #[test]
+    fn the_last_line_needs_no_end() {
+        assert_eq!(lines(b"a\n\nb".to_vec()), [good(1, "a"), good(2, ""), good(3, "b")]);
+        assert_eq!(lines(b"a\n".to_vec()), [good(1, "a")]);
+        assert_eq!(lines(Vec::new()), []);
+    }
+
+    #[test]
+    fn what_is_not_utf_8_costs_one_line() {
+        assert_eq!(lines(b"ab\xFFc\nb".to_vec()), [bad(1, "byte 3 of the line is not UTF-8"), good(2, "b")]);
+    }
+
+    #[test]
+    fn a_line_too_long_costs_one_line() {
+        for surplus in [1, 2, 100, 3 * LONGEST] {
+            let text = [vec![b'x'; LONGEST + surplus], b"\nb\n".to_vec()].concat();
+            assert_eq!(lines(text), [bad(1, "the line is longer than 65536 bytes"), good(2, "b")], "{surplus}");
+        }
+    }
+
+    #[test]
+    fn a_complaint_does_not_steer_the_terminal() {
+        assert_eq!(without_controls("a\u{1b}[2J°\u{7f}"), "a\\u{1b}[2J°\\u{7f}");
+    }
+
+    #[test]
+    fn the_longest_line_is_read() {
+        let longest = "x".repeat(LONGEST);
+        assert_eq!(lines(format!("{longest}\nb").into_bytes()), [good(1, &longest), good(2, "b")]);
+    }
+}

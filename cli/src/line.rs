@@ -1,0 +1,11 @@
+//! The JSON object of a frame: what `decode` writes and `encode` reads.
+
+mod input;
+mod output;
+
+pub use input::Content;
+pub use output::{Origin, bit_names, reserved, write};
+
+/// The members of a JSON object, in order.
+#[derive(Debug, Default)]
+pub struct Members<K, V>(pub Vec<(K, V)>);

@@ -1,0 +1,365 @@
+//! From a line of JSON to what a frame is made of.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use canspec_codegen::interpret::{self, Input};
+use canspec_codegen::model::Kind;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use serde_json::value::RawValue;
+use serde_json::{Number, Value};
+
+use super::Members;
+use crate::log;
+
+/// What a line says of a frame, and of the log it came from.
+#[derive(Debug)]
+pub struct Content {
+    /// A JSON number.
+    pub time: Option<Box<RawValue>>,
+    pub channel: Option<String>,
+    pub protocol: Option<String>,
+    pub frame: interpret::Content,
+    /// The units that the line states, by signal.
+    pub units: Vec<(String, String)>,
+}
+
+impl Content {
+    /// Reads a line, `None` from a blank one.
+    ///
+    /// # Errors
+    ///
+    /// Says why the line is unreadable, or names the member that cannot be sent.
+    pub fn read(line: &str) -> Result<Option<Self>, String> {
+        if line.trim_ascii().is_empty() {
+            return Ok(None);
+        }
+        let ByName(object) = serde_json::from_str::<ByName<Object>>(line).map_err(|error| without_line(&error))?;
+        object.content().map(Some)
+    }
+}
+
+/// Takes the line number, always 1, out of a message of `serde_json`.
+fn without_line(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    match text.strip_suffix(&place) {
+        Some(what) => format!("{what} (column {})", error.column()),
+        None => text,
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Object {
+    time: Option<Box<RawValue>>,
+    channel: Option<String>,
+    protocol: Option<String>,
+    #[serde(deserialize_with = "Option::deserialize")]
+    message: Option<String>,
+    access: Option<String>,
+    kind: Option<String>,
+    identifier: Option<Members<String, u64>>,
+    selectors: Option<Members<String, u64>>,
+    signals: Option<Members<String, ByName<SignalObject>>>,
+    reserved: Option<String>,
+    #[serde(rename = "line")]
+    _line: Option<IgnoredAny>,
+    #[serde(rename = "id")]
+    _id: Option<IgnoredAny>,
+    #[serde(rename = "data")]
+    _data: Option<IgnoredAny>,
+    #[serde(rename = "addressing")]
+    _addressing: Option<IgnoredAny>,
+    #[serde(rename = "notes")]
+    _notes: Option<IgnoredAny>,
+    #[serde(rename = "problem")]
+    _problem: Option<IgnoredAny>,
+}
+
+impl Object {
+    fn content(self) -> Result<Content, String> {
+        let message = self.message.ok_or("`message` is null: a frame that was not recognised cannot be made again")?;
+        let (signals, units) = split(self.signals.ok_or_else(|| missing("signals"))?)?;
+        let frame = interpret::Content {
+            message,
+            access: self.access,
+            kind: self.kind.as_deref().map(kind).transpose()?,
+            identifier: self.identifier.ok_or_else(|| missing("identifier"))?.0,
+            selectors: self.selectors.ok_or_else(|| missing("selectors"))?.0,
+            signals,
+            reserved: self.reserved.as_deref().map(reserved).transpose()?.unwrap_or_default(),
+        };
+        let (time, channel) = (self.time.map(stamp).transpose()?, self.channel.map(channel).transpose()?);
+        Ok(Content { time, channel, protocol: self.protocol, frame, units })
+    }
+}
+
+fn missing(field: &str) -> String {
+    format!("missing field `{field}`")
+}
+
+/// The inputs and the units of all signals, by name.
+type Signals = (Vec<(String, Input)>, Vec<(String, String)>);
+
+fn split(signals: Members<String, ByName<SignalObject>>) -> Result<Signals, String> {
+    let (mut inputs, mut units) = (Vec::new(), Vec::new());
+    for (name, ByName(mut signal)) in signals.0 {
+        units.extend(signal.unit.take().map(|unit| (name.clone(), unit)));
+        let input = signal.input().map_err(|why| format!("signal `{name}`: {why}"))?;
+        inputs.push((name, input));
+    }
+    Ok((inputs, units))
+}
+
+fn kind(word: &str) -> Result<Kind, String> {
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
+    kind.ok_or_else(|| format!("`kind` is request, reply or report, not {word:?}"))
+}
+
+fn reserved(digits: &str) -> Result<Vec<u8>, String> {
+    let refusal = || format!("`reserved` is an even number of hexadecimal digits, at most 16, not {digits:?}");
+    let hexadecimal = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    if !hexadecimal || digits.len() > 16 || !digits.len().is_multiple_of(2) {
+        return Err(refusal());
+    }
+    let byte = |place: usize| u8::from_str_radix(&digits[place..place + 2], 16).map_err(|_| refusal());
+    (0..digits.len()).step_by(2).map(byte).collect()
+}
+
+fn stamp(time: Box<RawValue>) -> Result<Box<RawValue>, String> {
+    let numeric = time.get().starts_with(|first: char| first == '-' || first.is_ascii_digit());
+    if numeric { Ok(time) } else { Err(format!("`time` is a number or null, not {}", time.get())) }
+}
+
+fn channel(name: String) -> Result<String, String> {
+    if log::is_channel(&name) { Ok(name) } else { Err(format!("`channel` is no name: {name:?}")) }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SignalObject {
+    raw: Option<Value>,
+    value: Option<Value>,
+    unit: Option<String>,
+    set: Option<Vec<String>>,
+    unknown: Option<u64>,
+}
+
+impl SignalObject {
+    fn input(self) -> Result<Input, String> {
+        match (self.value, self.set, self.unknown) {
+            (Some(value), None, None) => physical(value),
+            (None, Some(set), Some(unknown)) => Ok(Input::Status { set, unknown }),
+            (None, None, None) => raw(&self.raw.ok_or("`value` is missing, and so is `raw`")?),
+            (Some(_), ..) => Err("it has a `value` and the bits of a status word".to_owned()),
+            (None, Some(_), None) => Err(missing("unknown")),
+            (None, None, Some(_)) => Err(missing("set")),
+        }
+    }
+}
+
+fn physical(value: Value) -> Result<Input, String> {
+    match value {
+        Value::Number(number) => whole(&number).map(Input::Integer).or_else(|| number.as_f64().map(Input::Number)),
+        Value::String(text) => Some(Input::Text(text)),
+        other => return Err(format!("`value` is a number, a text or null, not {other}")),
+    }
+    .ok_or_else(|| "`value` is no number of 64 bits".to_owned())
+}
+
+fn raw(value: &Value) -> Result<Input, String> {
+    let number = value.as_number().and_then(whole);
+    number.map(Input::Raw).ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))
+}
+
+fn whole(number: &Number) -> Option<i128> {
+    number.as_u64().map(i128::from).or_else(|| number.as_i64().map(i128::from))
+}
+
+/// A struct of which only a JSON object makes a value, while serde would take a list as well.
+struct ByName<T>(T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for ByName<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(ByNameVisitor(PhantomData))
+    }
+}
+
+struct ByNameVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ByNameVisitor<T> {
+    type Value = ByName<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(ByName)
+    }
+}
+
+impl<'de, V: Deserialize<'de>> Deserialize<'de> for Members<String, V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(MembersVisitor(PhantomData))
+    }
+}
+
+struct MembersVisitor<V>(PhantomData<V>);
+
+impl<'de, V: Deserialize<'de>> Visitor<'de> for MembersVisitor<V> {
+    type Value = Members<String, V>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut members: Vec<(String, V)> = Vec::new();
+        while let Some(name) = map.next_key::<String>()? {
+            if members.iter().any(|(other, _)| *other == name) {
+                return Err(A::Error::custom(format_args!("duplicate field `{name}`")));
+            }
+            members.push((name, map.next_value()?));
+        }
+        Ok(Members(members))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line with these members beside those that it needs.
+    fn line(members: &str) -> String {
+        format!(r#"{{"message":"m","identifier":{{"source":3}},"selectors":{{}}{members}}}"#)
+    }
+
+    fn content(line: &str) -> Content {
+        Content::read(line).expect("the line is readable").expect("the line is not blank")
+    }
+
+    fn why(line: &str) -> String {
+        Content::read(line).expect_err("the line is refused")
+    }
+
+    fn input(signal: &str) -> Result<Input, String> {
+        let content = Content::read(&line(&format!(r#","signals":{{"s":{signal}}}"#)))?;
+        let signal = content.and_then(|content| content.frame.signals.into_iter().next());
+        signal.map(|(_, input)| input).ok_or_else(|| "no signal".to_owned())
+    }
+
+    #[test]
+    fn a_line_of_decode_is_read_whole() {
+        let content = content(concat!(
+            r#"{"line":1,"time":1700000000.0,"channel":"can0","id":"0283F000","data":"43FA000040600000","protocol":"p","#,
+            r#""message":"m","access":"read","kind":"reply","addressing":"point_to_point","#,
+            r#""identifier":{"error":0,"device":10},"selectors":{"function":3},"#,
+            r#""signals":{"voltage":{"raw":1140457472,"value":500.0,"unit":"V"},"#,
+            r#""state":{"raw":64,"set":["on"],"unknown":32}},"reserved":"00ff","notes":[{"rule":"r","text":"t"}]}"#,
+        ));
+        let pairs = |pairs: &[(&str, u64)]| pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        let expected = interpret::Content {
+            message: "m".to_owned(),
+            access: Some("read".to_owned()),
+            kind: Some(Kind::Reply),
+            identifier: pairs(&[("error", 0), ("device", 10)]),
+            selectors: pairs(&[("function", 3)]),
+            signals: vec![
+                ("voltage".to_owned(), Input::Number(500.0)),
+                ("state".to_owned(), Input::Status { set: vec!["on".to_owned()], unknown: 32 }),
+            ],
+            reserved: vec![0x00, 0xFF],
+        };
+        assert_eq!(content.frame, expected);
+        assert_eq!(content.time.map(|time| time.get().to_owned()).as_deref(), Some("1700000000.0"));
+        assert_eq!((content.channel.as_deref(), content.protocol.as_deref()), (Some("can0"), Some("p")));
+        assert_eq!(content.units, [("voltage".to_owned(), "V".to_owned())]);
+    }
+
+    #[test]
+    fn blank_lines_are_no_frames() {
+        assert!(Content::read(" \r").expect("a blank line is readable").is_none());
+    }
+
+    #[test]
+    fn a_stamp_is_kept_as_it_is_written() {
+        let content = content(&line(r#","time":1700000000.123456789012345678,"signals":{}"#));
+        assert_eq!(content.time.map(|time| time.get().to_owned()).as_deref(), Some("1700000000.123456789012345678"));
+    }
+
+    #[test]
+    fn an_integer_is_not_a_floating_point_number() {
+        assert_eq!(input(r#"{"value":2}"#), Ok(Input::Integer(2)));
+        assert_eq!(input(r#"{"value":-2}"#), Ok(Input::Integer(-2)));
+        assert_eq!(input(r#"{"value":2.0}"#), Ok(Input::Number(2.0)));
+        assert_eq!(input(r#"{"value":18446744073709551615}"#), Ok(Input::Integer(u64::MAX.into())));
+        assert_eq!(input(r#"{"value":"on"}"#), Ok(Input::Text("on".to_owned())));
+    }
+
+    #[test]
+    fn raw_counts_only_without_a_value() {
+        assert_eq!(input(r#"{"raw":7,"value":2}"#), Ok(Input::Integer(2)));
+        assert_eq!(input(r#"{"raw":7,"value":null}"#), Ok(Input::Raw(7)));
+        assert_eq!(input(r#"{"raw":-7}"#), Ok(Input::Raw(-7)));
+        assert_eq!(input(r#"{"raw":18446744073709551615}"#), Ok(Input::Raw(u64::MAX.into())));
+        assert_eq!(input(r#"{"raw":7,"set":[],"unknown":1}"#), Ok(Input::Status { set: Vec::new(), unknown: 1 }));
+    }
+
+    #[test]
+    fn a_signal_without_a_usable_value_says_why() {
+        let reasons = [
+            ("{}", "`value` is missing, and so is `raw`"),
+            (r#"{"value":null}"#, "`value` is missing, and so is `raw`"),
+            (r#"{"value":null,"raw":1.5}"#, "`raw` is an integer of up to 64 bits, not 1.5"),
+            (r#"{"raw":"7"}"#, r#"`raw` is an integer of up to 64 bits, not "7""#),
+            (r#"{"value":true}"#, "`value` is a number, a text or null, not true"),
+            (r#"{"value":[1]}"#, "`value` is a number, a text or null, not [1]"),
+            (r#"{"set":[]}"#, "missing field `unknown`"),
+            (r#"{"unknown":0}"#, "missing field `set`"),
+            (r#"{"value":1,"set":[],"unknown":0}"#, "it has a `value` and the bits of a status word"),
+        ];
+        for (signal, reason) in reasons {
+            assert_eq!(input(signal), Err(format!("signal `s`: {reason}")), "{signal}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_not_complete_or_not_known_says_why() {
+        let reasons = [
+            ("{".to_owned(), "EOF while parsing an object (column 1)"),
+            ("[]".to_owned(), "invalid type: sequence, expected an object (column 0)"),
+            (line(r#","signals":{"s":[1,2]}"#), "invalid type: sequence, expected an object (column 71)"),
+            ("{}".to_owned(), "missing field `message` (column 2)"),
+            (line(""), "missing field `signals`"),
+            (r#"{"message":"m","signals":{}}"#.to_owned(), "missing field `identifier`"),
+            (r#"{"message":"m","signals":{},"identifier":{}}"#.to_owned(), "missing field `selectors`"),
+            (line(r#","signals":{},"signals":{}"#), "duplicate field `signals` (column 78)"),
+            (line(r#","signals":{"s":{"raw":1},"s":{"raw":1}}"#), "duplicate field `s` (column 84)"),
+            (line(r#","signals":{},"kind":"answer""#), r#"`kind` is request, reply or report, not "answer""#),
+            (line(r#","signals":{},"time":"now""#), r#"`time` is a number or null, not "now""#),
+            (line(r#","signals":{},"channel":"can 0""#), r#"`channel` is no name: "can 0""#),
+            (
+                line(r#","signals":{},"reserved":"0G""#),
+                r#"`reserved` is an even number of hexadecimal digits, at most 16, not "0G""#,
+            ),
+            (
+                r#"{"message":null,"problem":{"kind":"foreign","text":"t"},"identifier":{},"selectors":{}}"#.to_owned(),
+                "`message` is null: a frame that was not recognised cannot be made again",
+            ),
+        ];
+        for (line, reason) in reasons {
+            assert_eq!(why(&line), reason, "{line}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_member_is_named_with_the_known_ones() {
+        assert!(why(&line(r#","signals":{},"value":1"#)).starts_with("unknown field `value`, expected one of `time`"));
+        let reason = why(&line(r#","signals":{"s":{"vale":1}}"#));
+        assert!(reason.starts_with("unknown field `vale`, expected one of `raw`, `value`, `unit`"), "{reason}");
+    }
+}

@@ -1,0 +1,185 @@
+//! `canspec list`.
+
+use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
+
+use canspec_codegen::model::{
+    Document, Encoding, Enumeration, Example, Message, Piece, Protocol, Selector, SelectorPlace, Signal, StatusWord,
+};
+use canspec_codegen::number::Rational;
+use canspec_specs::SPECS;
+use clap::Args;
+
+use crate::columns::{self, Row};
+use crate::failure::{Failure, Finish};
+use crate::protocols;
+
+/// List the built-in protocols, or the messages of one.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec list --protocol NAME")]
+pub struct List {
+    /// A built-in protocol.
+    #[arg(long, value_name = "NAME", conflicts_with = "spec")]
+    protocol: Option<String>,
+    /// A spec file.
+    #[arg(long, value_name = "FILE")]
+    spec: Option<PathBuf>,
+}
+
+impl List {
+    /// Writes what there is.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let mut out = BufWriter::new(io::stdout().lock());
+        match (self.protocol.as_deref(), self.spec.as_deref()) {
+            (None, None) => built_in(&mut out)?,
+            (name, path) => messages(&mut out, &protocols::load(protocols::choose(name, path)?)?)?,
+        }
+        out.flush()?;
+        Ok(Finish::Done)
+    }
+}
+
+fn built_in(out: &mut impl Write) -> Result<(), Failure> {
+    let mut rows = Vec::new();
+    for spec in SPECS {
+        rows.push(protocol_row(spec.name, &protocols::load(protocols::text(spec)?)?));
+    }
+    Ok(columns::write(out, &["NAME", "TITLE", "MESSAGES", "EXAMPLES", "VERSION"], "DOCUMENT", &rows)?)
+}
+
+fn protocol_row(name: &str, protocol: &Protocol) -> Row {
+    let count = protocol.messages.len();
+    let documented: Vec<&Example> = protocol.examples.iter().filter(|example| !example.ours).collect();
+    let shown = |index: &usize| documented.iter().any(|example| example.message == Some(*index));
+    let covered = (0..count).filter(shown).count();
+    let cells = vec![
+        name.to_owned(),
+        protocol.title.clone(),
+        count.to_string(),
+        format!("{} in {covered} of {count} messages", documented.len()),
+        protocol.document.version.clone(),
+    ];
+    Row { cells, last: vec![protocol.document.title.clone()], separator: "" }
+}
+
+/// Writes a table of messages, each followed by its signals.
+fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
+    writeln!(out, "{}: {}\n{}\n", protocol.name, protocol.title, document(&protocol.document))?;
+    let selectors = selectors(protocol);
+    let upper: Vec<String> = selectors.iter().map(|index| protocol.selectors[*index].name.to_uppercase()).collect();
+    let mut headings: Vec<&str> = upper.iter().map(String::as_str).collect();
+    headings.extend(["ACCESS", "MESSAGE", "UNIT", "SECTION"]);
+    let mut rows = Vec::new();
+    for message in &protocol.messages {
+        rows.push(message_row(protocol, &selectors, message));
+        rows.extend(message.signals.iter().map(|signal| signal_row(protocol, selectors.len(), message, signal)));
+    }
+    columns::write(out, &headings, "MEANING", &rows)
+}
+
+fn document(document: &Document) -> String {
+    let date = document.date.as_ref().map_or(String::new(), |date| format!(", {date}"));
+    format!("{}, {}{date}", document.title, document.version)
+}
+
+/// Returns the selectors whose constants choose a message whatever its access.
+fn selectors(protocol: &Protocol) -> Vec<usize> {
+    let chooses = |index: &usize| protocol.messages.iter().any(|message| constant(message, *index).is_some());
+    (0..protocol.selectors.len()).filter(chooses).collect()
+}
+
+/// Returns the value that a selector has in every frame of a message.
+fn constant(message: &Message, selector: usize) -> Option<u64> {
+    let mut values = message.shapes.iter().map(|shape| {
+        let constant = shape.constants.iter().find(|(index, _)| *index == selector);
+        constant.map(|(_, value)| *value)
+    });
+    let first = values.next()??;
+    values.all(|value| value == Some(first)).then_some(first)
+}
+
+fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> Row {
+    let shown = |index: &usize| {
+        let value = constant(message, *index);
+        value.map_or(String::new(), |value| hexadecimal(protocol, &protocol.selectors[*index], value))
+    };
+    let accesses = message.accesses.iter().map(|access| protocol.accesses[access.access].name.as_str());
+    let mut cells: Vec<String> = selectors.iter().map(shown).collect();
+    cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone(), String::new()]);
+    cells.push(message.doc.section.clone().unwrap_or_default());
+    Row { cells, last: words(message.doc.title.as_deref().unwrap_or_default()), separator: " " }
+}
+
+/// Writes a selector's value in as many digits as it has on the bus.
+fn hexadecimal(protocol: &Protocol, selector: &Selector, value: u64) -> String {
+    let bits = match selector.place {
+        SelectorPlace::Identifier(field) => protocol.identifier.fields[field].width,
+        SelectorPlace::Payload(place) => place.width(),
+        _ => 0,
+    };
+    format!("0x{value:0width$X}", width = usize::from(bits.div_ceil(4)))
+}
+
+fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: &Signal) -> Row {
+    let mut cells = vec![String::new(); selectors + 1];
+    cells.push(format!("  {}", signal.name));
+    cells.push(signal.unit.map_or(String::new(), |unit| unit.symbol.to_owned()));
+    cells.push(signal.doc.section.clone().filter(|_| signal.doc.section != message.doc.section).unwrap_or_default());
+    Row { cells, last: titled(signal.doc.title.as_deref(), meaning(protocol, signal)), separator: ", " }
+}
+
+/// Puts a title before the first item.
+fn titled(title: Option<&str>, mut items: Vec<String>) -> Vec<String> {
+    match (title, items.first_mut()) {
+        (Some(title), Some(first)) => *first = format!("{title}: {first}"),
+        (Some(title), None) => items.push(title.to_owned()),
+        (None, _) => {}
+    }
+    items
+}
+
+/// Returns limits, step and names of a signal.
+fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
+    let mut items = Vec::new();
+    items.extend(signal.range.map(|range| format!("{}..{}", range.minimum, range.maximum)));
+    items.extend(depends_on_model(protocol, signal).then(|| "limits by model".to_owned()));
+    match &signal.encoding {
+        Encoding::Number { scale, .. } if *scale != Rational::ONE => items.push(format!("step {scale}")),
+        Encoding::Float => items.push("float".to_owned()),
+        Encoding::Named(index) => items.extend(names(&protocol.enumerations[*index])),
+        Encoding::Status(index) => items.extend(bits(&protocol.status_words[*index])),
+        Encoding::Text => items.push(format!("text of {} characters", signal.place.width().div_ceil(8))),
+        Encoding::Packed { pieces, parts } => items.push(form(pieces, parts)),
+        _ => {}
+    }
+    items.extend(signal.specials.iter().map(|special| format!("{} = {}", special.raw, special.name)));
+    items
+}
+
+fn depends_on_model(protocol: &Protocol, signal: &Signal) -> bool {
+    let mut types = protocol.models.iter().flat_map(|model| &model.types);
+    types.any(|differing| differing.range.is_some() && signal.types.contains(&differing.name))
+}
+
+fn names(enumeration: &Enumeration) -> Vec<String> {
+    enumeration.values.iter().map(|value| format!("{} = {}", value.raw, value.name)).collect()
+}
+
+fn bits(word: &StatusWord) -> Vec<String> {
+    word.bits.iter().map(|bit| format!("bit {} {}", bit.bit, bit.name)).collect()
+}
+
+/// Returns a packed text's form as the spec writes it.
+fn form(pieces: &[Piece], parts: &[Signal]) -> String {
+    let piece = |piece: &Piece| match piece {
+        Piece::Literal(text) => text.clone(),
+        Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", parts[*part].name),
+        Piece::Part { part, .. } => format!("{{{}}}", parts[*part].name),
+        _ => String::new(),
+    };
+    pieces.iter().map(piece).collect()
+}
+
+fn words(text: &str) -> Vec<String> {
+    text.split(' ').map(str::to_owned).collect()
+}

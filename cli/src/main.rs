@@ -1,0 +1,71 @@
+//! The command `canspec`: checks CAN protocol specs, compiles them to Rust, decodes and encodes logs.
+
+mod check;
+mod columns;
+mod compile;
+mod decode;
+mod encode;
+mod examples;
+mod failure;
+mod input;
+mod line;
+mod list;
+mod log;
+mod protocols;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::{Failure, Finish, tell};
+
+/// CAN protocols described once in YAML: check them, compile them to Rust, decode and encode logs by them.
+#[derive(Parser)]
+#[command(name = "canspec", version, after_long_help = EXIT_STATUS)]
+struct Canspec {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_STATUS: &str = "Exit status: 0 done, 1 the input had errors, 2 the call was wrong.";
+
+#[derive(Subcommand)]
+enum Command {
+    Check(check::Check),
+    Compile(compile::Compile),
+    Decode(decode::Decode),
+    Encode(encode::Encode),
+    Examples(examples::Examples),
+    List(list::List),
+}
+
+impl Command {
+    fn run(&self) -> Result<Finish, Failure> {
+        match self {
+            Self::Check(check) => check.run(),
+            Self::Compile(compile) => compile.run(),
+            Self::Decode(decode) => decode.run(),
+            Self::Encode(encode) => encode.run(),
+            Self::Examples(examples) => examples.run(),
+            Self::List(list) => list.run(),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match Canspec::try_parse() {
+        Ok(call) => call.command.run().map_or_else(|failure| failure.report(), ExitCode::from),
+        Err(refusal) => refuse(&refusal),
+    }
+}
+
+/// Shows what is wrong with the call, or the help that was asked for.
+fn refuse(refusal: &clap::Error) -> ExitCode {
+    if !refusal.use_stderr() {
+        return refusal.print().map_or_else(|error| Failure::from(error).report(), |()| ExitCode::SUCCESS);
+    }
+    let text = refusal.render().to_string();
+    tell(text.strip_prefix("error").map_or(text.clone(), |text| format!("canspec{text}")).trim_end());
+    ExitCode::from(2)
+}

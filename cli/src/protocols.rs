@@ -1,0 +1,120 @@
+//! Finding a spec by its built-in name or its file, and compiling it.
+
+use std::path::{Path, PathBuf};
+
+use canspec_codegen::model::Protocol;
+use canspec_codegen::source::Source;
+use canspec_codegen::{Outcome, compile};
+use canspec_specs::{SPECS, Spec};
+use clap::Args;
+
+use crate::failure::Failure;
+
+/// Chooses one protocol.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+pub struct One {
+    /// A built-in protocol.
+    #[arg(long, value_name = "NAME")]
+    protocol: Option<String>,
+    /// A spec file.
+    #[arg(long, value_name = "FILE")]
+    spec: Option<PathBuf>,
+}
+
+impl One {
+    /// Compiles the chosen spec.
+    pub fn load(&self) -> Result<Protocol, Failure> {
+        load(choose(self.protocol.as_deref(), self.spec.as_deref())?)
+    }
+}
+
+/// Chooses protocols in the order in which they are tried.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+pub struct Several {
+    /// A built-in protocol; repeated, the first one that recognises a frame wins.
+    #[arg(long, value_name = "NAME")]
+    protocol: Vec<String>,
+    /// A spec file.
+    #[arg(long, value_name = "FILE")]
+    spec: Option<PathBuf>,
+}
+
+impl Several {
+    /// Compiles the chosen specs.
+    pub fn load(&self) -> Result<Vec<Protocol>, Failure> {
+        match &self.spec {
+            Some(path) => Ok(vec![load(file(path)?)?]),
+            None => self.protocol.iter().map(|name| load(built_in(name)?)).collect(),
+        }
+    }
+}
+
+/// Returns the text of a spec file.
+pub fn file(path: &Path) -> Result<Source, Failure> {
+    Source::read(path).map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
+}
+
+/// Returns the text of a built-in spec.
+pub fn text(spec: &Spec) -> Result<Source, Failure> {
+    let source = Source::new(spec.file, spec.text.as_bytes().to_vec());
+    source.map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
+}
+
+/// Returns the text of a built-in spec or else of a file.
+pub fn choose(name: Option<&str>, path: Option<&Path>) -> Result<Source, Failure> {
+    match (name, path) {
+        (Some(name), _) => built_in(name),
+        (None, Some(path)) => file(path),
+        (None, None) => {
+            Err(Failure::Call("name a protocol with --protocol NAME or a file with --spec FILE".to_owned()))
+        }
+    }
+}
+
+fn built_in(name: &str) -> Result<Source, Failure> {
+    let spec = canspec_specs::find(name).ok_or_else(|| Failure::Call(unknown(name, SPECS)))?;
+    text(spec)
+}
+
+/// Compiles a spec, or fails with all that is wrong with it.
+pub fn load(source: Source) -> Result<Protocol, Failure> {
+    let Outcome { protocol, diagnostics, .. } = compile(source);
+    protocol.filter(|_| !diagnostics.has_errors()).ok_or_else(|| Failure::Spec(Box::new(diagnostics)))
+}
+
+/// Says what could be meant by a name.
+fn unknown(name: &str, specs: &[Spec]) -> String {
+    let names: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
+    let nearest = names.iter().filter(|known| strsim::osa_distance(name, known) <= 2);
+    let nearest = nearest.min_by_key(|known| strsim::osa_distance(name, known));
+    let help = match nearest {
+        Some(known) => format!("did you mean `{known}`?"),
+        None => "a file is named with --spec FILE".to_owned(),
+    };
+    match names.as_slice() {
+        [] => format!("unknown protocol `{name}`; none is built in; {help}"),
+        names => format!("unknown protocol `{name}`; built in are {}; {help}", names.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Spec, unknown};
+
+    const SPECS: &[Spec] =
+        &[Spec { name: "acme", file: "acme.yaml", text: "" }, Spec { name: "zeta", file: "zeta.yaml", text: "" }];
+
+    #[test]
+    fn an_unknown_protocol_gets_the_nearest_name() {
+        assert_eq!(unknown("amce", SPECS), "unknown protocol `amce`; built in are acme, zeta; did you mean `acme`?");
+    }
+
+    #[test]
+    fn a_name_like_no_other_gets_the_way_to_a_file() {
+        let help = "a file is named with --spec FILE";
+        assert_eq!(unknown("x.yaml", SPECS), format!("unknown protocol `x.yaml`; built in are acme, zeta; {help}"));
+        assert_eq!(unknown("x", &[]), format!("unknown protocol `x`; none is built in; {help}"));
+    }
+}

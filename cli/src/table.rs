@@ -1,0 +1,186 @@
+//! The table of frames that `decode` writes for people.
+
+use std::io::{self, Write};
+
+use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
+use canspec_codegen::model::{AddressPattern, Encoding, Kind, Mode, Protocol, Signal, Who};
+
+use crate::columns::{Columns, wrap};
+use crate::line::{Origin, bit_names, reserved};
+use crate::log;
+
+const HEADINGS: [&str; 6] = ["TIME", "CHANNEL", "IDENTIFIER", "ADDRESS", "ACCESS", "MESSAGE"];
+
+/// What stands between two signals.
+const GAP: &str = "  ";
+
+/// A table whose rows are written as their frames come.
+pub struct Table {
+    columns: Columns,
+    /// Every row says by which protocol it was read.
+    several: bool,
+    started: bool,
+}
+
+impl Table {
+    /// Makes columns that the names of these protocols fit.
+    pub fn new(protocols: &[Protocol]) -> Self {
+        let mut table = Self { columns: Columns::new(&HEADINGS), several: protocols.len() > 1, started: false };
+        for protocol in protocols {
+            table.make_room(protocol);
+        }
+        table
+    }
+
+    fn make_room(&mut self, protocol: &Protocol) {
+        for mode in &protocol.modes {
+            self.columns.widen(&["", "", "", &widest_address(protocol, mode)]);
+        }
+        for access in &protocol.accesses {
+            self.columns.widen(&["", "", "", "", &access.name]);
+        }
+        for message in &protocol.messages {
+            self.columns.widen(&["", "", "", "", "", &self.message(protocol, &message.name)]);
+        }
+    }
+
+    fn message(&self, protocol: &Protocol, name: &str) -> String {
+        if self.several { format!("{}.{name}", protocol.name) } else { name.to_owned() }
+    }
+
+    /// Writes a frame as a row, with its notes below.
+    ///
+    /// # Errors
+    ///
+    /// Where `out` cannot be written.
+    pub fn write(
+        &mut self,
+        out: &mut impl Write,
+        origin: &Origin<'_>,
+        decoded: &Result<Decoded, Unrecognised>,
+    ) -> io::Result<()> {
+        let (address, access, message) = self.names(origin, decoded);
+        let identifier = log::identifier_text(origin.frame);
+        let time = origin.time.map_or("", |time| time.get());
+        let cells = [time, origin.channel.unwrap_or(""), &identifier, &address, access, &message];
+        self.columns.widen(&cells);
+        if !self.started {
+            self.columns.write(out, &HEADINGS, &["SIGNALS".to_owned()])?;
+            self.started = true;
+        }
+        let lines = lines(origin, decoded, self.columns.room());
+        self.columns.write(out, &cells, &lines)
+    }
+
+    /// Returns what stands under address, access and message.
+    fn names<'a>(&self, origin: &Origin<'a>, decoded: &Result<Decoded, Unrecognised>) -> (String, &'a str, String) {
+        let protocol = origin.protocol;
+        match decoded {
+            Ok(decoded) => {
+                let message = self.message(protocol, &protocol.messages[decoded.message].name);
+                (address(protocol, decoded, origin.frame.id), &protocol.accesses[decoded.access].name, message)
+            }
+            Err(_) => ("?".to_owned(), "", self.message(protocol, "?")),
+        }
+    }
+}
+
+/// Returns the longest text that a request shows in this mode, as far as the document goes.
+fn widest_address(protocol: &Protocol, mode: &Mode) -> String {
+    match mode.target.map(|target| &protocol.address_types[target]) {
+        Some(target) => format!("→ {} {}", target.name, target.first.max(target.last)),
+        None => format!("→ {}", mode.name),
+    }
+}
+
+/// Returns an arrow and the addresses of a frame, but for those that everybody uses.
+fn address(protocol: &Protocol, decoded: &Decoded, id: u32) -> String {
+    let arrow = match decoded.kind {
+        Kind::Request => "→",
+        Kind::Reply => "←",
+        Kind::Report => "⇐",
+    };
+    let Some(index) = decoded.addressing else { return format!("{arrow} ?") };
+    let mode = &protocol.modes[index];
+    let pattern = match decoded.kind {
+        Kind::Request => mode.request.as_ref(),
+        Kind::Reply | Kind::Report => mode.reply(who_answers(protocol, decoded, index)),
+    };
+    let addresses = pattern.map_or(Vec::new(), |pattern| addresses(protocol, pattern, id));
+    if addresses.is_empty() { format!("{arrow} {}", mode.name) } else { format!("{arrow} {}", addresses.join(", ")) }
+}
+
+/// Returns who answers this message in a mode; one module where the document does not say.
+fn who_answers(protocol: &Protocol, decoded: &Decoded, mode: usize) -> Who {
+    let accesses = &protocol.messages[decoded.message].accesses;
+    let access = accesses.iter().find(|access| access.access == decoded.access);
+    access.and_then(|access| *access.answers.get(mode)?).unwrap_or(Who::One)
+}
+
+fn addresses(protocol: &Protocol, pattern: &AddressPattern, id: u32) -> Vec<String> {
+    let mut addresses = Vec::new();
+    for address in &pattern.addresses {
+        let address_type = &protocol.address_types[address.address_type];
+        let number = address_type.number(protocol.identifier.fields[address.field].get(id));
+        if address_type.send != Some(number) {
+            addresses.push(format!("{} {number}", address_type.name));
+        }
+    }
+    addresses
+}
+
+/// Returns the lines of the last column.
+fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usize) -> Vec<String> {
+    match decoded {
+        Ok(decoded) => {
+            let signals = decoded.signals.iter().map(|reading| signal(origin.protocol, decoded, reading));
+            let reserved = reserved(decoded).map(|digits| format!("reserved {digits}"));
+            let texts: Vec<String> = signals.chain(reserved).map(|text| text + GAP).collect();
+            let pieces = texts.iter().flat_map(|text| text.split_inclusive(", "));
+            let mut lines = wrap(pieces, "", room + 1);
+            lines.extend(decoded.notes.iter().flat_map(|Note { rule, text }| remark(rule, text, room)));
+            lines
+        }
+        Err(Unrecognised { problem, text, .. }) => {
+            let data = log::hexadecimal(&origin.frame.data);
+            let separated = if data.is_empty() { data } else { data + GAP };
+            wrap(format!("{separated}! {}: {text}", problem.name()).split(' '), " ", room)
+        }
+    }
+}
+
+fn remark(rule: &str, text: &str, room: usize) -> Vec<String> {
+    wrap(format!("! {rule}: {text}").split(' '), " ", room)
+}
+
+fn signal(protocol: &Protocol, decoded: &Decoded, reading: &Reading) -> String {
+    let signal = &protocol.messages[decoded.message].signals[reading.signal];
+    let value = value(protocol, signal, reading);
+    match (&reading.value, signal.unit) {
+        (Value::Integer(_) | Value::Number(_), Some(unit)) => format!("{} {value} {}", signal.name, unit.symbol),
+        _ => format!("{} {value}", signal.name),
+    }
+}
+
+fn value(protocol: &Protocol, signal: &Signal, reading: &Reading) -> String {
+    match &reading.value {
+        Value::None => format!("? (raw 0x{:X})", reading.bits),
+        Value::Integer(number) => number.to_string(),
+        Value::Number(number) if matches!(signal.encoding, Encoding::Float) => single(*number),
+        Value::Number(number) => format!("{number:?}"),
+        Value::Name(text) | Value::Text(text) => text.escape_debug().to_string(),
+        Value::Status { set, unknown } => status(&bit_names(protocol, signal, set), *unknown),
+    }
+}
+
+/// Returns the shortest text of a number that came as an `f32`.
+#[expect(clippy::cast_possible_truncation, reason = "it was an `f32` on the bus")]
+fn single(number: f64) -> String {
+    format!("{:?}", number as f32)
+}
+
+fn status(set: &[&str], unknown: u64) -> String {
+    let unknown = (unknown != 0).then(|| format!("0x{unknown:X}"));
+    let bits: Vec<&str> = set.iter().copied().chain(unknown.as_deref()).collect();
+    format!("{{{}}}", bits.join(", "))
+}

@@ -1,0 +1,48 @@
+//! The rules of the last stage, in order: what is resolved must also be right.
+
+mod direction;
+mod ambiguous;
+mod erratum;
+mod example;
+mod grid;
+mod outside_frame;
+mod overlap;
+mod range_width;
+mod reply;
+mod rust_name;
+mod section;
+mod special_value;
+
+pub use example::Counts;
+
+use crate::diagnostic::Diagnostics;
+use crate::model::Protocol;
+
+/// Looks for breaches of one rule.
+type Check = fn(&Protocol, &mut Diagnostics);
+
+/// The rules on what the protocol is, in order.
+const RULES: [Check; 10] = [
+    outside_frame::check,
+    overlap::check,
+    grid::check,
+    range_width::check,
+    special_value::check,
+    direction::check,
+    ambiguous::check,
+    rust_name::check,
+    erratum::check,
+    section::check,
+];
+
+/// Applies every rule; the document's examples are run only by a protocol that is otherwise right.
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
+    for rule in RULES {
+        rule(protocol, diagnostics);
+    }
+    if diagnostics.has_errors() {
+        return Counts::default();
+    }
+    reply::check(protocol, diagnostics);
+    example::check(protocol, diagnostics)
+}

@@ -1,0 +1,110 @@
+//! `ambiguous`: one frame fits two messages, or two kinds of frames of one message.
+//!
+//! Whoever decodes the bus would have to guess. Give one of the two another constant, or addressing modes of its own.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{AddressPattern, Kind, Message, Protocol, Shape, Who};
+
+/// Inclusive raw ranges.
+type Ranges = Vec<(u32, u32)>;
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let frames: Vec<_> = protocol
+        .messages
+        .iter()
+        .flat_map(|message| message.shapes.iter().map(move |shape| (message, shape)))
+        .collect();
+    let mut reported: Vec<(&str, &str)> = Vec::new();
+    for (index, one) in frames.iter().enumerate() {
+        let Some(other) = frames[..index].iter().find(|other| both_fit(protocol, *one, **other)) else { continue };
+        let pair = (one.0.name.as_str(), other.0.name.as_str());
+        if !reported.contains(&pair) {
+            reported.push(pair);
+            report(protocol, *one, *other, diagnostics);
+        }
+    }
+}
+
+fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape), diagnostics: &mut Diagnostics) {
+    let name = |(message, shape): (&Message, &Shape)| {
+        let access = &protocol.accesses[message.accesses[shape.access].access].name;
+        format!("the {} of `{}` by `{access}`", shape.kind.name(), message.name)
+    };
+    let text = format!("a frame can be {} and {}", name(other), name(one));
+    let help = "give one of the two another constant, or addressing modes of its own";
+    let diagnostic = Diagnostic::error("ambiguous", one.0.doc.path.at_key(), text).help(help);
+    diagnostics.push(match one.0.name == other.0.name {
+        true => diagnostic,
+        false => diagnostic.other(other.0.doc.path.at_key(), "the other message"),
+    });
+}
+
+fn both_fit(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> bool {
+    let same_direction = (one.1.kind == Kind::Request) == (other.1.kind == Kind::Request);
+    same_direction
+        && one.0.length == other.0.length
+        && agree(one.1, other.1)
+        && patterns(protocol, one).iter().any(|pattern| {
+            patterns(protocol, other).iter().any(|opposite| intersect(protocol, pattern, opposite))
+        })
+}
+
+/// Tests whether no selector has two values.
+fn agree(one: &Shape, other: &Shape) -> bool {
+    let differs = |(selector, value): &(usize, u64)| {
+        other.constants.iter().any(|(known, opposite)| known == selector && opposite != value)
+    };
+    !one.constants.iter().any(differs)
+}
+
+/// Returns the addressing patterns that the document allows for a frame.
+fn patterns<'a>(protocol: &'a Protocol, (message, shape): (&Message, &Shape)) -> Vec<&'a AddressPattern> {
+    let answers = &message.accesses[shape.access].answers;
+    let allowed = protocol.modes.iter().zip(answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
+    allowed
+        .filter_map(|(mode, who): (_, Who)| match shape.kind {
+            Kind::Request => mode.request.as_ref(),
+            Kind::Reply | Kind::Report => mode.reply(who),
+        })
+        .collect()
+}
+
+/// Tests whether one identifier fits both patterns.
+fn intersect(protocol: &Protocol, one: &AddressPattern, other: &AddressPattern) -> bool {
+    (0..protocol.identifier.fields.len()).all(|field| {
+        let (these, those) = (accepted(protocol, one, field), accepted(protocol, other, field));
+        these.iter().any(|(first, last)| those.iter().any(|(start, end)| first <= end && start <= last))
+    })
+}
+
+/// Returns the raw values of a field that a pattern accepts, tolerated ones included.
+fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: usize) -> Ranges {
+    let known = &protocol.identifier.fields[field];
+    let greatest = known.mask() >> known.shift;
+    if pattern.mask & known.mask() != 0 {
+        let value = known.get(pattern.value);
+        return vec![(value, value)];
+    }
+    let Some(address) = pattern.addresses.iter().find(|address| address.field == field) else {
+        return vec![(0, greatest)];
+    };
+    let address_type = &protocol.address_types[address.address_type];
+    let documented = address_type.raw_range();
+    if address_type.strict { vec![documented] } else { without(greatest, &address.excluded, documented) }
+}
+
+/// Returns the values up to `greatest` that are not excluded, and the documented ones.
+fn without(greatest: u32, excluded: &[(u32, u32)], documented: (u32, u32)) -> Ranges {
+    let mut ranges = vec![documented];
+    let mut next = 0;
+    for (first, last) in excluded {
+        if *first > next {
+            ranges.push((next, first - 1));
+        }
+        next = next.max(last.saturating_add(1));
+    }
+    if next <= greatest {
+        ranges.push((next, greatest));
+    }
+    ranges
+}

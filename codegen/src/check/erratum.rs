@@ -1,0 +1,26 @@
+//! `erratum`: an erratum that nothing refers to, or a reference to one that does not exist.
+//!
+//! An erratum says where the spec departs from the document; it belongs to the item or example that departs.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::Protocol;
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let docs = protocol.docs();
+    for erratum in &protocol.errata {
+        if !docs.iter().any(|doc| doc.errata.contains(&erratum.name)) {
+            let text = format!("nothing refers to the erratum `{}`", erratum.name);
+            let help = format!("add `erratum: {}` to what it is about", erratum.name);
+            diagnostics.push(Diagnostic::warning("erratum", erratum.path.at_key(), text).help(help));
+        }
+    }
+    for doc in &docs {
+        for name in &doc.errata {
+            if !protocol.errata.iter().any(|erratum| erratum.name == *name) {
+                let text = format!("there is no erratum `{name}`");
+                let at = doc.path.key("erratum").at_value();
+                diagnostics.push(Diagnostic::error("erratum", at, text).help("add it to `errata`"));
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! `reply`: an example that does not answer the request before it.
+//!
+//! Within one list a reply belongs to the latest request: the same message, the addresses bound by the addressing mode, and somebody
+//! who answers at all. A frame that the document prints wrongly is marked with `fails`.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::interpret::{Decoded, Form, Frame, decode};
+use crate::model::{AddressPattern, Example, Kind, Mode, Protocol, Who};
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let mut latest: Option<(&Example, Decoded)> = None;
+    for example in protocol.examples.iter().filter(|example| example.fails.is_none() || example.position == 0) {
+        if example.position == 0 {
+            latest = None;
+        }
+        let Some(decoded) = decoded(protocol, example) else { continue };
+        match (example.kind, &latest) {
+            (Kind::Request, _) => latest = Some((example, decoded)),
+            (Kind::Reply, Some((request, asked))) => {
+                if let Some(why) = mismatch(protocol, asked, &decoded) {
+                    let diagnostic = Diagnostic::error("reply", example.doc.path.key("reply").at_value(), why);
+                    diagnostics.push(diagnostic.other(request.doc.path.key("request").at_value(), "the request"));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Decodes an example that does not fail; one without data as if all bytes were 0.
+fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
+    if example.fails.is_some() {
+        return None;
+    }
+    let length = protocol.messages[example.message?].length;
+    let data = example.data.clone().unwrap_or_else(|| vec![0; length.into()]);
+    decode(protocol, &Frame { id: example.id, extended: example.extended, data, form: Form::Data }).ok()
+}
+
+/// Says why a reply does not answer a request.
+fn mismatch(protocol: &Protocol, asked: &Decoded, reply: &Decoded) -> Option<String> {
+    let message = &protocol.messages[reply.message];
+    if asked.message != reply.message {
+        let other = &protocol.messages[asked.message].name;
+        return Some(format!("a reply of `{}` follows a request of `{other}`", message.name));
+    }
+    let mode = &protocol.modes[asked.addressing?];
+    let access = message.accesses.iter().find(|access| access.access == asked.access)?;
+    match access.answers[asked.addressing?] {
+        Some(Who::Nobody) | None => Some(format!("nobody answers `{}` by `{}`", message.name, mode.name)),
+        Some(who) => unbound(protocol, mode, who, asked, reply),
+    }
+}
+
+/// Says which address of the reply is not the request's.
+fn unbound(protocol: &Protocol, mode: &Mode, who: Who, asked: &Decoded, reply: &Decoded) -> Option<String> {
+    let (request, pattern) = (mode.request.as_ref()?, mode.reply(who)?);
+    let numbers = numbers(protocol, request, &asked.identifier);
+    for address in &pattern.addresses {
+        let number = protocol.address_types[address.address_type].number(reply.identifier[address.field]);
+        let bound = numbers.iter().find(|(known, _)| *known == address.address_type);
+        if let Some((_, wanted)) = bound.filter(|(_, wanted)| *wanted != number) {
+            let name = &protocol.address_types[address.address_type].name;
+            return Some(format!("the reply's {name} is {number:#04X}, the request's is {wanted:#04X}"));
+        }
+    }
+    let fields = protocol.identifier.fields.iter().zip(&reply.identifier);
+    let id = fields.fold(0, |id, (field, value)| id | value << field.shift);
+    (id & pattern.mask != pattern.value).then(|| format!("the reply's identifier is not that of `{}`", mode.name))
+}
+
+/// Returns the numbers that a pattern binds, by address type.
+fn numbers(protocol: &Protocol, pattern: &AddressPattern, identifier: &[u32]) -> Vec<(usize, i64)> {
+    let addresses = pattern.addresses.iter();
+    addresses
+        .map(|address| {
+            let number = protocol.address_types[address.address_type].number(identifier[address.field]);
+            (address.address_type, number)
+        })
+        .collect()
+}

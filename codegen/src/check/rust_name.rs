@@ -1,0 +1,73 @@
+//! `rust_name`: two names are one in the generated Rust, or a name is a word of the language.
+//!
+//! `output_1` and `output1` are two messages but one struct. Rename one of the two; a vendor's word can stand in the title.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Doc, Protocol};
+
+/// Types that every generated module has.
+const TAKEN: [&str; 12] = [
+    "Access", "Addressing", "Error", "Frame", "Identifier", "Kind", "Message", "Problem", "Received", "Request",
+    "Route", "Target",
+];
+
+/// Words that cannot name a field or a function.
+const RESERVED: [&str; 24] = [
+    "as", "box", "break", "const", "continue", "crate", "else", "enum", "fn", "for", "gen", "if", "impl", "in", "let",
+    "loop", "match", "mod", "move", "pub", "ref", "return", "self", "type",
+];
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    check_types(protocol, diagnostics);
+    for message in &protocol.messages {
+        let names = message.signals.iter().map(|signal| (signal.name.clone(), signal.name.as_str(), &signal.doc));
+        check_names("signal", names, diagnostics);
+    }
+    let accesses = protocol.accesses.iter().map(|access| (access.name.clone(), access.name.as_str(), &access.doc));
+    check_names("access", accesses, diagnostics);
+}
+
+fn check_types(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let messages = protocol.messages.iter().map(|message| (message.name.as_str(), &message.doc));
+    let enumerations = protocol.enumerations.iter().map(|known| (known.name.as_str(), &known.doc));
+    let words = protocol.status_words.iter().map(|word| (word.name.as_str(), &word.doc));
+    let types: Vec<_> = messages.chain(enumerations).chain(words).collect();
+    for (name, doc) in &types {
+        if TAKEN.contains(&camel_case(name).as_str()) {
+            let text = format!("every generated module has its own `{}`", camel_case(name));
+            diagnostics.push(Diagnostic::error("rust_name", doc.path.at_key(), text).help("choose another name"));
+        }
+    }
+    let names = types.iter().map(|(name, doc)| (camel_case(name), *name, *doc));
+    check_names("type", names, diagnostics);
+}
+
+/// Reports names that are reserved, or equal after conversion.
+fn check_names<'a>(
+    what: &str,
+    names: impl Iterator<Item = (String, &'a str, &'a Doc)>,
+    diagnostics: &mut Diagnostics,
+) {
+    let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
+    for (rust, name, doc) in names {
+        if RESERVED.contains(&rust.as_str()) {
+            let text = format!("`{name}` is a word of Rust");
+            diagnostics.push(Diagnostic::error("rust_name", doc.path.at_key(), text).help("choose another name"));
+        }
+        if let Some((_, other, earlier)) = seen.iter().find(|(known, _, _)| *known == rust) {
+            let text = format!("the names `{other}` and `{name}` are one {what} in Rust: `{rust}`");
+            let diagnostic = Diagnostic::error("rust_name", doc.path.at_key(), text).help("rename one of the two");
+            diagnostics.push(diagnostic.other(earlier.path.at_key(), "the other name"));
+        }
+        seen.push((rust, name, doc));
+    }
+}
+
+/// Converts `set_module_output` to `SetModuleOutput`.
+fn camel_case(name: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
+    };
+    name.split('_').map(capital).collect()
+}

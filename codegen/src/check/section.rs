@@ -1,0 +1,20 @@
+//! `section`: an item that does not say where it stands in the document.
+//!
+//! Whoever reviews the spec looks the fact up. Write `section: "2.4"`; what is inside an item inherits it.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::Protocol;
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let messages = protocol.messages.iter().map(|message| ("message", &message.name, &message.doc));
+    let models = protocol.models.iter().map(|model| ("model", &model.name, &model.doc));
+    let timing = protocol.timing.iter().map(|timing| ("timing", &timing.name, &timing.doc));
+    let procedures = protocol.procedures.iter().map(|known| ("procedure", &known.name, &known.doc));
+    for (what, name, doc) in messages.chain(models).chain(timing).chain(procedures) {
+        if doc.section.is_none() {
+            let text = format!("the {what} `{name}` has no section");
+            let help = "write `section: \"2.4\"`, where the document says it";
+            diagnostics.push(Diagnostic::warning("section", doc.path.at_key(), text).help(help));
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! What is wrong with a spec, and where.
+
+#[cfg(feature = "render")]
+mod render;
+
+use std::error::Error;
+use std::fmt;
+use std::ops::Range;
+
+use serde::Serialize;
+
+use crate::source::Source;
+use crate::syntax::tree::{Node, Path};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The spec cannot be used.
+    Error,
+    /// The spec can be used, but somebody should look.
+    Warning,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        })
+    }
+}
+
+/// A place in a spec.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum At {
+    /// The file as a whole.
+    File,
+    /// A range of bytes of the text.
+    Span(Range<usize>),
+    /// The key of an entry; where there is no such entry, the key of what it should be in.
+    Key(Path),
+    /// The value of an entry; of a map or a list its key, or its first line where it has no key.
+    Value(Path),
+}
+
+impl From<Range<usize>> for At {
+    fn from(span: Range<usize>) -> Self {
+        Self::Span(span)
+    }
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Id of the rule that is broken.
+    pub rule: &'static str,
+    /// How bad it is.
+    pub severity: Severity,
+    /// One sentence in lower case without a full stop.
+    pub message: String,
+    /// Where it is.
+    pub at: At,
+    /// What to say at that place.
+    pub label: Option<String>,
+    /// Other places that have to do with it, and what to say there.
+    pub others: Vec<(At, String)>,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// Creates an error.
+    pub fn error(rule: &'static str, at: impl Into<At>, message: impl Into<String>) -> Self {
+        Self::new(rule, Severity::Error, at.into(), &message.into())
+    }
+
+    /// Creates a warning.
+    pub fn warning(rule: &'static str, at: impl Into<At>, message: impl Into<String>) -> Self {
+        Self::new(rule, Severity::Warning, at.into(), &message.into())
+    }
+
+    /// Sets what to say at the place.
+    #[must_use]
+    pub fn label(self, text: impl Into<String>) -> Self {
+        Self { label: Some(text.into()), ..self }
+    }
+
+    /// Adds another place and what to say there.
+    #[must_use]
+    pub fn other(mut self, at: impl Into<At>, text: impl Into<String>) -> Self {
+        self.others.push((at.into(), text.into()));
+        self
+    }
+
+    /// Sets what to do about it.
+    #[must_use]
+    pub fn help(self, text: impl Into<String>) -> Self {
+        Self { help: Some(text.into()), ..self }
+    }
+
+    /// Control characters that the message repeats from the file would act on a terminal.
+    fn new(rule: &'static str, severity: Severity, at: At, message: &str) -> Self {
+        let message = message.replace(char::is_control, "\u{FFFD}");
+        Self { rule, severity, message, at, label: None, others: Vec::new(), help: None }
+    }
+}
+
+/// All that is wrong with one spec, together with its text and tree.
+#[derive(Clone, Debug)]
+pub struct Diagnostics {
+    source: Box<Source>,
+    tree: Option<Box<Node>>,
+    items: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// Starts without a diagnostic.
+    pub fn new(source: Source) -> Self {
+        Self { source: Box::new(source), tree: None, items: Vec::new() }
+    }
+
+    /// Sets the tree in which paths are looked up.
+    #[must_use]
+    pub fn in_tree(self, tree: Option<Node>) -> Self {
+        Self { tree: tree.map(Box::new), ..self }
+    }
+
+    /// Adds diagnostics.
+    #[must_use]
+    pub fn with(mut self, items: impl IntoIterator<Item = Diagnostic>) -> Self {
+        self.items.extend(items);
+        self
+    }
+
+    /// Adds a diagnostic.
+    pub fn push(&mut self, item: Diagnostic) {
+        self.items.push(item);
+    }
+
+    /// Returns the text of the spec.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// Returns the tree of the spec, if it could be read that far.
+    pub fn tree(&self) -> Option<&Node> {
+        self.tree.as_deref()
+    }
+
+    /// Tells whether nothing is wrong.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Tells whether there is an error.
+    pub fn has_errors(&self) -> bool {
+        self.errors() > 0
+    }
+
+    /// Counts the errors.
+    pub fn errors(&self) -> usize {
+        self.count(Severity::Error)
+    }
+
+    /// Counts the warnings.
+    pub fn warnings(&self) -> usize {
+        self.count(Severity::Warning)
+    }
+
+    /// Returns the diagnostics by place: those of the whole file first, then by first byte, then as they were found.
+    pub fn sorted(&self) -> Vec<&Diagnostic> {
+        let mut items: Vec<_> = self.items.iter().collect();
+        items.sort_by_cached_key(|item| self.span(&item.at).map(|span| span.start));
+        items
+    }
+
+    /// Returns the bytes of a place; nothing for the file as a whole, or where there is no tree to look a path up in.
+    pub fn span(&self, at: &At) -> Option<Range<usize>> {
+        match at {
+            At::File => None,
+            At::Span(span) => Some(span.clone()),
+            At::Key(path) => self.tree().map(|tree| tree.key_span(path)),
+            At::Value(path) => self.tree().map(|tree| tree.value_span(path)),
+        }
+    }
+
+    /// Writes one line for each diagnostic: `FILE:LINE:COLUMN: SEVERITY[RULE]: MESSAGE`.
+    pub fn concise(&self) -> String {
+        self.located().map(|item| item.to_string()).collect::<Vec<_>>().join("\n")
+    }
+
+    /// Returns each diagnostic with its places as lines and columns, by place.
+    pub fn located(&self) -> impl Iterator<Item = Located<'_>> {
+        self.sorted().into_iter().map(|item| self.locate(item))
+    }
+
+    fn count(&self, severity: Severity) -> usize {
+        self.items.iter().filter(|item| item.severity == severity).count()
+    }
+
+    fn locate<'a>(&'a self, item: &'a Diagnostic) -> Located<'a> {
+        Located {
+            rule: item.rule,
+            severity: item.severity,
+            message: &item.message,
+            file: self.source.name(),
+            place: self.place(&item.at),
+            label: item.label.as_deref(),
+            others: item.others.iter().map(|(at, text)| Other { place: self.place(at), text }).collect(),
+            help: item.help.as_deref(),
+        }
+    }
+
+    fn place(&self, at: &At) -> Option<Place> {
+        let span = self.span(at)?;
+        let (line, column) = self.source.line_column(span.start);
+        let (end_line, end_column) = self.source.line_column(span.end);
+        Some(Place { line, column, end_line, end_column })
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.concise())
+    }
+}
+
+impl Error for Diagnostics {}
+
+/// A diagnostic with its places as lines and columns, for other programs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Located<'a> {
+    /// Id of the rule that is broken.
+    pub rule: &'static str,
+    /// How bad it is.
+    pub severity: Severity,
+    /// One sentence in lower case without a full stop.
+    pub message: &'a str,
+    /// Name of the file.
+    pub file: &'a str,
+    /// Where it is; absent for the file as a whole.
+    #[serde(flatten)]
+    pub place: Option<Place>,
+    /// What to say at that place.
+    pub label: Option<&'a str>,
+    /// Other places that have to do with it.
+    pub others: Vec<Other<'a>>,
+    /// What to do about it.
+    pub help: Option<&'a str>,
+}
+
+impl fmt::Display for Located<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.file)?;
+        if let Some(place) = &self.place {
+            write!(formatter, ":{}:{}", place.line, place.column)?;
+        }
+        write!(formatter, ": {}[{}]: {}", self.severity, self.rule, self.message)
+    }
+}
+
+/// Lines and columns of a range of text, counted from 1, columns in characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Place {
+    /// Line of the first character.
+    pub line: usize,
+    /// Column of the first character.
+    pub column: usize,
+    /// Line of the end.
+    pub end_line: usize,
+    /// Column after the last character.
+    pub end_column: usize,
+}
+
+/// Another place that has to do with a diagnostic.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Other<'a> {
+    /// Where it is; absent for the file as a whole.
+    #[serde(flatten)]
+    pub place: Option<Place>,
+    /// What to say there.
+    pub text: &'a str,
+}

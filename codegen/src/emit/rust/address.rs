@@ -1,0 +1,256 @@
+//! Addresses, addressing modes, and the targets of requests.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::doc;
+use super::identifier::field_place;
+use super::literal::{decimal, hexadecimal};
+use super::names::{Names, ident};
+use crate::model::{Address, AddressPattern, AddressType, Mode, Protocol, Who};
+
+/// Emits the types of addresses, the modes, and who answers by each access.
+pub fn addressing(protocol: &Protocol) -> TokenStream {
+    let types = protocol.address_types.iter().map(|address| address_type(protocol, address));
+    let modes = protocol.modes.iter().map(|known| mode(protocol, known));
+    let answers = protocol.accesses.iter().enumerate().filter(|(index, _)| shares_answers(protocol, *index));
+    let answers = answers.map(|(_, access)| {
+        let (name, count) = (answers_name(&access.name), proc_macro2::Literal::usize_unsuffixed(protocol.modes.len()));
+        let answers = answers_list(&access.answers);
+        let comment = doc::line(format!("Who answers `{}`, by addressing mode.", access.name));
+        quote!(#comment const #name: [Option<Who>; #count] = #answers;)
+    });
+    quote!(#(#types)* #(#modes)* #(#answers)*)
+}
+
+fn address_type(protocol: &Protocol, address: &AddressType) -> TokenStream {
+    let AddressType { name, first, last, offset, .. } = address;
+    let constant = address_name(name);
+    let title = address.doc.title.as_ref().map_or_else(|| format!("Numbers of `{name}`"), |title| doc::plain(title));
+    let comment = doc::item(protocol, &address.doc, &doc::sentence_of(&format!("{title}: {}", range(address))), None);
+    let (first, last) = (number(*first), number(*last));
+    let offset = (*offset != 0).then(|| {
+        let offset = number(*offset);
+        quote!(.offset(#offset))
+    });
+    let descending = (address.sign < 0).then(|| quote!(.descending()));
+    let strict = address.strict.then(|| quote!(.strict()));
+    let send = address.send.map(|send| {
+        let send = number(send);
+        quote!(.default_number(#send))
+    });
+    quote!(#comment pub const #constant: AddressType = AddressType::new(#name, #first, #last) #offset #descending #strict #send;)
+}
+
+/// Writes the documented numbers for people.
+fn range(address: &AddressType) -> String {
+    format!("`0x{:02X}..=0x{:02X}`", address.first, address.last)
+}
+
+/// Writes an address number: hexadecimal as in documents, decimal if it is negative.
+fn number(number: i64) -> TokenStream {
+    u32::try_from(number).map_or_else(|_| decimal(number), |number| hexadecimal(number, 8))
+}
+
+fn address_name(name: &str) -> Ident {
+    ident(&format!("{}_ADDRESS", name.to_ascii_uppercase()))
+}
+
+fn mode_name(name: &str) -> Ident {
+    ident(&format!("{}_MODE", name.to_ascii_uppercase()))
+}
+
+/// Returns the name of the constant that says who answers by an access.
+pub fn answers_name(access: &str) -> Ident {
+    ident(&format!("{}_ANSWERS", access.to_ascii_uppercase()))
+}
+
+/// Tests whether some message leaves it to the access who answers.
+fn shares_answers(protocol: &Protocol, access: usize) -> bool {
+    let accesses = protocol.messages.iter().flat_map(|message| &message.accesses);
+    accesses.filter(|known| known.access == access).any(|known| known.answers == protocol.accesses[access].answers)
+}
+
+/// Writes who answers, mode by mode.
+pub fn answers_list(answers: &[Option<Who>]) -> TokenStream {
+    let answers = answers.iter().map(|who| match who {
+        None => quote!(None),
+        Some(Who::One) => quote!(Some(Who::One)),
+        Some(Who::Each) => quote!(Some(Who::Each)),
+        Some(Who::Coordinator) => quote!(Some(Who::Coordinator)),
+        Some(Who::Nobody) => quote!(Some(Who::Nobody)),
+    });
+    quote!([#(#answers),*])
+}
+
+fn mode(protocol: &Protocol, mode: &Mode) -> TokenStream {
+    let (name, constant) = (&mode.name, mode_name(&mode.name));
+    let title =
+        mode.doc.title.as_ref().map_or_else(|| format!("The addressing mode `{name}`"), |title| doc::plain(title));
+    let comment = doc::item(protocol, &mode.doc, &doc::sentence_of(&title), None);
+    let target = option(mode.target.map(|index| {
+        let name = address_name(&protocol.address_types[index].name);
+        quote!(&#name)
+    }));
+    let [request, one, each, coordinator] = [&mode.request, &mode.one, &mode.each, &mode.coordinator]
+        .map(|known| option(known.as_ref().map(|known| pattern(protocol, known))));
+    quote! {
+        #comment
+        pub const #constant: Mode = Mode {
+            name: #name,
+            target: #target,
+            request: #request,
+            one: #one,
+            each: #each,
+            coordinator: #coordinator,
+        };
+    }
+}
+
+fn option(value: Option<TokenStream>) -> TokenStream {
+    value.map_or_else(|| quote!(None), |value| quote!(Some(#value)))
+}
+
+fn pattern(protocol: &Protocol, pattern: &AddressPattern) -> TokenStream {
+    let fields = protocol.identifier.fields.iter().filter(|field| pattern.mask & field.mask() != 0);
+    let constants = fields.map(|field| {
+        let (place, value) = (super::names::screaming(&field.name), hexadecimal(field.get(pattern.value), field.width));
+        quote!((Identifier::#place, #value))
+    });
+    let addresses = pattern.addresses.iter().map(|known| address(protocol, known));
+    quote!(Pattern { constants: &[#(#constants),*], addresses: &[#(#addresses),*] })
+}
+
+fn address(protocol: &Protocol, address: &Address) -> TokenStream {
+    let (place, width) = field_place(protocol, address.field);
+    let kind = &protocol.address_types[address.address_type];
+    let name = address_name(&kind.name);
+    let excluded = address.excluded.iter().map(|(first, last)| {
+        let (first, last) = (hexadecimal(*first, width), hexadecimal(*last, width));
+        quote!((#first, #last))
+    });
+    let excluding = (!kind.strict && !address.excluded.is_empty()).then(|| quote!(.excluding(&[#(#excluded),*])));
+    quote!(Address::new(Identifier::#place, &#name) #excluding)
+}
+
+/// Returns the paths of all modes.
+pub fn modes(protocol: &Protocol) -> TokenStream {
+    let names = protocol.modes.iter().map(|mode| mode_name(&mode.name));
+    quote!(&[#(#names),*])
+}
+
+/// A variant of `Target`.
+struct Variant<'a> {
+    name: &'a Ident,
+    mode: &'a Mode,
+    index: usize,
+    address: Option<&'a AddressType>,
+}
+
+/// Emits `Target`, unless nobody sends requests.
+pub fn target(protocol: &Protocol, names: &Names) -> Option<TokenStream> {
+    let modes = protocol.modes.iter().zip(&names.targets).enumerate();
+    let modes = modes.filter(|(_, (mode, _))| mode.request.is_some());
+    let variants: Vec<_> = modes
+        .map(|(index, (mode, name))| {
+            let address = mode.target.map(|address| &protocol.address_types[address]);
+            Variant { name, mode, index, address }
+        })
+        .collect();
+    let definitions = variants.iter().map(definition);
+    let sender = sender(protocol).map(sent_by);
+    let destination = destination(&variants);
+    (!variants.is_empty()).then(|| {
+        quote! {
+            /// Whom a request addresses.
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+            pub enum Target { #(#definitions),* }
+            #sender
+            #destination
+        }
+    })
+}
+
+fn definition(variant: &Variant) -> TokenStream {
+    let name = variant.name;
+    let title = variant.mode.doc.title.as_ref();
+    let title = title.map_or_else(|| format!("The addressing mode `{}`", variant.mode.name), |title| doc::plain(title));
+    let numbers = variant.address.map_or_else(String::new, |address| format!(": {}", range(address)));
+    let comment = doc::line(doc::sentence_of(&format!("{title}{numbers}")));
+    let number = variant.address.map(|address| {
+        let integer = number_type(address);
+        quote!((#integer))
+    });
+    quote!(#comment #name #number)
+}
+
+/// Returns the type of an address number.
+fn number_type(address: &AddressType) -> Ident {
+    match (address.first, address.last) {
+        (0.., ..=0xFF) => format_ident!("u8"),
+        (0.., ..=0xFFFF) => format_ident!("u16"),
+        _ => format_ident!("i32"),
+    }
+}
+
+/// Finds the kind of address that a request is sent from.
+fn sender(protocol: &Protocol) -> Option<&AddressType> {
+    let requests = protocol.modes.iter().filter_map(|mode| Some((mode, mode.request.as_ref()?)));
+    let mut senders = requests.flat_map(|(mode, request)| {
+        request.addresses.iter().filter(|address| Some(address.address_type) != mode.target)
+    });
+    senders.next().map(|address| &protocol.address_types[address.address_type])
+}
+
+fn sent_by(sender: &AddressType) -> TokenStream {
+    let (name, integer) = (ident(&sender.name), number_type(sender));
+    let comment =
+        doc::line(format!("Returns the route from another `{}` than the usual one: {}.", sender.name, range(sender)));
+    let number = if integer == "i32" { quote!(#name) } else { quote!(#name.into()) };
+    quote! {
+        impl Target {
+            #comment
+            #[must_use]
+            pub fn sent_by(self, #name: #integer) -> Route<Self> {
+                Route::new(self, #number)
+            }
+        }
+    }
+}
+
+fn destination(variants: &[Variant]) -> TokenStream {
+    let modes = variants.iter().map(|variant| {
+        let (name, index) = (variant.name, proc_macro2::Literal::usize_unsuffixed(variant.index));
+        let number = variant.address.map(|_| quote!((_)));
+        quote!(Self::#name #number => #index)
+    });
+    let arms = ["u8", "u16", "i32"].into_iter().filter_map(|integer| numbers(variants, Some(integer)));
+    let arms = arms.chain(numbers(variants, None));
+    quote! {
+        impl Destination for Target {
+            type Protocol = Message;
+
+            fn mode(self) -> usize {
+                match self { #(#modes),* }
+            }
+
+            fn number(self) -> Option<i32> {
+                match self { #(#arms),* }
+            }
+        }
+    }
+}
+
+/// Emits the arm of the targets whose number has this type.
+fn numbers(variants: &[Variant], integer: Option<&str>) -> Option<TokenStream> {
+    let kind = |variant: &&Variant| {
+        variant.address.map(|address| number_type(address).to_string()) == integer.map(str::to_owned)
+    };
+    let names: Vec<_> = variants.iter().filter(kind).map(|variant| variant.name).collect();
+    let arm = match integer {
+        None => quote!(#(Self::#names)|* => None),
+        Some("i32") => quote!(#(Self::#names(number))|* => Some(number)),
+        Some(_) => quote!(#(Self::#names(number))|* => Some(number.into())),
+    };
+    (!names.is_empty()).then_some(arm)
+}

@@ -1,0 +1,126 @@
+//! Documentation comments.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::model::{Doc, Protocol};
+
+/// The longest line of text behind `/// `.
+const WIDTH: usize = 100;
+
+/// Makes a documentation comment of paragraphs.
+pub fn comment(paragraphs: impl IntoIterator<Item = String>) -> TokenStream {
+    let mut lines: Vec<String> = Vec::new();
+    for paragraph in paragraphs {
+        if !lines.is_empty() {
+            lines.push(String::new());
+        }
+        lines.extend(wrapped(&paragraph));
+    }
+    let lines = lines.iter().map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
+    quote!(#(#[doc = #lines])*)
+}
+
+/// Makes a documentation comment of one sentence.
+pub fn line(text: impl Into<String>) -> TokenStream {
+    comment([text.into()])
+}
+
+/// Makes the comment of an item of the spec: a sentence, where it stands in the document, its note and its errata.
+pub fn item(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> TokenStream {
+    comment(paragraphs(protocol, doc, sentence, outer))
+}
+
+/// Returns the paragraphs of an item's comment; what the outer item says already is not repeated.
+pub fn paragraphs(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> Vec<String> {
+    let section =
+        doc.section.as_ref().filter(|section| outer.is_none_or(|outer| outer.section.as_ref() != Some(section)));
+    let mut first = sentence.to_owned();
+    if let Some(section) = section {
+        first.push_str(&format!(" {}", sentence_of(&reference(section))));
+    }
+    let note = doc.note.iter().map(|note| sentence_of(&plain(note)));
+    let errata = doc.errata.iter().filter_map(|name| erratum(protocol, name));
+    std::iter::once(first).chain(note).chain(errata).collect()
+}
+
+/// Returns a section as `Section 2.4`, or as the table that it names.
+fn reference(section: &str) -> String {
+    if section.starts_with(|first: char| first.is_ascii_digit()) {
+        format!("Section {section}")
+    } else {
+        plain(section)
+    }
+}
+
+fn erratum(protocol: &Protocol, name: &str) -> Option<String> {
+    let erratum = protocol.errata.iter().find(|erratum| erratum.name == name)?;
+    let [prints, uses] = [&erratum.prints, &erratum.uses].map(|text| plain(text));
+    Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\"")))
+}
+
+/// Begins with a capital and ends with a full stop.
+pub fn sentence_of(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();
+    let stop = if text.ends_with(['.', '!', '?', ':']) { "" } else { "." };
+    format!("{first}{}{stop}", letters.as_str())
+}
+
+/// Writes a text so that Markdown shows it as it is: names that look like code are marked as code.
+pub fn plain(text: &str) -> String {
+    let mut in_code = false;
+    let words = text.split_whitespace().map(|word| {
+        let ticks = word.matches('`').count();
+        let shown = if in_code || ticks > 0 { word.to_owned() } else { escaped(word) };
+        in_code ^= ticks % 2 == 1;
+        shown
+    });
+    let shown = words.collect::<Vec<_>>().join(" ");
+    if in_code { shown.replace('`', "'") } else { shown }
+}
+
+fn escaped(word: &str) -> String {
+    let core = word.trim_matches(|letter: char| !letter.is_alphanumeric());
+    if looks_like_code(core) {
+        return word.replacen(core, &format!("`{core}`"), 1);
+    }
+    let special = |letter: char| matches!(letter, '[' | ']' | '<' | '>' | '*' | '_' | '\\' | '#');
+    word.chars().fold(String::new(), |mut shown, letter| {
+        if special(letter) {
+            shown.push('\\');
+        }
+        shown.push(letter);
+        shown
+    })
+}
+
+/// Tests for `snake_case`, `CamelCase` and paths.
+fn looks_like_code(word: &str) -> bool {
+    let bytes = word.as_bytes();
+    let camel = bytes.windows(2).any(|pair| pair[0].is_ascii_lowercase() && pair[1].is_ascii_uppercase());
+    camel || word.contains('_') || word.contains("::")
+}
+
+/// Breaks a paragraph into lines, but never before a word that would begin a list.
+fn wrapped(paragraph: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in paragraph.split(' ').filter(|word| !word.is_empty()) {
+        let fits = |line: &String| line.is_empty() || line.chars().count() + 1 + word.chars().count() <= WIDTH;
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if fits(line) || begins_list(word) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+fn begins_list(word: &str) -> bool {
+    let numbered = word.trim_end_matches(['.', ')']);
+    word.starts_with(['-', '+', '*', '#', '>', '|', '=', '~'])
+        || (numbered.len() < word.len() && numbered.bytes().all(|byte| byte.is_ascii_digit()))
+}

@@ -1,0 +1,73 @@
+//! Literals as people write them: hexadecimal fields, digits in groups.
+
+use canspec_runtime::Data;
+use proc_macro2::{Literal, TokenStream};
+use quote::{ToTokens, quote};
+
+use crate::number::Rational;
+
+/// Writes a field of so many bits in hexadecimal.
+pub fn hexadecimal(value: impl Into<u64>, width: u8) -> TokenStream {
+    let digits = usize::from(width.div_ceil(4));
+    positive(&format!("0x{}", from_the_right(&format!("{:0digits$X}", value.into()), 4)))
+}
+
+/// Writes a whole number.
+pub fn decimal(value: impl Into<i128>) -> TokenStream {
+    signed(&value.into().to_string())
+}
+
+/// Writes the double nearest to a number.
+pub fn float(value: Rational) -> TokenStream {
+    let text = value.to_f64().to_string();
+    signed(&if text.contains('.') { text } else { format!("{text}.0") })
+}
+
+/// Writes the eight bytes of a frame.
+pub fn data(data: Data) -> TokenStream {
+    let bytes = data.map(|byte| hexadecimal(byte, 8));
+    if data == [data[0]; 8] {
+        let first = &bytes[0];
+        return quote!([#first; 8]);
+    }
+    quote!([#(#bytes),*])
+}
+
+fn signed(text: &str) -> TokenStream {
+    match text.strip_prefix('-') {
+        Some(digits) => {
+            let digits = positive(&grouped(digits));
+            quote!(-#digits)
+        }
+        None => positive(&grouped(text)),
+    }
+}
+
+fn positive(text: &str) -> TokenStream {
+    text.parse::<Literal>().unwrap_or_else(|_| Literal::string(text)).into_token_stream()
+}
+
+/// Separates digits in threes, from the point outwards.
+fn grouped(text: &str) -> String {
+    match text.split_once('.') {
+        Some((whole, fraction)) => format!("{}.{}", thousands(whole), from_the_left(fraction)),
+        None => thousands(text),
+    }
+}
+
+fn thousands(digits: &str) -> String {
+    if digits.len() < 5 { digits.to_owned() } else { from_the_right(digits, 3) }
+}
+
+fn from_the_right(digits: &str, size: usize) -> String {
+    let first = digits.len() % size;
+    let (head, rest) = digits.split_at(first);
+    let groups = rest.as_bytes().chunks(size).map(String::from_utf8_lossy);
+    let head = (!head.is_empty()).then(|| head.into());
+    head.into_iter().chain(groups).collect::<Vec<_>>().join("_")
+}
+
+fn from_the_left(digits: &str) -> String {
+    let size = if digits.len() < 6 { digits.len() } else { 3 };
+    digits.as_bytes().chunks(size).map(String::from_utf8_lossy).collect::<Vec<_>>().join("_")
+}

@@ -1,0 +1,361 @@
+//! One message: its structs, signals, exchanges and requests.
+
+use canspec_runtime::Data;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::address::{answers_list, answers_name};
+use super::doc;
+use super::literal::{data, decimal, float, hexadecimal};
+use super::names::{MessageNames, Names, Struct, screaming};
+use super::place::Written;
+use super::word::{integer, text_type};
+use crate::model::{Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal, Who};
+use crate::number::Rational;
+
+/// A message on its way into Rust.
+pub struct Emitter<'a> {
+    pub protocol: &'a Protocol,
+    pub all: &'a Names,
+    pub names: &'a MessageNames,
+    pub message: &'a Message,
+}
+
+impl Emitter<'_> {
+    /// Emits every struct of the message.
+    pub fn items(&self) -> TokenStream {
+        let structs = self.names.structs.iter().enumerate();
+        let structs = structs.map(|(index, known)| {
+            let (definition, constants, layout) =
+                (self.definition(known), self.constants(index, known), self.layout(known));
+            quote!(#definition #constants #layout)
+        });
+        quote!(#(#structs)*)
+    }
+
+    fn home(&self) -> &Ident {
+        &self.names.structs[0].name
+    }
+
+    fn sentence(&self) -> String {
+        let Message { name, doc, .. } = self.message;
+        doc::sentence_of(&doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| doc::plain(title)))
+    }
+
+    fn definition(&self, known: &Struct) -> TokenStream {
+        let comment = doc::item(self.protocol, &self.message.doc, &self.sentence(), None);
+        let name = &known.name;
+        let members = known.signals.iter().map(|index| self.member(*index));
+        let exact = known.signals.iter().all(|index| self.is_exact(&self.message.signals[*index]));
+        let eq = exact.then(|| quote!(, Eq, Hash));
+        let body = if known.signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
+        quote!(#comment #[derive(Clone, Copy, Debug, PartialEq #eq)] pub struct #name #body)
+    }
+
+    /// Tests whether equality of a field is exact.
+    fn is_exact(&self, signal: &Signal) -> bool {
+        !matches!(signal.encoding, Encoding::Float) && !is_scaled(signal)
+    }
+
+    fn member(&self, index: usize) -> TokenStream {
+        let signal = &self.message.signals[index];
+        let (name, kind) = (&self.names.fields[index], self.field_type(index));
+        let paragraphs =
+            doc::paragraphs(self.protocol, &signal.doc, &self.member_sentence(signal), Some(&self.message.doc));
+        let comment = doc::comment(paragraphs);
+        quote!(#comment pub #name: #kind)
+    }
+
+    fn member_sentence(&self, signal: &Signal) -> String {
+        let title = signal.doc.title.as_ref().map_or_else(|| signal.name.replace('_', " "), |title| doc::plain(title));
+        let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
+        let facts = [Some(Written::new(signal.place).text()), step(signal), range(signal), specials(signal)];
+        let facts: Vec<_> = facts.into_iter().flatten().collect();
+        let model = if self.depends_on_model(signal) { " The limits depend on the device model." } else { "" };
+        format!("{}{model}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
+    }
+
+    fn depends_on_model(&self, signal: &Signal) -> bool {
+        let types = self.protocol.models.iter().flat_map(|model| &model.types);
+        types.filter(|known| known.range.is_some()).any(|known| signal.types.contains(&known.name))
+    }
+
+    fn field_type(&self, index: usize) -> TokenStream {
+        if is_scaled(&self.message.signals[index]) { quote!(f64) } else { self.raw_type(index) }
+    }
+
+    fn raw_type(&self, index: usize) -> TokenStream {
+        let signal = &self.message.signals[index];
+        let width = signal.place.width();
+        let name = match &signal.encoding {
+            Encoding::Number { signed, .. } => return integer(width, *signed),
+            Encoding::Float => return quote!(f32),
+            Encoding::Text => return text_type(width),
+            Encoding::Named(known) => Some(&self.all.enumerations[*known]),
+            Encoding::Status(known) => Some(&self.all.status_words[*known]),
+            Encoding::Packed { .. } => self.names.packed[index].as_ref(),
+        };
+        quote!(#name)
+    }
+
+    fn constants(&self, index: usize, known: &Struct) -> TokenStream {
+        let name = &known.name;
+        let is_home = index == 0;
+        let signals = (0..self.message.signals.len()).filter(|_| is_home).map(|index| self.signal(index));
+        let reserved = self.reserved(known);
+        let exchanges = (0..self.message.accesses.len()).filter(|_| is_home).map(|access| self.exchange(access));
+        let requests = self.message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
+        let methods = requests.filter(|shape| self.host(shape) == name).map(|shape| self.method(shape));
+        quote!(impl #name { #(#signals)* #reserved #(#exchanges)* #(#methods)* })
+    }
+
+    /// Returns the struct that has the method which builds a request.
+    fn host(&self, shape: &Shape) -> &Ident {
+        self.names.carried(shape).map_or_else(|| self.home(), |known| &known.name)
+    }
+
+    fn signal(&self, index: usize) -> TokenStream {
+        let signal = &self.message.signals[index];
+        let (name, raw) = (&self.names.constants[index], self.raw_type(index));
+        let (text, place) = (&signal.name, Written::new(signal.place).expression());
+        let comment = doc::line(format!("The signal `{text}`."));
+        let refinements = [unit(signal), scale(signal), limits(signal), special_list(signal)].into_iter().flatten();
+        let values = signal.specials.iter().map(|special| self.special(index, special));
+        quote!(#comment pub const #name: Signal<#raw> = Signal::new(#text, #place) #(#refinements)*; #(#values)*)
+    }
+
+    /// Emits the physical value that stands for a special raw value.
+    fn special(&self, index: usize, special: &NamedValue) -> TokenStream {
+        let signal = &self.message.signals[index];
+        let name = quote::format_ident!("{}_{}", self.names.constants[index], special.name.to_ascii_uppercase());
+        let kind = self.field_type(index);
+        let comment = doc::line(format!("The value of `{}` that stands for `{}`.", signal.name, special.name));
+        let value = match &signal.encoding {
+            Encoding::Number { scale, offset, .. } if is_scaled(signal) => {
+                let value = scale.times(Rational::integer(special.raw)).and_then(|value| value.plus(*offset));
+                float(value.unwrap_or(Rational::ZERO))
+            }
+            _ => decimal(special.raw),
+        };
+        quote!(#comment pub const #name: #kind = #value;)
+    }
+
+    fn reserved(&self, known: &Struct) -> Option<TokenStream> {
+        let shape = self.message.shapes.iter().find(|shape| shape.signals == known.signals)?;
+        let reserved = data(reserved(self.protocol, self.message, shape));
+        let comment = doc::line("The bits that the document reserves.");
+        (!known.signals.is_empty()).then(|| quote!(#comment pub const RESERVED: Data = #reserved;))
+    }
+
+    fn exchange(&self, index: usize) -> TokenStream {
+        let access = &self.message.accesses[index];
+        let known = &self.protocol.accesses[access.access];
+        let (constant, name, message) = (&self.names.exchanges[index], &known.name, &self.message.name);
+        let comment = doc::line(format!("How it travels by `{name}`.{}", self.period(access.access)));
+        let answers = if access.answers == known.answers {
+            let name = answers_name(name);
+            quote!(&#name)
+        } else {
+            let list = answers_list(&access.answers);
+            quote!(&#list)
+        };
+        let length = (self.message.length != 8).then(|| {
+            let length = decimal(self.message.length);
+            quote!(.length(#length))
+        });
+        let shapes = self.message.shapes.iter().filter(|shape| shape.access == index);
+        let filters = shapes.map(|shape| {
+            let (kind, filter) = (super::names::ident(shape.kind.name()), self.filter(shape));
+            quote!(.#kind(#filter))
+        });
+        quote!(#comment pub const #constant: Exchange = Exchange::new(#message, #name, #answers) #length #(#filters)*;)
+    }
+
+    /// Says how often a report comes.
+    fn period(&self, access: usize) -> String {
+        let every = self.message.every.or(self.protocol.accesses[access].every);
+        let timing = every.map(|index| &self.protocol.timing[index]);
+        timing.map_or_else(String::new, |timing| {
+            let (first, last, unit) = (timing.range.minimum, timing.range.maximum, timing.unit.symbol);
+            if first == last {
+                format!(" It comes every {first} {unit}.")
+            } else {
+                format!(" It comes every {first} to {last} {unit}.")
+            }
+        })
+    }
+
+    /// Emits what a kind of frame shows.
+    fn filter(&self, shape: &Shape) -> TokenStream {
+        let constants = shape.constants.iter().map(|(index, value)| {
+            let selector = &self.protocol.selectors[*index];
+            let name = screaming(&selector.name);
+            match selector.place {
+                SelectorPlace::Identifier(field) => {
+                    let value = hexadecimal(*value, self.protocol.identifier.fields[field].width);
+                    quote!(.id(Identifier::#name, #value))
+                }
+                SelectorPlace::Payload(place) => {
+                    let value = hexadecimal(*value, place.width());
+                    let constant = selector_name(self.protocol, *index);
+                    quote!(.data(#constant.place, #value))
+                }
+            }
+        });
+        let selectors = shape.selectors.iter().map(|index| selector_name(self.protocol, *index));
+        let selectors = (!shape.selectors.is_empty()).then(|| quote!(.selectors(&[#(#selectors),*])));
+        quote!(FRAME #selectors #(#constants)*)
+    }
+
+    fn method(&self, shape: &Shape) -> TokenStream {
+        let known = &self.protocol.accesses[self.message.accesses[shape.access].access];
+        let (method, exchange, home) =
+            (&self.names.methods[shape.access], &self.names.exchanges[shape.access], self.home());
+        let reply = self.message.shapes.iter().find(|other| other.access == shape.access && other.kind == Kind::Reply);
+        let reply = reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name);
+        let is_own = self.host(shape) == home;
+        let reply_type = match reply {
+            None => quote!(()),
+            Some(name) if name == self.host(shape) => quote!(Self),
+            Some(name) => quote!(#name),
+        };
+        let exchange = if is_own { quote!(Self::#exchange) } else { quote!(#home::#exchange) };
+        let carries = self.names.carried(shape).is_some();
+        let comment = doc::comment(self.method_comment(shape, &known.name, carries));
+        let (receiver, content) = if carries { (Some(quote!(&self,)), quote!(self)) } else { (None, quote!(&())) };
+        quote! {
+            #comment
+            pub fn #method(#receiver route: impl Into<Route<Target>>) -> Result<Request<#reply_type>, Error> {
+                #exchange.request_to(route, #content)
+            }
+        }
+    }
+
+    fn method_comment(&self, shape: &Shape, access: &str, carries: bool) -> [String; 4] {
+        let values = if carries { " with these values" } else { "" };
+        let first = format!("Builds the request `{access}`{values}.");
+        let values = if carries { "values outside their limits, " } else { "" };
+        let errors = format!("Refuses {values}other addressing modes, and undocumented addresses.");
+        [first, self.modes(shape), "# Errors".to_owned(), errors]
+    }
+
+    /// Says in which modes a request can be sent, and who answers.
+    fn modes(&self, shape: &Shape) -> String {
+        let answers = self.protocol.modes.iter().zip(&self.message.accesses[shape.access].answers);
+        let modes = answers.filter_map(|(mode, who)| {
+            let who = match (*who)? {
+                Who::One => "the module answers",
+                Who::Each => "each module answers",
+                Who::Coordinator => "one answers for all",
+                Who::Nobody => "nobody answers",
+            };
+            Some(format!("`{}`: {who}.", mode.name))
+        });
+        modes.collect::<Vec<_>>().join(" ")
+    }
+
+    fn layout(&self, known: &Struct) -> Option<TokenStream> {
+        let (name, home) = (&known.name, self.home());
+        let owner = if name == home { quote!(Self) } else { quote!(#home) };
+        let constants: Vec<_> = known.signals.iter().map(|index| &self.names.constants[*index]).collect();
+        let fields: Vec<_> = known.signals.iter().map(|index| &self.names.fields[*index]).collect();
+        let verbs = known.signals.iter().map(|index| is_scaled(&self.message.signals[*index]));
+        let (get, put): (Vec<_>, Vec<_>) = verbs
+            .map(|scaled| if scaled { (quote!(decode), quote!(encode)) } else { (quote!(get), quote!(put)) })
+            .unzip();
+        let writes: Vec<_> = constants
+            .iter()
+            .zip(&fields)
+            .zip(put)
+            .map(|((constant, field), put)| quote!(#owner::#constant.#put(self.#field, payload)))
+            .collect();
+        let (last, others) = writes.split_last()?;
+        Some(quote! {
+            impl Layout for #name {
+                fn decode(data: &Data) -> Self {
+                    Self { #(#fields: #owner::#constants.#get(data)),* }
+                }
+
+                fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+                    #(#others?;)*
+                    #last
+                }
+
+                fn signals(&self) -> &'static [&'static dyn AnySignal] {
+                    &[#(&#owner::#constants),*]
+                }
+            }
+        })
+    }
+}
+
+/// Returns the name of a payload selector's constant; two places under one name are told apart by number.
+pub fn selector_name(protocol: &Protocol, index: usize) -> Ident {
+    let name = &protocol.selectors[index].name;
+    let earlier = protocol.selectors[..index].iter().filter(|known| known.name == *name).count();
+    let suffix = if earlier == 0 { String::new() } else { format!("_{}", earlier + 1) };
+    super::names::ident(&format!("{}_SELECTOR{suffix}", name.to_ascii_uppercase()))
+}
+
+fn is_scaled(signal: &Signal) -> bool {
+    matches!(signal.encoding, Encoding::Number { .. }) && !signal.encoding.is_unscaled()
+}
+
+fn unit(signal: &Signal) -> Option<TokenStream> {
+    let symbol = signal.unit?.symbol;
+    Some(quote!(.unit(#symbol)))
+}
+
+fn scale(signal: &Signal) -> Option<TokenStream> {
+    let Encoding::Number { scale, offset, .. } = &signal.encoding else { return None };
+    let [numerator, denominator, above, below] =
+        [scale.numerator(), scale.denominator(), offset.numerator(), offset.denominator()].map(decimal);
+    let offset = (*offset != Rational::ZERO).then(|| quote!(.offset(#above, #below)));
+    let scale = (*scale != Rational::ONE).then(|| quote!(.scale(#numerator, #denominator)));
+    Some(quote!(#scale #offset))
+}
+
+fn limits(signal: &Signal) -> Option<TokenStream> {
+    let range = signal.range?;
+    let (minimum, maximum) = (float(range.minimum), float(range.maximum));
+    Some(quote!(.limits(#minimum, #maximum)))
+}
+
+fn special_list(signal: &Signal) -> Option<TokenStream> {
+    let specials = signal.specials.iter().map(|special| {
+        let (raw, name) = (decimal(special.raw), &special.name);
+        quote!((#raw, #name))
+    });
+    (!signal.specials.is_empty()).then(|| quote!(.specials(&[#(#specials),*])))
+}
+
+fn step(signal: &Signal) -> Option<String> {
+    let Encoding::Number { scale, offset, .. } = &signal.encoding else { return None };
+    let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
+    let step = (*scale != Rational::ONE).then(|| format!("steps of {scale}{unit}"));
+    let offset = (*offset != Rational::ZERO).then(|| format!("raw 0 is {offset}{unit}"));
+    let facts: Vec<_> = step.into_iter().chain(offset).collect();
+    (!facts.is_empty()).then(|| facts.join(", "))
+}
+
+fn range(signal: &Signal) -> Option<String> {
+    let range = signal.range?;
+    Some(format!("`{}..={}`", range.minimum, range.maximum))
+}
+
+fn specials(signal: &Signal) -> Option<String> {
+    let specials = signal.specials.iter().map(|special| format!("raw {} is `{}`", special.raw, special.name));
+    (!signal.specials.is_empty()).then(|| specials.collect::<Vec<_>>().join(", "))
+}
+
+/// Returns the bits of the data that neither signals nor selectors cover.
+fn reserved(protocol: &Protocol, message: &Message, shape: &Shape) -> Data {
+    let signals = shape.signals.iter().map(|index| message.signals[*index].place.mask());
+    let selectors = shape.selectors.iter().filter_map(|index| match protocol.selectors[*index].place {
+        SelectorPlace::Payload(place) => Some(place.mask()),
+        SelectorPlace::Identifier(_) => None,
+    });
+    let covered = signals.chain(selectors).fold(0, |covered, mask| covered | u64::from_be_bytes(mask));
+    let present = u64::MAX.checked_shl(64 - 8 * u32::from(message.length)).unwrap_or(0);
+    (!covered & present).to_be_bytes()
+}

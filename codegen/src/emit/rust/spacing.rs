@@ -1,0 +1,38 @@
+//! Blank lines between items, which the formatter leaves out.
+
+/// Separates items of a file, and functions from what stands before them in an `impl`.
+pub fn spaced(text: &str) -> String {
+    let lines: Vec<_> = text.lines().collect();
+    let mut spaced = String::with_capacity(text.len() + text.len() / 16);
+    for (index, line) in lines.iter().enumerate() {
+        if index > 0 && begins_group(&lines, index) {
+            spaced.push('\n');
+        }
+        spaced.push_str(line);
+        spaced.push('\n');
+    }
+    spaced
+}
+
+/// Tests whether an item begins that is set off from the one before.
+fn begins_group(lines: &[&str], index: usize) -> bool {
+    let (before, line) = (lines[index - 1], lines[index]);
+    let is_code = !before.trim_start().starts_with("//");
+    let ends = is_code && before.ends_with([';', '}']) && !line.trim_start().starts_with('}');
+    match indent(line) {
+        0 => ends && !(before.starts_with("use core") && line.starts_with("use core")),
+        4 => ends && (is_function(&lines[index..]) || before == "    }"),
+        _ => false,
+    }
+}
+
+fn indent(line: &str) -> usize {
+    line.len() - line.trim_start().len()
+}
+
+/// Tests whether the item behind comments and attributes is a function.
+fn is_function(lines: &[&str]) -> bool {
+    let item =
+        lines.iter().map(|line| line.trim_start()).find(|line| !line.starts_with("///") && !line.starts_with("#["));
+    item.is_some_and(|item| item.starts_with("fn ") || item.starts_with("pub fn ") || item.starts_with("const fn "))
+}

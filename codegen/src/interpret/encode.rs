@@ -1,0 +1,189 @@
+//! From a message with its values to a frame.
+
+use super::decode::coverage;
+use super::value::raw_of;
+use super::{Content, Decoded, Form, Frame, Refusal, decode};
+use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape};
+
+/// Makes the frame that shows `content`.
+///
+/// # Errors
+///
+/// Refuses unknown names, missing and superfluous fields and signals, values that do not fit, a message that contradicts the
+/// identifier or the selectors, foreign identifiers; in requests also values outside their range, and addresses and addressing
+/// modes that the document does not have.
+pub fn encode(protocol: &Protocol, content: &Content) -> Result<Frame, Refusal> {
+    let message = find_message(protocol, &content.message)?;
+    let id = identifier(protocol, content)?;
+    let shape = shape(protocol, message, content, id)?;
+    let data = payload(protocol, message, shape, content)?;
+    let frame = frame(protocol, message, id, data);
+    let decoded = decode(protocol, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    confirm(protocol, message, shape, &decoded)?;
+    Ok(frame)
+}
+
+/// Finds a message by name.
+pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<&'a Message, Refusal> {
+    protocol.messages.iter().find(|message| message.name == name).ok_or_else(|| {
+        let names = protocol.messages.iter().map(|message| message.name.as_str());
+        let near = names.max_by(|one, other| strsim::jaro_winkler(one, name).total_cmp(&strsim::jaro_winkler(other, name)));
+        let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        Refusal(format!("`{}` has no message `{name}`{hint}", protocol.name))
+    })
+}
+
+pub fn refuse(message: &Message, why: &str) -> Refusal {
+    Refusal(format!("{}: {why}", message.name))
+}
+
+/// Returns a frame of a message.
+pub fn frame(protocol: &Protocol, message: &Message, id: u32, data: [u8; 8]) -> Frame {
+    let length = usize::from(message.length);
+    let data = data.into_iter().take(length).collect();
+    Frame { id, extended: protocol.identifier.extended, data, form: Form::Data }
+}
+
+/// Builds the identifier of its named fields.
+fn identifier(protocol: &Protocol, content: &Content) -> Result<u32, Refusal> {
+    let fields = &protocol.identifier.fields;
+    if let Some((name, _)) = content.identifier.iter().find(|(name, _)| fields.iter().all(|field| field.name != *name)) {
+        return Err(Refusal(format!("{}: the identifier has no field `{name}`", content.message)));
+    }
+    fields.iter().try_fold(protocol.identifier.value, |id, field| {
+        let given = content.identifier.iter().find(|(name, _)| *name == field.name);
+        let (_, value) = given.ok_or_else(|| {
+            Refusal(format!("{}: the identifier lacks its field `{}`", content.message, field.name))
+        })?;
+        let greatest = field.mask() >> field.shift;
+        let fits = u32::try_from(*value).ok().filter(|value| *value <= greatest);
+        let fits = fits.filter(|value| field.constant.is_none_or(|constant| constant == *value));
+        let value = fits.ok_or_else(|| {
+            let wanted = field.constant.map_or_else(|| format!("0..{greatest}"), |constant| constant.to_string());
+            Refusal(format!("{}: the identifier's {} is {value}, not {wanted}", content.message, field.name))
+        })?;
+        Ok(id | value << field.shift)
+    })
+}
+
+/// Finds the frame whose constants the identifier and the selectors show.
+fn shape<'a>(
+    protocol: &Protocol,
+    message: &'a Message,
+    content: &Content,
+    id: u32,
+) -> Result<&'a Shape, Refusal> {
+    let access = |shape: &Shape| &protocol.accesses[message.accesses[shape.access].access].name;
+    let named = |shape: &&Shape| {
+        content.access.as_ref().is_none_or(|name| access(shape) == name)
+            && content.kind.is_none_or(|kind| shape.kind == kind)
+    };
+    let shows = |shape: &&Shape| {
+        shape.constants.iter().all(|(selector, value)| {
+            let selector = &protocol.selectors[*selector];
+            match selector.place {
+                SelectorPlace::Identifier(field) => u64::from(protocol.identifier.fields[field].get(id)) == *value,
+                SelectorPlace::Payload(_) => content.selectors.contains(&(selector.name.clone(), *value)),
+            }
+        })
+    };
+    let mut fitting = message.shapes.iter().filter(named).filter(shows);
+    let first = fitting.next().ok_or_else(|| refuse(message, "identifier and selectors show another message"))?;
+    if content.kind.is_some() {
+        return Ok(first);
+    }
+    let bare = Frame { id, extended: protocol.identifier.extended, data: vec![0; message.length.into()], form: Form::Data };
+    let kind = decode(protocol, &bare).map(|decoded| decoded.kind);
+    let all = std::iter::once(first).chain(fitting).collect::<Vec<_>>();
+    Ok(all.iter().find(|shape| Ok(shape.kind) == kind).copied().unwrap_or(first))
+}
+
+fn payload(protocol: &Protocol, message: &Message, shape: &Shape, content: &Content) -> Result<[u8; 8], Refusal> {
+    let mut data = [0; 8];
+    put_selectors(protocol, message, shape, content, &mut data)?;
+    put_signals(protocol, message, shape, content, &mut data)?;
+    put_reserved(protocol, message, shape, content, &mut data)?;
+    Ok(data)
+}
+
+fn put_selectors(
+    protocol: &Protocol,
+    message: &Message,
+    shape: &Shape,
+    content: &Content,
+    data: &mut [u8; 8],
+) -> Result<(), Refusal> {
+    let present = |name: &str| shape.selectors.iter().find(|index| protocol.selectors[**index].name == name);
+    if let Some((name, _)) = content.selectors.iter().find(|(name, _)| present(name).is_none()) {
+        return Err(refuse(message, &format!("it has no selector `{name}`")));
+    }
+    for index in &shape.selectors {
+        let selector = &protocol.selectors[*index];
+        let SelectorPlace::Payload(place) = selector.place else { continue };
+        let given = content.selectors.iter().find(|(name, _)| *name == selector.name);
+        let (_, value) = given.ok_or_else(|| refuse(message, &format!("the selector `{}` is missing", selector.name)))?;
+        if *value > place.max() {
+            return Err(refuse(message, &format!("the selector {} {value} does not fit", selector.name)));
+        }
+        place.put(data, *value);
+    }
+    Ok(())
+}
+
+fn put_signals(
+    protocol: &Protocol,
+    message: &Message,
+    shape: &Shape,
+    content: &Content,
+    data: &mut [u8; 8],
+) -> Result<(), Refusal> {
+    let carried = |name: &str| shape.signals.iter().any(|index| message.signals[*index].name == name);
+    if let Some((name, _)) = content.signals.iter().find(|(name, _)| !carried(name)) {
+        return Err(refuse(message, &format!("a {} has no signal `{name}`", shape.kind.name())));
+    }
+    for index in &shape.signals {
+        let signal = &message.signals[*index];
+        let given = content.signals.iter().find(|(name, _)| *name == signal.name);
+        let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;
+        let bits = raw_of(protocol, message, signal, input, shape.kind == Kind::Request)?;
+        signal.place.put(data, bits);
+    }
+    Ok(())
+}
+
+fn put_reserved(
+    protocol: &Protocol,
+    message: &Message,
+    shape: &Shape,
+    content: &Content,
+    data: &mut [u8; 8],
+) -> Result<(), Refusal> {
+    if content.reserved.is_empty() {
+        return Ok(());
+    }
+    if content.reserved.len() != usize::from(message.length) {
+        let text = format!("`reserved` has {} bytes instead of {}", content.reserved.len(), message.length);
+        return Err(refuse(message, &text));
+    }
+    let mut bytes = [0; 8];
+    bytes.iter_mut().zip(&content.reserved).for_each(|(byte, given)| *byte = *given);
+    if u64::from_be_bytes(bytes) & coverage(protocol, message, shape) != 0 {
+        return Err(refuse(message, "`reserved` has bits that belong to a signal"));
+    }
+    data.iter_mut().zip(bytes).for_each(|(byte, bits)| *byte |= bits);
+    Ok(())
+}
+
+/// Tests that the frame decodes to what was asked for, and that a request keeps to the documented addresses.
+fn confirm(protocol: &Protocol, message: &Message, shape: &Shape, decoded: &Decoded) -> Result<(), Refusal> {
+    let shown = &protocol.messages[decoded.message];
+    if shown.name != message.name || decoded.kind != shape.kind || decoded.access != message.accesses[shape.access].access {
+        let text = format!("identifier and selectors show a {} of `{}`", decoded.kind.name(), shown.name);
+        return Err(refuse(message, &text));
+    }
+    let forbidden = decoded.notes.iter().find(|note| matches!(note.rule, "address" | "addressing" | "access"));
+    match forbidden.filter(|_| decoded.kind == Kind::Request) {
+        Some(note) => Err(refuse(message, &note.text)),
+        None => Ok(()),
+    }
+}

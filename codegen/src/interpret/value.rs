@@ -1,0 +1,247 @@
+//! One signal: raw bits to physical value and back.
+
+use canspec_runtime::{Scale, nearest};
+
+use super::{Input, Refusal, Value};
+use crate::model::{Encoding, Enumeration, Message, NamedValue, Protocol, Range, Signal};
+use crate::number::Rational;
+use crate::texts::{parse_packed, raw_of_bits, text_bits, text_of_bits, unnamed, write_packed};
+
+/// Returns the physical value of a signal's raw bits.
+pub fn physical(protocol: &Protocol, signal: &Signal, bits: u64) -> Value {
+    match &signal.encoding {
+        Encoding::Number { signed, scale, offset } => {
+            let raw = extended(signal, bits, *signed);
+            match signal.specials.iter().find(|special| special.raw == raw) {
+                Some(special) => Value::Name(special.name.clone()),
+                None if signal.encoding.is_unscaled() => Value::Integer(raw),
+                None => Value::Number(scaled(raw, *scale, *offset)),
+            }
+        }
+        Encoding::Float => {
+            let value = float(bits);
+            if value.is_finite() { Value::Number(value.into()) } else { Value::None }
+        }
+        Encoding::Named(index) => {
+            let named = named(&protocol.enumerations[*index], bits);
+            named.map_or(Value::None, |value| Value::Name(value.name.clone()))
+        }
+        Encoding::Status(index) => {
+            let word = &protocol.status_words[*index];
+            let set = word.bits.iter().map(|bit| bit.bit).filter(|bit| bits >> bit & 1 == 1);
+            Value::Status { set: set.collect(), unknown: bits & !word.known() }
+        }
+        Encoding::Text => text_of_bits(signal, bits).map_or(Value::None, Value::Text),
+        Encoding::Packed { pieces, parts } => {
+            write_packed(pieces, parts, signal, bits).map_or(Value::None, Value::Text)
+        }
+    }
+}
+
+/// Returns the raw number of a signal's bits.
+pub fn extended(signal: &Signal, bits: u64, signed: bool) -> i128 {
+    let width = signal.place.width();
+    let negative = signed && bits >> (width - 1) & 1 == 1;
+    i128::from(bits) - if negative { 1 << width } else { 0 }
+}
+
+/// Returns the float of a signal's bits.
+pub fn float(bits: u64) -> f32 {
+    f32::from_bits(u32::try_from(bits & u64::from(u32::MAX)).unwrap_or(0))
+}
+
+/// Finds the named value of raw bits.
+pub fn named(enumeration: &Enumeration, bits: u64) -> Option<&NamedValue> {
+    enumeration.values.iter().find(|value| value.raw == i128::from(bits))
+}
+
+fn scaled(raw: i128, scale: Rational, offset: Rational) -> f64 {
+    i64::try_from(raw).map_or(f64::NAN, |raw| runtime_scale(scale, offset).physical(raw))
+}
+
+/// Returns the scale as the runtime computes with it; the checks have made sure that its numbers fit.
+fn runtime_scale(scale: Rational, offset: Rational) -> Scale {
+    let part = |number: i128| i64::try_from(number).unwrap_or(1);
+    Scale::new(part(scale.numerator()), part(scale.denominator()))
+        .offset(part(offset.numerator()), part(offset.denominator()))
+}
+
+/// Tests a physical value against the range; the limits of a float are the floats nearest to them.
+pub fn in_range(signal: &Signal, range: &Range, value: f64) -> bool {
+    let limit = |limit: Rational| match signal.encoding {
+        #[allow(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
+        Encoding::Float => f64::from(limit.to_f64() as f32),
+        _ => limit.to_f64(),
+    };
+    value >= limit(range.minimum) && value <= limit(range.maximum)
+}
+
+/// Returns the raw bits of a value to send; a request also refuses what lies outside the range and what is not finite.
+///
+/// # Errors
+///
+/// Names message, signal, value, unit and limits.
+pub fn raw_of(
+    protocol: &Protocol,
+    message: &Message,
+    signal: &Signal,
+    input: &Input,
+    request: bool,
+) -> Result<u64, Refusal> {
+    Encoder { protocol, signal, request }.raw(input).map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
+}
+
+/// Encodes one signal.
+struct Encoder<'a> {
+    protocol: &'a Protocol,
+    signal: &'a Signal,
+    request: bool,
+}
+
+impl Encoder<'_> {
+    fn raw(&self, input: &Input) -> Result<u64, String> {
+        match (&self.signal.encoding, input) {
+            (Encoding::Float, Input::Raw(raw)) => {
+                let bits = self.bits(*raw, false)?;
+                self.check_float(float(bits).into()).map(|()| bits)
+            }
+            (Encoding::Float, Input::Number(value)) => self.float(*value),
+            (Encoding::Float, Input::Integer(value)) => self.float(as_double(*value)),
+            (Encoding::Number { signed, .. }, Input::Raw(raw)) => self.raw_number(*raw, *signed),
+            (Encoding::Number { signed, scale, offset }, input) => self.number(*signed, *scale, *offset, input),
+            (_, Input::Raw(raw)) => self.bits(*raw, false),
+            (Encoding::Named(index), Input::Text(name)) => self.name(&self.protocol.enumerations[*index], name),
+            (Encoding::Status(index), Input::Status { set, unknown }) => {
+                let named = raw_of_bits(&self.protocol.status_words[*index], set)?;
+                self.bits((named | unknown).into(), false)
+            }
+            (Encoding::Text, Input::Text(text)) => text_bits(self.signal, text),
+            (Encoding::Packed { pieces, parts }, Input::Text(text)) => parse_packed(pieces, parts, self.signal, text)
+                .ok_or_else(|| format!("`{text}` is not of the documented form")),
+            (encoding, _) => Err(format!("{} is not {}", describe(input), wanted(encoding))),
+        }
+    }
+
+    fn name(&self, enumeration: &Enumeration, name: &str) -> Result<u64, String> {
+        let value = enumeration.values.iter().find(|value| value.name == name);
+        let value = value.ok_or_else(|| unnamed(enumeration, self.signal, name))?;
+        self.bits(value.raw, false)
+    }
+
+    fn number(&self, signed: bool, scale: Rational, offset: Rational, input: &Input) -> Result<u64, String> {
+        let value = match input {
+            Input::Text(name) => {
+                let special = self.signal.specials.iter().find(|special| special.name == *name);
+                let special = special.ok_or_else(|| format!("`{name}` is not a number"))?;
+                return self.bits(special.raw, signed);
+            }
+            Input::Integer(value) if self.signal.encoding.is_unscaled() => return self.raw_number(*value, signed),
+            Input::Integer(value) => as_double(*value),
+            Input::Number(value) => *value,
+            other => return Err(format!("{} is not a number", describe(other))),
+        };
+        let raw = if self.signal.encoding.is_unscaled() {
+            nearest(value)
+        } else {
+            runtime_scale(scale, offset).raw(value)
+        };
+        let special = |raw: &i64| self.signal.specials.iter().any(|special| special.raw == i128::from(*raw));
+        let exact = |raw: &i64| scaled(i128::from(*raw), scale, offset).total_cmp(&value).is_eq();
+        if !raw.as_ref().is_some_and(|raw| special(raw) && exact(raw)) {
+            self.check_range(value)?;
+        }
+        let raw = raw.ok_or_else(|| self.misfit(value))?;
+        self.bits(raw.into(), signed).map_err(|_| self.misfit(value))
+    }
+
+    /// Encodes a raw number, which in a request must lie in the range too.
+    fn raw_number(&self, raw: i128, signed: bool) -> Result<u64, String> {
+        let Encoding::Number { scale, offset, .. } = self.signal.encoding else { return self.bits(raw, signed) };
+        let bits = self.bits(raw, signed)?;
+        if !self.signal.specials.iter().any(|special| special.raw == raw) {
+            self.check_range(scaled(raw, scale, offset))?;
+        }
+        Ok(bits)
+    }
+
+    fn float(&self, value: f64) -> Result<u64, String> {
+        self.check_float(value)?;
+        #[allow(clippy::cast_possible_truncation, reason = "rounds to nearest; an overflow is tested")]
+        let single = value as f32;
+        if value.is_finite() && single.is_infinite() {
+            return Err(self.misfit(value));
+        }
+        Ok(single.to_bits().into())
+    }
+
+    fn check_float(&self, value: f64) -> Result<(), String> {
+        if self.request && !value.is_finite() {
+            return Err(format!("{value} is not a finite number"));
+        }
+        self.check_range(value)
+    }
+
+    fn check_range(&self, value: f64) -> Result<(), String> {
+        let Some(range) = self.signal.range.filter(|range| self.request && !in_range(self.signal, range, value)) else {
+            return Ok(());
+        };
+        let unit = self.unit();
+        Err(format!("{value}{unit} is outside {}..{}{unit}", range.minimum, range.maximum))
+    }
+
+    fn unit(&self) -> String {
+        self.signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
+    }
+
+    /// Says what the bits can hold.
+    fn misfit(&self, value: f64) -> String {
+        let (signed, scale, offset) = match self.signal.encoding {
+            Encoding::Number { signed, scale, offset } => (signed, scale, offset),
+            _ => return format!("{value}{} does not fit", self.unit()),
+        };
+        let width = u32::from(self.signal.place.width());
+        let (first, last) =
+            if signed { (-(1_i128 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1_i128 << width) - 1) };
+        let ends = [first, last].map(|raw| scale.times(Rational::integer(raw)).and_then(|value| value.plus(offset)));
+        let [Some(one), Some(other)] = ends else { return format!("{value}{} does not fit", self.unit()) };
+        let unit = self.unit();
+        format!("{value}{unit} does not fit {width} bits, which hold {}..{}{unit}", one.min(other), one.max(other))
+    }
+
+    /// Returns a raw number as bits of the signal's width.
+    fn bits(&self, raw: i128, signed: bool) -> Result<u64, String> {
+        let width = u32::from(self.signal.place.width());
+        let (first, last) =
+            if signed { (-(1_i128 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1_i128 << width) - 1) };
+        if !(first..=last).contains(&raw) {
+            return Err(format!("raw {raw} does not fit {width} bits, which hold {first}..{last}"));
+        }
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the mask keeps the bits that fit")]
+        let bits = raw as u64;
+        Ok(bits & self.signal.place.max())
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "rounds to nearest")]
+fn as_double(value: i128) -> f64 {
+    value as f64
+}
+
+fn describe(input: &Input) -> String {
+    match input {
+        Input::Raw(raw) => format!("raw {raw}"),
+        Input::Integer(value) => value.to_string(),
+        Input::Number(value) => value.to_string(),
+        Input::Text(text) => format!("`{text}`"),
+        Input::Status { .. } => "a set of bits".to_owned(),
+    }
+}
+
+fn wanted(encoding: &Encoding) -> &'static str {
+    match encoding {
+        Encoding::Number { .. } | Encoding::Float => "a number",
+        Encoding::Named(_) => "the name of a value",
+        Encoding::Status(_) => "a set of bits",
+        Encoding::Text | Encoding::Packed { .. } => "a text",
+    }
+}

@@ -1,0 +1,51 @@
+//! Compiles a CAN device protocol, written once in YAML, into Rust codecs.
+//!
+//! [`compile`] runs the stages in order: source, syntax, resolve, check. Each reports all its errors before the next one starts.
+//! The [`model::Protocol`] it returns serves the interpreter ([`interpret`]) and the emitters ([`emit`]).
+
+mod builder;
+pub mod check;
+pub mod diagnostic;
+pub mod emit;
+pub mod interpret;
+pub mod model;
+pub mod number;
+mod resolve;
+pub mod rules;
+pub mod source;
+mod summary;
+pub mod syntax;
+mod texts;
+
+pub use builder::Builder;
+use diagnostic::Diagnostics;
+use model::Protocol;
+use source::Source;
+pub use summary::Summary;
+
+/// What became of a spec.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The protocol, if the spec has no errors.
+    pub protocol: Option<Protocol>,
+    /// Everything there is to say about the spec.
+    pub diagnostics: Diagnostics,
+    /// What the spec contains, as far as it could be resolved.
+    pub summary: Summary,
+}
+
+/// Compiles a spec.
+pub fn compile(source: Source) -> Outcome {
+    let name = source.name().to_owned();
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(&name).to_owned();
+    let (spec, mut diagnostics) = syntax::parse(source);
+    let usable = spec.filter(|_| !diagnostics.has_errors());
+    let resolved = usable.and_then(|spec| resolve::resolve(&spec, &file, &mut diagnostics));
+    let counts = match &resolved {
+        Some(protocol) if !diagnostics.has_errors() => check::check(protocol, &mut diagnostics),
+        _ => check::Counts::default(),
+    };
+    let summary = Summary::new(&name, resolved.as_ref(), counts, &diagnostics);
+    let protocol = resolved.filter(|_| !diagnostics.has_errors());
+    Outcome { protocol, diagnostics, summary }
+}

@@ -1,0 +1,186 @@
+//! Exact numbers, from the text of a spec to the constants of a codec.
+
+use std::cmp::Ordering;
+use std::fmt;
+
+/// A rational number in lowest terms with a positive denominator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Rational {
+    numerator: i128,
+    denominator: i128,
+}
+
+/// Largest numerator and denominator that a spec may write: products of two still fit an `i128`.
+const LIMIT: i128 = 1 << 62;
+
+impl Rational {
+    /// Zero.
+    pub const ZERO: Self = Self::integer(0);
+    /// One.
+    pub const ONE: Self = Self::integer(1);
+
+    /// Returns the whole number `value`.
+    pub const fn integer(value: i128) -> Self {
+        Self { numerator: value, denominator: 1 }
+    }
+
+    /// Returns `numerator / denominator` in lowest terms, or `None` if the denominator is zero or the fraction overflows.
+    pub fn new(numerator: i128, denominator: i128) -> Option<Self> {
+        let divisor = greatest_common_divisor(numerator, denominator);
+        let sign = denominator.signum();
+        let reduced = |number: i128| number.checked_div(divisor)?.checked_mul(sign);
+        (denominator != 0).then_some(Self { numerator: reduced(numerator)?, denominator: reduced(denominator)? })
+    }
+
+    /// Reads `12`, `-40`, `0x1F`, `41.5` or `1/1024`.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (numerator, denominator) = match text.split_once('/') {
+            Some((numerator, denominator)) => (numerator, natural(denominator)?),
+            None => (text, 1),
+        };
+        let (negative, magnitude) = match numerator.strip_prefix('-') {
+            Some(magnitude) => (-1, magnitude),
+            None => (1, numerator),
+        };
+        let (digits, places) = match magnitude.split_once('.') {
+            Some((whole, fraction)) if !fraction.is_empty() => (format!("{whole}{fraction}"), fraction.len()),
+            Some(_) => return None,
+            None => (magnitude.to_owned(), 0),
+        };
+        let power = 10_i128.checked_pow(u32::try_from(places).ok()?)?;
+        let value = Self::new(negative * natural(&digits)?, denominator.checked_mul(power)?)?;
+        (value.numerator.abs() <= 2 * LIMIT && value.denominator <= LIMIT).then_some(value)
+    }
+
+    /// Returns the numerator.
+    pub const fn numerator(self) -> i128 {
+        self.numerator
+    }
+
+    /// Returns the denominator, which is positive.
+    pub const fn denominator(self) -> i128 {
+        self.denominator
+    }
+
+    /// Returns the number if it is whole.
+    pub fn to_integer(self) -> Option<i128> {
+        (self.denominator == 1).then_some(self.numerator)
+    }
+
+    /// Returns the nearest `f64`.
+    #[allow(clippy::cast_precision_loss, reason = "the conversion rounds to nearest, which is what is wanted")]
+    pub fn to_f64(self) -> f64 {
+        if self.numerator.abs() < 1 << 53 && self.denominator < 1 << 53 {
+            return self.numerator as f64 / self.denominator as f64;
+        }
+        self.to_string().parse().unwrap_or(self.numerator as f64 / self.denominator as f64)
+    }
+
+    /// Returns `self + other`, or `None` on overflow.
+    pub fn plus(self, other: Self) -> Option<Self> {
+        let left = self.numerator.checked_mul(other.denominator)?;
+        let right = other.numerator.checked_mul(self.denominator)?;
+        Self::new(left.checked_add(right)?, self.denominator.checked_mul(other.denominator)?)
+    }
+
+    /// Returns `self - other`, or `None` on overflow.
+    pub fn minus(self, other: Self) -> Option<Self> {
+        self.plus(Self { numerator: other.numerator.checked_neg()?, ..other })
+    }
+
+    /// Returns `self * other`, or `None` on overflow.
+    pub fn times(self, other: Self) -> Option<Self> {
+        Self::new(self.numerator.checked_mul(other.numerator)?, self.denominator.checked_mul(other.denominator)?)
+    }
+
+    /// Returns `self / other`, or `None` on overflow or if `other` is zero.
+    pub fn over(self, other: Self) -> Option<Self> {
+        Self::new(self.numerator.checked_mul(other.denominator)?, self.denominator.checked_mul(other.numerator)?)
+    }
+}
+
+/// Reads an unsigned decimal or `0x` hexadecimal number.
+fn natural(text: &str) -> Option<i128> {
+    let (digits, radix) = match text.strip_prefix("0x") {
+        Some(digits) => (digits, 16),
+        None => (text, 10),
+    };
+    let plain = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    plain.then(|| i128::from_str_radix(digits, radix).ok()).flatten()
+}
+
+fn greatest_common_divisor(left: i128, right: i128) -> i128 {
+    let (mut left, mut right) = (left.unsigned_abs(), right.unsigned_abs());
+    while right != 0 {
+        (left, right) = (right, left % right);
+    }
+    i128::try_from(left).unwrap_or(1).max(1)
+}
+
+impl PartialOrd for Rational {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Rational {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let exact = |one: &Self, another: &Self| one.numerator.checked_mul(another.denominator);
+        match (exact(self, other), exact(other, self)) {
+            (Some(left), Some(right)) => left.cmp(&right),
+            _ => self.to_f64().total_cmp(&other.to_f64()),
+        }
+    }
+}
+
+impl fmt::Display for Rational {
+    /// Writes a decimal where it ends, else a fraction.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (mut scaled, mut places) = (*self, 0);
+        while scaled.denominator != 1 && places < 18 {
+            let Some(next) = scaled.times(Self::integer(10)) else { break };
+            (scaled, places) = (next, places + 1);
+        }
+        if scaled.denominator != 1 {
+            return write!(formatter, "{}/{}", self.numerator, self.denominator);
+        }
+        let sign = if self.numerator < 0 { "-" } else { "" };
+        let digits = format!("{:0>width$}", scaled.numerator.unsigned_abs(), width = places + 1);
+        let (whole, fraction) = digits.split_at(digits.len() - places);
+        let point = if places == 0 { "" } else { "." };
+        write!(formatter, "{sign}{whole}{point}{fraction}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Rational;
+
+    fn parts(text: &str) -> Option<(i128, i128)> {
+        Rational::parse(text).map(|number| (number.numerator(), number.denominator()))
+    }
+
+    #[test]
+    fn decimals_fractions_and_hexadecimals_are_exact() {
+        assert_eq!(parts("41.5"), Some((83, 2)));
+        assert_eq!(parts("0.02"), Some((1, 50)));
+        assert_eq!(parts("1/1024"), Some((1, 1024)));
+        assert_eq!(parts("-40"), Some((-40, 1)));
+        assert_eq!(parts("0xFD"), Some((253, 1)));
+        assert_eq!(parts("18446744073709551615"), Some((18_446_744_073_709_551_615, 1)));
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused() {
+        for text in ["", "-", "0x", "0X1F", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1", "1/-2", "9".repeat(45).as_str()] {
+            assert_eq!(parts(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_number_is_written_as_a_decimal_where_that_ends() {
+        for (text, written) in [("1/8", "0.125"), ("-83/2", "-41.5"), ("1/3", "1/3"), ("0.10", "0.1"), ("750", "750")] {
+            assert_eq!(Rational::parse(text).map(|number| number.to_string()), Some(written.to_owned()));
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! From what is written to what is meant: names become references, places become masks, texts become numbers.
+
+mod access;
+mod addressing;
+mod data;
+mod examples;
+mod identifier;
+mod messages;
+mod patterns;
+mod signals;
+mod texts;
+mod types;
+
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::model::{self, Protocol};
+use crate::syntax::ast;
+use crate::syntax::tree::Path;
+
+/// Resolves a spec; `file` is its name without folders.
+///
+/// The protocol is `None` if something it needs is missing. One that is returned beside errors is only good for further checks.
+pub fn resolve(spec: &ast::Spec, file: &str, diagnostics: &mut Diagnostics) -> Option<Protocol> {
+    Resolver { spec, diagnostics, tables: Tables::default() }.protocol(file)
+}
+
+/// What the stage works on.
+struct Resolver<'a> {
+    spec: &'a ast::Spec,
+    diagnostics: &'a mut Diagnostics,
+    tables: Tables,
+}
+
+/// Tables of the model that grow while messages are resolved.
+#[derive(Default)]
+struct Tables {
+    selectors: Vec<model::Selector>,
+    enumerations: Vec<model::Enumeration>,
+    status_words: Vec<model::StatusWord>,
+}
+
+impl Resolver<'_> {
+    fn protocol(mut self, file: &str) -> Option<Protocol> {
+        self.version();
+        let name = self.protocol_name();
+        let identifier = self.identifier()?;
+        self.header_selectors();
+        let address_types = self.address_types(&identifier);
+        let modes = self.modes(&identifier, &address_types);
+        let (to_module, to_controller) = addressing::directions(&identifier, &address_types, &modes);
+        let timing = self.timing();
+        let accesses = self.accesses(&modes, &timing);
+        let messages = self.messages(&identifier, &modes, &accesses, &timing);
+        let foreign = self.foreign(&identifier);
+        let examples = self.examples(&identifier, &messages);
+        let value_examples = self.value_examples();
+        Some(Protocol {
+            name,
+            file: file.to_owned(),
+            title: self.spec.title.clone(),
+            document: self.document(),
+            bit_rates: self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone()),
+            identifier,
+            address_types,
+            modes,
+            to_module,
+            to_controller,
+            accesses,
+            foreign,
+            messages,
+            models: self.models(),
+            timing,
+            procedures: self.procedures(),
+            examples,
+            value_examples,
+            sequences: self.sequences(),
+            types: self.type_docs(),
+            errata: self.errata(),
+            selectors: self.tables.selectors,
+            enumerations: self.tables.enumerations,
+            status_words: self.tables.status_words,
+        })
+    }
+
+    /// Reports an error.
+    fn error(&mut self, rule: &'static str, at: At, message: String) {
+        self.diagnostics.push(Diagnostic::error(rule, at, message));
+    }
+
+    /// Reports an error and what to do about it.
+    fn error_with_help(&mut self, rule: &'static str, at: At, message: String, help: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::error(rule, at, message).help(help));
+    }
+}

@@ -1,0 +1,99 @@
+//! Accesses: which frames exist, which of them carry the signals, who answers.
+
+use super::Resolver;
+use super::texts::remarks;
+use crate::model::{Access, Kind, Mode, Timing, Who};
+use crate::syntax::ast;
+use crate::syntax::tree::Path;
+
+/// The words for who answers.
+const ANSWERS: [(&str, Who); 4] =
+    [("one", Who::One), ("each", Who::Each), ("coordinator", Who::Coordinator), ("nobody", Who::Nobody)];
+
+impl Resolver<'_> {
+    pub fn accesses(&mut self, modes: &[Mode], timing: &[Timing]) -> Vec<Access> {
+        let root = Path::default().key("access");
+        let spec = self.spec;
+        spec.access.iter().map(|(name, access)| self.access(&root.key(name), name, access, modes, timing)).collect()
+    }
+
+    fn access(&mut self, path: &Path, name: &str, access: &ast::Access, modes: &[Mode], timing: &[Timing]) -> Access {
+        self.check_name(path, name);
+        let kinds: Vec<_> = Kind::ALL.into_iter().filter(|kind| pattern_of(access, *kind).is_some()).collect();
+        if kinds.is_empty() {
+            let help = "write `request: {}`, `reply: {}` or `report: {}`";
+            self.error_with_help("access", path.at_key(), format!("the access `{name}` has no frames"), help);
+        }
+        let named = self.kinds(&path.key("in"), &access.kinds);
+        let carries = if access.kinds.is_empty() { kinds.clone() } else { named };
+        self.check_carries(path, access, &kinds);
+        let answers = self.answers(&path.key("answers"), &access.answers, modes, &kinds);
+        let every = self.every(path, access.every.as_deref(), timing);
+        Access { name: name.to_owned(), doc: remarks!(access).doc(path, None), kinds, carries, answers, every }
+    }
+
+    /// Tests that the frames that carry the signals exist.
+    fn check_carries(&mut self, path: &Path, access: &ast::Access, kinds: &[Kind]) {
+        for (index, word) in access.kinds.iter().enumerate() {
+            let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
+            if kind.is_some_and(|kind| !kinds.contains(&kind)) {
+                let help = format!("add `{word}: {{}}` to the access, or take it out of `in`");
+                let at = path.key("in").index(index).at_value();
+                self.error_with_help("access", at, format!("this access has no {word}"), help);
+            }
+        }
+    }
+
+    /// Reads `{mode: who}`, by the modes of the protocol.
+    pub fn answers(
+        &mut self,
+        path: &Path,
+        answers: &ast::Map<String>,
+        modes: &[Mode],
+        kinds: &[Kind],
+    ) -> Vec<Option<Who>> {
+        let mut resolved = vec![None; modes.len()];
+        for (name, who) in answers {
+            let at = path.key(name);
+            let names = modes.iter().map(|mode| mode.name.as_str());
+            let Some(index) = self.lookup_key(&at, "addressing mode", name, names) else { continue };
+            let words = ANSWERS.iter().map(|(word, _)| *word);
+            let Some(word) = self.lookup(&at, "way to answer", who, words) else { continue };
+            resolved[index] = Some(ANSWERS[word].1);
+            self.check_answer(&at, &modes[index], ANSWERS[word], kinds);
+        }
+        resolved
+    }
+
+    fn check_answer(&mut self, at: &Path, mode: &Mode, (word, who): (&str, Who), kinds: &[Kind]) {
+        if who != Who::Nobody && mode.reply(who).is_none() {
+            let message = format!("the addressing mode `{}` has no pattern `{word}`", mode.name);
+            let help = format!("add `{word}:` to `addressing.{}`", mode.name);
+            self.error_with_help("addressing", at.at_value(), message, help);
+        }
+        if kinds.contains(&Kind::Request) && mode.request.is_none() {
+            let message = format!("the addressing mode `{}` has no request", mode.name);
+            let help = format!("add `request:` to `addressing.{}`, or leave the mode out here", mode.name);
+            self.error_with_help("addressing", at.at_key(), message, help);
+        }
+        if who != Who::Nobody && kinds == [Kind::Request] {
+            let help = "add `reply: {}` to the access, or write `nobody`";
+            self.error_with_help("access", at.at_value(), format!("`{word}` answers, but there is no reply"), help);
+        }
+    }
+
+    /// Finds the time of a cyclic report.
+    pub fn every(&mut self, path: &Path, name: Option<&str>, timing: &[Timing]) -> Option<usize> {
+        let names = timing.iter().map(|known| known.name.as_str());
+        self.lookup(&path.key("every"), "timing", name?, names)
+    }
+}
+
+/// Returns the constants that an access gives to a kind of frame.
+pub fn pattern_of(access: &ast::Access, kind: Kind) -> Option<&ast::Pattern> {
+    match kind {
+        Kind::Request => access.request.as_ref(),
+        Kind::Reply => access.reply.as_ref(),
+        Kind::Report => access.report.as_ref(),
+    }
+}

@@ -1,0 +1,246 @@
+//! Addressing modes, address types, and how an identifier shows its direction.
+
+use super::Resolver;
+use super::texts::remarks;
+use crate::diagnostic::Diagnostic;
+use crate::model::{Address, AddressPattern, AddressType, Direction, FieldTest, Identifier, IdentifierField, Mode};
+use crate::number::Rational;
+use crate::syntax::ast::{self, Pattern};
+use crate::syntax::tree::Path;
+
+impl Resolver<'_> {
+    /// Reads the types that addressing patterns name.
+    pub fn address_types(&mut self, identifier: &Identifier) -> Vec<AddressType> {
+        let spec = self.spec;
+        let used = |name: &str| patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
+        let types = spec.types.iter().filter(|(name, _)| used(name));
+        types.filter_map(|(name, field)| self.address_type(name, field)).collect()
+    }
+
+    fn address_type(&mut self, name: &str, field: &ast::Field) -> Option<AddressType> {
+        let path = Path::default().key("types").key(name);
+        let Some(text) = &field.range else {
+            let help = "say which numbers the document names, for instance `range: 0..0x3B`";
+            self.error_with_help("addressing", path.at_key(), format!("the address type `{name}` has no range"), help);
+            return None;
+        };
+        let (first, last) = self.whole_range(&path.key("range"), text)?;
+        let sign = match field.scale.as_deref() {
+            None | Some("1") => 1,
+            Some("-1") => -1,
+            Some(other) => {
+                let message = format!("an address cannot be scaled by `{other}`");
+                self.error_with_help("addressing", path.key("scale").at_value(), message, "write `-1` or nothing");
+                return None;
+            }
+        };
+        let mut whole = |key: &str, text: &Option<String>| {
+            text.as_ref().and_then(|text| self.integer(&path.key(key), text, -1_000_000_i64, 1_000_000))
+        };
+        let offset = whole("offset", &field.offset).unwrap_or(0);
+        let send = whole("send", &field.send);
+        let strict = self.strict(&path, field.outside.as_deref());
+        let doc = remarks!(field).doc(&path, None);
+        Some(AddressType { name: name.to_owned(), doc, first, last, offset, sign, strict, send })
+    }
+
+    /// Reads a range of whole numbers.
+    fn whole_range(&mut self, path: &Path, text: &str) -> Option<(i64, i64)> {
+        let range = self.range(path, text)?;
+        let whole = |end: Rational| i64::try_from(end.to_integer()?).ok();
+        let ends = whole(range.minimum).zip(whole(range.maximum));
+        if ends.is_none() {
+            self.error("addressing", path.at_value(), format!("the addresses `{text}` are not whole numbers"));
+        }
+        ends
+    }
+
+    fn strict(&mut self, path: &Path, outside: Option<&str>) -> bool {
+        outside.is_some_and(|word| self.lookup(&path.key("outside"), "rule", word, ["refused"].into_iter()).is_some())
+    }
+
+    /// Tests that the field holds all addresses that can be sent.
+    fn check_address_width(&mut self, at: &Path, address_type: &AddressType, field: &IdentifierField) {
+        let numbers = [address_type.first, address_type.last].into_iter().chain(address_type.send);
+        let outside = numbers.map(|number| address_type.raw(number)).find(|raw| *raw < 0 || *raw >> field.width != 0);
+        if let Some(raw) = outside {
+            let (name, bits) = (&address_type.name, field.width);
+            let message = format!("an address of `{name}` is {raw} in the identifier, but `{}` has {bits} bits", field.name);
+            let diagnostic = Diagnostic::error("addressing", at.at_value(), message);
+            self.diagnostics.push(diagnostic.other(address_type.doc.path.key("range").at_value(), "the addresses"));
+        }
+    }
+
+    pub fn modes(&mut self, identifier: &Identifier, types: &[AddressType]) -> Vec<Mode> {
+        let root = Path::default().key("addressing");
+        let spec = self.spec;
+        spec.addressing.iter().map(|(name, mode)| self.mode(&root.key(name), name, mode, identifier, types)).collect()
+    }
+
+    fn mode(
+        &mut self,
+        path: &Path,
+        name: &str,
+        mode: &ast::Mode,
+        identifier: &Identifier,
+        types: &[AddressType],
+    ) -> Mode {
+        self.check_name(path, name);
+        let mut pattern = |key: &'static str, pattern: &Option<Pattern>| {
+            let pattern = pattern.as_ref()?;
+            Some(self.address_pattern(&path.key(key), key == "request", pattern, identifier, types))
+        };
+        let request = pattern("request", &mode.request);
+        let one = pattern("one", &mode.one);
+        let each = pattern("each", &mode.each);
+        let coordinator = pattern("coordinator", &mode.coordinator);
+        let target = request.as_ref().and_then(|request| self.target(&path.key("request"), request, types));
+        Mode { name: name.to_owned(), doc: remarks!(mode).doc(path, None), request, one, each, coordinator, target }
+    }
+
+    fn address_pattern(
+        &mut self,
+        path: &Path,
+        request: bool,
+        pattern: &Pattern,
+        identifier: &Identifier,
+        types: &[AddressType],
+    ) -> AddressPattern {
+        let mut resolved = AddressPattern::default();
+        for (name, what) in pattern {
+            let at = path.key(name);
+            let names = identifier.fields.iter().map(|field| field.name.as_str());
+            let Some(index) = self.lookup_key(&at, "identifier field", name, names) else { continue };
+            let field = &identifier.fields[index];
+            if what.starts_with(|digit: char| digit.is_ascii_digit()) {
+                if let Some(value) = self.integer(&at, what, 0, field.mask() >> field.shift) {
+                    resolved.mask |= field.mask();
+                    resolved.value |= value << field.shift;
+                    resolved.constants += 1;
+                }
+            } else if let Some(address_type) = self.lookup_address_type(&at, what, types) {
+                self.check_address_width(&at, &types[address_type], field);
+                let excluded = self.excluded(request, name, identifier, types);
+                resolved.addresses.push(Address { field: index, address_type, excluded });
+            }
+        }
+        resolved
+    }
+
+    /// Finds an address type; nothing is said of one that was refused before.
+    fn lookup_address_type(&mut self, at: &Path, name: &str, types: &[AddressType]) -> Option<usize> {
+        let spec = self.spec;
+        self.lookup(at, "address type", name, spec.types.keys().map(String::as_str))?;
+        types.iter().position(|known| known.name == name)
+    }
+
+    /// Returns the raw values of a field that belong to somebody else: those of strict types, and constants of the same direction.
+    fn excluded(
+        &self,
+        request: bool,
+        field: &str,
+        identifier: &Identifier,
+        types: &[AddressType],
+    ) -> Vec<(u32, u32)> {
+        let mut excluded = claimed(self.spec, field, types);
+        let width = identifier.fields.iter().find(|known| known.name == field).map_or(32, |known| known.width);
+        let same = patterns(self.spec).filter(|(key, _)| (*key == "request") == request);
+        let constants = same.filter_map(|(_, pattern)| Rational::parse(pattern.get(field)?)?.to_integer());
+        let constants = constants.filter_map(|value| u32::try_from(value).ok()).filter(|value| value >> (width - 1) < 2);
+        excluded.extend(constants.map(|value| (value, value)));
+        excluded.sort_unstable();
+        excluded.dedup();
+        excluded
+    }
+
+    /// Returns the address that a request leaves to the caller.
+    fn target(&mut self, path: &Path, request: &AddressPattern, types: &[AddressType]) -> Option<usize> {
+        let free = request.addresses.iter().filter(|address| types[address.address_type].send.is_none());
+        let free: Vec<_> = free.map(|address| address.address_type).collect();
+        if free.len() > 1 {
+            let names: Vec<_> = free.iter().map(|index| format!("`{}`", types[*index].name)).collect();
+            let message = format!("this request leaves {} addresses open: {}", free.len(), names.join(" and "));
+            let help = "give all but one address type a `send` value";
+            self.error_with_help("addressing", path.at_key(), message, help);
+        }
+        free.first().copied()
+    }
+}
+
+/// Returns every addressing pattern and the key it stands under.
+fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Pattern)> {
+    spec.addressing.values().flat_map(|mode| {
+        let keys = [("request", &mode.request), ("one", &mode.one), ("each", &mode.each)];
+        let keys = keys.into_iter().chain([("coordinator", &mode.coordinator)]);
+        keys.filter_map(|(key, pattern)| Some((key, pattern.as_ref()?)))
+    })
+}
+
+/// Returns the raw ranges of the strict types that some pattern puts into this field.
+fn claimed(spec: &ast::Spec, field: &str, types: &[AddressType]) -> Vec<(u32, u32)> {
+    let strict = types.iter().filter(|known| known.strict);
+    let used = strict.filter(|known| patterns(spec).any(|(_, pattern)| pattern.get(field) == Some(&known.name)));
+    let mut ranges: Vec<_> = used.map(AddressType::raw_range).collect();
+    ranges.sort_unstable();
+    ranges.dedup();
+    ranges
+}
+
+/// Works out what identifiers show of their direction: towards a module, towards the controller.
+///
+/// A constant counts only where the other direction has another constant in the same field, so that an unknown device number does not hide the direction.
+pub fn directions(identifier: &Identifier, types: &[AddressType], modes: &[Mode]) -> (Direction, Direction) {
+    let requests: Vec<_> = modes.iter().filter_map(|mode| mode.request.as_ref()).collect();
+    let replies: Vec<_> =
+        modes.iter().flat_map(|mode| [&mode.one, &mode.each, &mode.coordinator]).filter_map(Option::as_ref).collect();
+    let towards = |these: &[&AddressPattern], others: &[&AddressPattern]| {
+        let mut any: Vec<Vec<FieldTest>> = Vec::new();
+        for pattern in these {
+            let tests = direction_tests(pattern, others, identifier, types, modes);
+            if !any.iter().any(|known| known.iter().all(|test| tests.contains(test))) {
+                any.retain(|known| !tests.iter().all(|test| known.contains(test)));
+                any.push(tests);
+            }
+        }
+        Direction { any }
+    };
+    (towards(&requests, &replies), towards(&replies, &requests))
+}
+
+fn direction_tests(
+    pattern: &AddressPattern,
+    others: &[&AddressPattern],
+    identifier: &Identifier,
+    types: &[AddressType],
+    modes: &[Mode],
+) -> Vec<FieldTest> {
+    let mut tests = Vec::new();
+    for (index, field) in identifier.fields.iter().enumerate() {
+        let address = pattern.addresses.iter().find(|address| address.field == index);
+        let claimed = strict_ranges(index, types, modes);
+        if let Some(address) = address.filter(|address| types[address.address_type].strict) {
+            tests.push(FieldTest { field: index, ranges: vec![types[address.address_type].raw_range()], inside: true });
+        } else if pattern.mask & field.mask() != 0 && others.iter().all(|other| differs(pattern, other, field.mask())) {
+            let value = field.get(pattern.value);
+            tests.push(FieldTest { field: index, ranges: vec![(value, value)], inside: true });
+        } else if (address.is_some() || pattern.mask & field.mask() != 0) && !claimed.is_empty() {
+            tests.push(FieldTest { field: index, ranges: claimed, inside: false });
+        }
+    }
+    tests
+}
+
+/// Tests whether both patterns have a constant in the field, and another one.
+fn differs(one: &AddressPattern, other: &AddressPattern, field: u32) -> bool {
+    other.mask & field != 0 && (one.value ^ other.value) & field != 0
+}
+
+fn strict_ranges(field: usize, types: &[AddressType], modes: &[Mode]) -> Vec<(u32, u32)> {
+    let patterns = modes.iter().flat_map(|mode| [&mode.request, &mode.one, &mode.each, &mode.coordinator]);
+    let addresses = patterns.flatten().flat_map(|pattern| &pattern.addresses).filter(|address| address.field == field);
+    let strict = addresses.map(|address| &types[address.address_type]).filter(|known| known.strict);
+    let mut ranges: Vec<_> = strict.map(AddressType::raw_range).collect();
+    ranges.sort_unstable();
+    ranges.dedup();
+    ranges
+}

@@ -1,0 +1,147 @@
+//! What a spec says beside the codec: document, timing, procedures, models, errata.
+
+use super::Resolver;
+use super::texts::remarks;
+use crate::model::{DeviceModel, Document, Erratum, Procedure, Quantity, Timing, TypeOfModel};
+use crate::syntax::ast;
+use crate::syntax::tree::Path;
+
+/// The version of the spec language.
+const VERSION: &str = "1";
+
+/// What may be wrong with a document.
+const ERRATUM_KINDS: [&str; 6] = ["vendor", "translation", "ocr", "unclear", "gap", "note"];
+
+impl Resolver<'_> {
+    pub fn version(&mut self) {
+        let version = &self.spec.canspec;
+        if version != VERSION {
+            let message = format!("this spec is written in version `{version}` of the language");
+            let help = format!("this compiler reads version {VERSION}");
+            self.error_with_help("version", Path::default().key("canspec").at_value(), message, help);
+        }
+    }
+
+    pub fn protocol_name(&mut self) -> String {
+        let name = self.spec.protocol.clone();
+        self.check_name(&Path::default().key("protocol"), &name);
+        name
+    }
+
+    pub fn document(&self) -> Document {
+        let ast::Document { title, version, date, file } = self.spec.document.clone();
+        Document { title, version, date, file }
+    }
+
+    /// Reads bit rates such as `125 kbit/s`, in bit/s.
+    pub fn bit_rates(&mut self, path: &Path, texts: &[String]) -> Vec<u32> {
+        let rates = texts.iter().enumerate().map(|(index, text)| (path.index(index), text));
+        rates
+            .filter_map(|(path, text)| {
+                let Some(kilobits) = text.strip_suffix(" kbit/s") else {
+                    let message = format!("`{text}` is not a bit rate");
+                    self.error_with_help("number", path.at_value(), message, "write `125 kbit/s`");
+                    return None;
+                };
+                self.integer(&path, kilobits, 1, 8000).map(|rate: u32| rate * 1000)
+            })
+            .collect()
+    }
+
+    pub fn timing(&mut self) -> Vec<Timing> {
+        let root = Path::default().key("timing");
+        let entries = self.spec.timing.iter();
+        entries.filter_map(|(name, timing)| self.one_timing(&root.key(name), name, timing)).collect()
+    }
+
+    fn one_timing(&mut self, path: &Path, name: &str, timing: &ast::Timing) -> Option<Timing> {
+        self.check_name(path, name);
+        let at = path.key("time");
+        let Some((numbers, symbol)) = timing.time.split_once(' ') else {
+            let message = format!("the time `{}` has no unit", timing.time);
+            self.error_with_help("unit", at.at_value(), message, "write `10 s` or `50..200 ms`");
+            return None;
+        };
+        let unit = self.unit(&at, symbol)?;
+        let ends = if numbers.contains("..") { numbers.to_owned() } else { format!("{numbers}..{numbers}") };
+        let range = self.range(&at, &ends)?;
+        let minimum = timing.minimum.as_ref().and_then(|text| self.quantity(&path.key("minimum"), text));
+        Some(Timing { name: name.to_owned(), doc: remarks!(timing).doc(path, None), range, unit, minimum })
+    }
+
+    pub fn procedures(&mut self) -> Vec<Procedure> {
+        let root = Path::default().key("procedures");
+        let spec = self.spec;
+        let entries = spec.procedures.iter().map(|(name, procedure)| (root.key(name), name, procedure));
+        entries
+            .map(|(path, name, procedure)| {
+                self.check_name(&path, name);
+                self.check_steps(&path.key("steps"), &procedure.steps);
+                let doc = remarks!(procedure).doc(&path, None);
+                Procedure { name: name.clone(), doc, steps: procedure.steps.clone() }
+            })
+            .collect()
+    }
+
+    /// Tests that what a step names in backquotes is a message.
+    fn check_steps(&mut self, path: &Path, steps: &[String]) {
+        for (index, step) in steps.iter().enumerate() {
+            for name in step.split('`').skip(1).step_by(2) {
+                let known = self.spec.messages.keys().map(String::as_str);
+                self.lookup(&path.index(index), "message", name, known);
+            }
+        }
+    }
+
+    pub fn models(&mut self) -> Vec<DeviceModel> {
+        let root = Path::default().key("models");
+        let spec = self.spec;
+        spec.models.iter().map(|(name, model)| self.model(&root.key(name), name, model)).collect()
+    }
+
+    fn model(&mut self, path: &Path, name: &str, model: &ast::DeviceModel) -> DeviceModel {
+        let doc = remarks!(model).doc(path, None);
+        let parallel = model.max_parallel.as_ref();
+        let types = model.types.iter().filter_map(|(name, field)| self.type_of_model(path, name, field, &doc)).collect();
+        DeviceModel {
+            name: name.to_owned(),
+            items: model.items.clone(),
+            max_parallel: parallel.and_then(|text| self.integer(&path.key("max_parallel"), text, 1, u32::from(u16::MAX))),
+            bit_rates: self.bit_rates(&path.key("bit_rates"), &model.bit_rates),
+            facts: self.facts(&path.key("facts"), &model.facts),
+            types,
+            doc,
+        }
+    }
+
+    fn facts(&mut self, path: &Path, facts: &ast::Map<String>) -> Vec<(String, Quantity)> {
+        let entries = facts.iter();
+        entries.filter_map(|(name, text)| Some((name.clone(), self.quantity(&path.key(name), text)?))).collect()
+    }
+
+    fn type_of_model(
+        &mut self,
+        path: &Path,
+        name: &str,
+        field: &ast::Field,
+        outer: &crate::model::Doc,
+    ) -> Option<TypeOfModel> {
+        let path = path.key("types").key(name);
+        self.lookup(&path, "type", name, self.spec.types.keys().map(String::as_str))?;
+        let range = field.range.as_ref().and_then(|text| self.range(&path.key("range"), text));
+        let default = field.default.as_ref().and_then(|text| self.number(&path.key("default"), text));
+        Some(TypeOfModel { name: name.to_owned(), range, default, doc: remarks!(field).doc(&path, Some(outer)) })
+    }
+
+    pub fn errata(&mut self) -> Vec<Erratum> {
+        let root = Path::default().key("errata");
+        let spec = self.spec;
+        spec.errata.iter().map(|(name, erratum)| self.erratum(&root.key(name), name, erratum)).collect()
+    }
+
+    fn erratum(&mut self, path: &Path, name: &str, erratum: &ast::Erratum) -> Erratum {
+        self.lookup(&path.key("kind"), "kind of erratum", &erratum.kind, ERRATUM_KINDS.into_iter());
+        let ast::Erratum { kind, prints, uses, because, section } = erratum.clone();
+        Erratum { name: name.to_owned(), kind, section, prints, uses, because, path: path.clone() }
+    }
+}

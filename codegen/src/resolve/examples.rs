@@ -1,0 +1,255 @@
+//! The document's frames and what they mean.
+
+use canspec_runtime::Place;
+
+use super::Resolver;
+use super::signals::first_byte;
+use super::texts::remarks;
+use crate::model::{Doc, Encoding, Example, Failure, Identifier, Kind, Meaning, Message, Signal, ValueExample};
+use crate::syntax::ast::{self, Means};
+use crate::syntax::tree::Path;
+
+/// A frame as an example prints it.
+struct Printed {
+    id: u32,
+    extended: bool,
+    data: Option<Vec<u8>>,
+}
+
+impl Resolver<'_> {
+    pub fn examples(&mut self, identifier: &Identifier, messages: &[Message]) -> Vec<Example> {
+        let spec = self.spec;
+        let root = Path::default();
+        let mut examples = Vec::new();
+        for (index, (name, message)) in spec.messages.iter().enumerate() {
+            let path = root.key("messages").key(name).key("examples");
+            for (position, example) in message.examples.iter().enumerate() {
+                let at = path.index(position);
+                examples.extend(self.example(&at, position, example, Some(index), &messages[index].doc, messages));
+            }
+        }
+        for (name, sequence) in &spec.examples {
+            self.check_name(&root.key("examples").key(name), name);
+            let path = root.key("examples").key(name);
+            let doc = remarks!(sequence).doc(&path, None);
+            for (position, example) in sequence.frames.iter().enumerate() {
+                let at = path.key("frames").index(position);
+                let message = self.message_of(&at, example);
+                examples.extend(self.example(&at, position, example, message, &doc, messages));
+            }
+        }
+        for example in &examples {
+            self.check_identifier_width(example, identifier);
+        }
+        examples
+    }
+
+    /// Returns the remarks of the sequences.
+    pub fn sequences(&self) -> Vec<Doc> {
+        let root = Path::default().key("examples");
+        self.spec.examples.iter().map(|(name, sequence)| remarks!(sequence).doc(&root.key(name), None)).collect()
+    }
+
+    /// Finds the message that an example of a sequence names.
+    fn message_of(&mut self, path: &Path, example: &ast::Example) -> Option<usize> {
+        let Some(name) = &example.message else {
+            if !matches!(example.fails.as_deref(), Some("identifier" | "foreign" | "unknown_message")) {
+                let text = "an example of a sequence needs its message".to_owned();
+                self.error_with_help("example", path.at_key(), text, "write `message: NAME`");
+            }
+            return None;
+        };
+        let spec = self.spec;
+        self.lookup(&path.key("message"), "message", name, spec.messages.keys().map(String::as_str))
+    }
+
+    fn example(
+        &mut self,
+        path: &Path,
+        position: usize,
+        example: &ast::Example,
+        message: Option<usize>,
+        outer: &Doc,
+        messages: &[Message],
+    ) -> Option<Example> {
+        let (kind, text) = self.printed_kind(path, example)?;
+        let printed = self.printed(&path.key(kind.name()), text)?;
+        let known = message.map(|index| &messages[index]);
+        let means = known.map(|known| self.meanings(&path.key("means"), example.means.as_ref(), known));
+        Some(Example {
+            doc: example_remarks(example).doc(path, Some(outer)),
+            kind,
+            id: printed.id,
+            extended: printed.extended,
+            data: printed.data,
+            message,
+            means: means.unwrap_or_default(),
+            notes: example.notes.clone(),
+            fails: example.fails.as_ref().and_then(|word| self.failure(&path.key("fails"), word)),
+            ours: self.is_ours(path, example.origin.as_deref()),
+            position,
+        })
+    }
+
+    fn is_ours(&mut self, path: &Path, origin: Option<&str>) -> bool {
+        origin.is_some_and(|word| self.lookup(&path.key("origin"), "origin", word, ["ours"].into_iter()).is_some())
+    }
+
+    fn failure(&mut self, path: &Path, word: &str) -> Option<Failure> {
+        let index = self.lookup(path, "way to fail", word, Failure::ALL.iter().map(|(_, name)| *name))?;
+        Some(Failure::ALL[index].0)
+    }
+
+    /// Returns the frame of an example and its kind.
+    fn printed_kind<'e>(&mut self, path: &Path, example: &'e ast::Example) -> Option<(Kind, &'e str)> {
+        let texts = [&example.request, &example.reply, &example.report];
+        let mut given = Kind::ALL.into_iter().zip(texts).filter_map(|(kind, text)| Some((kind, text.as_deref()?)));
+        let (first, second) = (given.next(), given.next());
+        if first.is_none() || second.is_some() {
+            let help = "write one of `request`, `reply` and `report`, as `029A3FF0#0100000000000000`";
+            let found = if first.is_none() { "no frame" } else { "more than one frame" };
+            self.error_with_help("example", path.at_key(), format!("this example shows {found}"), help);
+            return None;
+        }
+        first
+    }
+
+    /// Reads `ID#DATA`, or `ID` alone.
+    fn printed(&mut self, path: &Path, text: &str) -> Option<Printed> {
+        let (id, data) = text.split_once('#').map_or((text, None), |(id, data)| (id, Some(data)));
+        let extended = id.len() == 8;
+        let number = (extended || id.len() == 3).then(|| u32::from_str_radix(id, 16).ok()).flatten();
+        let number = number.filter(|number| *number <= if extended { 0x1FFF_FFFF } else { 0x7FF });
+        let bytes = data.map(|data| hex_bytes(data).filter(|bytes| bytes.len() <= 8));
+        match (number, bytes) {
+            (Some(id), None) => Some(Printed { id, extended, data: None }),
+            (Some(id), Some(Some(bytes))) => Some(Printed { id, extended, data: Some(bytes) }),
+            _ => {
+                let help = "write 8 or 3 hexadecimal digits, `#`, and two digits for each of up to 8 data bytes";
+                self.error_with_help("example", path.at_value(), format!("`{text}` is not a frame"), help);
+                None
+            }
+        }
+    }
+
+    /// An example of the other identifier width can only be one that fails.
+    fn check_identifier_width(&mut self, example: &Example, identifier: &Identifier) {
+        if example.extended != identifier.extended && example.fails.is_none() {
+            let digits = if identifier.extended { 8 } else { 3 };
+            let message = format!("identifiers of this protocol have {digits} digits");
+            self.error("example", example.doc.path.key(example.kind.name()).at_value(), message);
+        }
+    }
+
+    fn meanings(&mut self, path: &Path, means: Option<&Means>, message: &Message) -> Vec<Meaning> {
+        match means {
+            None => Vec::new(),
+            Some(Means::Signals(signals)) => {
+                let entries = signals.iter();
+                entries.filter_map(|(name, means)| self.named_meaning(&path.key(name), name, means, message)).collect()
+            }
+            Some(means) => {
+                let [signal] = message.signals.as_slice() else {
+                    let text = format!("`{}` has {} signals", message.name, message.signals.len());
+                    let help = "write a value for each signal: `means: {voltage: 500 V, ...}`";
+                    self.error_with_help("example", path.at_key(), text, help);
+                    return Vec::new();
+                };
+                self.meaning(path, 0, signal, means).into_iter().collect()
+            }
+        }
+    }
+
+    fn named_meaning(&mut self, path: &Path, name: &str, means: &Means, message: &Message) -> Option<Meaning> {
+        let names = message.signals.iter().map(|signal| signal.name.as_str());
+        let index = self.lookup_key(path, "signal", name, names)?;
+        self.meaning(path, index, &message.signals[index], means)
+    }
+
+    fn meaning(&mut self, path: &Path, index: usize, signal: &Signal, means: &Means) -> Option<Meaning> {
+        let (text, raw) = match means {
+            Means::Value(text) => (text.clone(), self.raw_text(path, signal, text, true)),
+            Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)),
+            Means::Signals(_) => {
+                self.error("example", path.at_key(), format!("`{}` is one value, not a map", signal.name));
+                return None;
+            }
+        };
+        Some(Meaning { signal: index, text, raw, path: path.clone() })
+    }
+
+    fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<u64> {
+        let Encoding::Status(index) = signal.encoding else {
+            self.error("example", path.at_value(), format!("`{}` is no status word", signal.name));
+            return None;
+        };
+        let bits = self.tables.status_words[index].bits.clone();
+        let known = || bits.iter().map(|bit| bit.name.as_str());
+        names.iter().enumerate().try_fold(0, |raw, (position, name)| {
+            let found = self.lookup(&path.index(position), "status bit", name, known())?;
+            Some(raw | 1 << bits[found].bit)
+        })
+    }
+
+    /// Resolves the examples of types: bytes alone, and what they mean.
+    pub fn value_examples(&mut self) -> Vec<ValueExample> {
+        let spec = self.spec;
+        let mut resolved = Vec::new();
+        for (name, field) in &spec.types {
+            let path = Path::default().key("types").key(name);
+            let doc = remarks!(field).doc(&path, None);
+            for (index, example) in field.examples.iter().enumerate() {
+                resolved.extend(self.value_example(&path.key("examples").index(index), name, field, example, &doc));
+            }
+        }
+        resolved
+    }
+
+    fn value_example(
+        &mut self,
+        path: &Path,
+        name: &str,
+        field: &ast::Field,
+        example: &ast::ValueExample,
+        outer: &Doc,
+    ) -> Option<ValueExample> {
+        let bytes = hex_bytes(&example.bytes).filter(|bytes| (1..=8).contains(&bytes.len()));
+        let Some(bytes) = bytes else {
+            let message = format!("`{}` is not 1 to 8 bytes", example.bytes);
+            let help = "write two hexadecimal digits for each byte, without spaces";
+            self.error_with_help("example", path.key("bytes").at_value(), message, help);
+            return None;
+        };
+        let mut data = [0; 8];
+        data.iter_mut().zip(&bytes).for_each(|(byte, given)| *byte = *given);
+        let last = u8::try_from(bytes.len()).unwrap_or(8) - 1;
+        let merged = self.merged(&outer.path, field)?;
+        let remarks = remarks_of_value(example);
+        let doc = remarks.doc(path, Some(outer));
+        let signal = self.signal(name, &merged, Place::bytes(0, last), outer.clone(), "")?;
+        let raw = self.raw_text(&path.key("means"), &signal, &example.means, true);
+        debug_assert_eq!(first_byte(signal.place), 0);
+        let meaning = Meaning { signal: 0, text: example.means.clone(), raw, path: path.key("means") };
+        Some(ValueExample { doc, signal, data, meaning })
+    }
+}
+
+fn example_remarks(example: &ast::Example) -> super::texts::Remarks<'_> {
+    super::texts::Remarks {
+        title: &None,
+        note: &example.note,
+        section: &example.section,
+        erratum: &example.erratum,
+    }
+}
+
+fn remarks_of_value(example: &ast::ValueExample) -> super::texts::Remarks<'_> {
+    super::texts::Remarks { title: &None, note: &None, section: &example.section, erratum: &example.erratum }
+}
+
+/// Reads pairs of hexadecimal digits.
+fn hex_bytes(text: &str) -> Option<Vec<u8>> {
+    let even = text.len() % 2 == 0 && text.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let pairs = (0..text.len()).step_by(2).map(|at| u8::from_str_radix(text.get(at..at + 2)?, 16).ok());
+    even.then(|| pairs.collect()).flatten()
+}

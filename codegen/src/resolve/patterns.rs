@@ -1,0 +1,121 @@
+//! Constants that choose a message or a kind of frame, and identifiers of somebody else.
+
+use super::Resolver;
+use super::texts::remarks;
+use crate::model::{Doc, Foreign, Identifier, Selector, SelectorPlace, Signal};
+use crate::syntax::ast::{self, Pattern};
+use crate::syntax::tree::Path;
+
+/// A selector (index into the table) and the value it must have.
+pub type Constant = (usize, u64);
+
+impl Resolver<'_> {
+    /// Makes a selector of every field of the header.
+    pub fn header_selectors(&mut self) {
+        let path = Path::default().key("header");
+        let spec = self.spec;
+        let leaves = self.signals(&path, &spec.header, None, &Doc::default(), "header");
+        for signal in leaves {
+            let normal = self.header_normal(&signal);
+            self.add_selector(signal, normal);
+        }
+    }
+
+    fn header_normal(&mut self, signal: &Signal) -> Option<u64> {
+        let field = ast_field(&self.spec.header, &signal.name)?.clone();
+        let merged = self.merged(&signal.doc.path, &field)?;
+        let text = merged.field.normal.clone()?;
+        self.integer(&merged.path(self.diagnostics, "normal"), &text, 0, signal.place.max())
+    }
+
+    /// Adds a payload selector.
+    pub fn add_selector(&mut self, signal: Signal, normal: Option<u64>) -> usize {
+        let enumeration = match signal.encoding {
+            crate::model::Encoding::Named(index) => Some(index),
+            _ => None,
+        };
+        let place = SelectorPlace::Payload(signal.place);
+        let known = self.tables.selectors.iter().position(|known| known.name == signal.name && known.place == place);
+        known.unwrap_or_else(|| {
+            self.tables.selectors.push(Selector { name: signal.name, doc: signal.doc, place, normal, enumeration });
+            self.tables.selectors.len() - 1
+        })
+    }
+
+    /// Reads a pattern of numbers.
+    pub fn constants(&mut self, path: &Path, pattern: &Pattern, identifier: &Identifier) -> Vec<Constant> {
+        let entries = pattern.iter();
+        entries.filter_map(|(name, text)| self.constant(&path.key(name), name, text, identifier)).collect()
+    }
+
+    fn constant(&mut self, path: &Path, name: &str, text: &str, identifier: &Identifier) -> Option<Constant> {
+        let selector = self.selector(path, name, identifier)?;
+        let greatest = match self.tables.selectors[selector].place {
+            SelectorPlace::Identifier(field) => u64::from(u32::MAX >> (32 - identifier.fields[field].width)),
+            SelectorPlace::Payload(place) => place.max(),
+        };
+        Some((selector, self.integer(path, text, 0, greatest)?))
+    }
+
+    /// Finds a selector by name; a field of the identifier becomes one when it is first used.
+    fn selector(&mut self, path: &Path, name: &str, identifier: &Identifier) -> Option<usize> {
+        if let Some(index) = self.tables.selectors.iter().position(|known| known.name == name) {
+            return Some(index);
+        }
+        let header = self.tables.selectors.iter().map(|known| known.name.clone()).collect::<Vec<_>>();
+        let names: Vec<_> = identifier.fields.iter().map(|field| field.name.clone()).chain(header).collect();
+        let index = self.lookup_key(path, "identifier or header field", name, names.iter().map(String::as_str))?;
+        let field = identifier.fields.get(index)?;
+        self.tables.selectors.push(Selector {
+            name: field.name.clone(),
+            doc: field.doc.clone(),
+            place: SelectorPlace::Identifier(index),
+            normal: None,
+            enumeration: field.enumeration,
+        });
+        Some(self.tables.selectors.len() - 1)
+    }
+
+    pub fn foreign(&mut self, identifier: &Identifier) -> Vec<Foreign> {
+        let root = Path::default().key("foreign");
+        let spec = self.spec;
+        let entries = spec.foreign.iter().map(|(name, foreign)| (root.key(name), name, foreign));
+        entries
+            .map(|(path, name, foreign)| {
+                self.check_name(&path, name);
+                let ranges = self.foreign_ranges(&path.key("match"), &foreign.pattern, identifier);
+                Foreign { name: name.clone(), doc: remarks!(foreign).doc(&path, None), ranges }
+            })
+            .collect()
+    }
+
+    fn foreign_ranges(
+        &mut self,
+        path: &Path,
+        pattern: &Pattern,
+        identifier: &Identifier,
+    ) -> Vec<(Option<usize>, u32, u32)> {
+        let entries = pattern.iter();
+        entries.filter_map(|(name, text)| self.foreign_range(&path.key(name), name, text, identifier)).collect()
+    }
+
+    fn foreign_range(
+        &mut self,
+        path: &Path,
+        name: &str,
+        text: &str,
+        identifier: &Identifier,
+    ) -> Option<(Option<usize>, u32, u32)> {
+        let names = std::iter::once("identifier").chain(identifier.fields.iter().map(|field| field.name.as_str()));
+        let field = self.lookup_key(path, "identifier field", name, names)?.checked_sub(1);
+        let width = field.map_or(if identifier.extended { 29 } else { 11 }, |field| identifier.fields[field].width);
+        let (first, last) = text.split_once("..").unwrap_or((text, text));
+        let greatest = u32::MAX >> (32 - width);
+        Some((field, self.integer(path, first, 0, greatest)?, self.integer(path, last, 0, greatest)?))
+    }
+}
+
+/// Finds a field by name, in words too.
+fn ast_field<'a>(fields: &'a ast::Map<ast::Field>, name: &str) -> Option<&'a ast::Field> {
+    fields.get(name).or_else(|| fields.values().find_map(|field| ast_field(&field.fields, name)))
+}

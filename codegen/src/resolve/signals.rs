@@ -1,0 +1,305 @@
+//! Fields become signals: words are taken apart, places become masks, keys become an encoding.
+
+use canspec_runtime::Place;
+
+use super::Resolver;
+use super::texts::remarks;
+use super::types::Merged;
+use crate::model::{Doc, Encoding, Kind, Piece, Signal};
+use crate::number::Rational;
+use crate::syntax::ast::{self, Field};
+use crate::syntax::tree::Path;
+use crate::texts::{Texts, raw_of_text};
+
+/// What the fields of a message come to.
+#[derive(Default)]
+pub struct Leaves {
+    pub signals: Vec<Signal>,
+    /// Constant fields of the payload and their values.
+    pub constants: Vec<(Signal, u64)>,
+}
+
+/// What a field stands in.
+#[derive(Clone, Copy)]
+struct Outer<'a> {
+    /// The word whose bits the field's `bits` count.
+    word: Option<Place>,
+    doc: &'a Doc,
+    /// Name of the message, for types without a name of their own.
+    owner: &'a str,
+}
+
+impl Resolver<'_> {
+    /// Resolves fields that may not be constant.
+    pub fn signals(
+        &mut self,
+        path: &Path,
+        fields: &ast::Map<Field>,
+        word: Option<Place>,
+        doc: &Doc,
+        owner: &str,
+    ) -> Vec<Signal> {
+        let mut leaves = Leaves::default();
+        self.leaves(path, fields, Outer { word, doc, owner }, &mut leaves);
+        for (constant, _) in &leaves.constants {
+            let message = format!("`{}` cannot be constant in {owner}", constant.name);
+            let help = "write constants of the header in `match` or in the access; parts of a text have none";
+            self.error_with_help("type", constant.doc.path.key("const").at_key(), message, help);
+        }
+        leaves.signals
+    }
+
+    /// Resolves the fields of a message; signals come by first byte, then as written.
+    pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.leaves(path, fields, Outer { word: None, doc, owner }, &mut leaves);
+        leaves.signals.sort_by_key(|signal| first_byte(signal.place));
+        leaves
+    }
+
+    fn leaves(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer, leaves: &mut Leaves) {
+        for (name, field) in fields {
+            self.leaf(&path.key(name), name, field, outer, leaves);
+        }
+    }
+
+    /// Resolves the only field of a message.
+    pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.leaf(path, "value", field, Outer { word: None, doc, owner }, &mut leaves);
+        leaves.signals.sort_by_key(|signal| first_byte(signal.place));
+        leaves
+    }
+
+    fn leaf(&mut self, path: &Path, name: &str, field: &Field, outer: Outer, leaves: &mut Leaves) -> Option<()> {
+        self.check_name(path, name);
+        let merged = self.merged(path, field)?;
+        let doc = remarks!(field).doc(path, Some(outer.doc));
+        let doc = Doc { title: merged.field.title.clone(), ..doc };
+        if merged.field.format.is_some() {
+            leaves.signals.push(self.packed(name, &merged, doc, outer)?);
+            return Some(());
+        }
+        let place = self.place(path, name, &merged, outer.word)?;
+        if !merged.field.fields.is_empty() {
+            let inside = Outer { word: Some(place), doc: &doc, ..outer };
+            let fields = merged.path(self.diagnostics, "fields");
+            self.leaves(&fields, &merged.field.fields.clone(), inside, leaves);
+            return Some(());
+        }
+        let signal = self.signal(name, &merged, place, doc, outer.owner)?;
+        match &merged.field.constant {
+            None => leaves.signals.push(signal),
+            Some(text) => {
+                let at = merged.path(self.diagnostics, "const");
+                let value = self.integer(&at, text, 0, place.max())?;
+                leaves.constants.push((signal, value));
+            }
+        }
+        Some(())
+    }
+
+    /// Reads `bytes` or `bits`.
+    fn place(&mut self, path: &Path, name: &str, merged: &Merged, word: Option<Place>) -> Option<Place> {
+        let (bytes, bits) = (merged.path(self.diagnostics, "bytes"), merged.path(self.diagnostics, "bits"));
+        match (&merged.field.bytes, &merged.field.bits, word) {
+            (Some(text), None, _) => self.bytes(&bytes, text),
+            (None, Some(text), Some(word)) => {
+                let (high, low) = self.bits(&bits, text, word.width())?;
+                Some(word.bits(high, low))
+            }
+            (None, Some(_), None) => {
+                let message = format!("`{name}` counts bits, but stands in no word");
+                let help = "write `bytes`, or put it into a word: `word: {bytes: 7..0, fields: {...}}`";
+                self.error_with_help("place", bits.at_key(), message, help);
+                None
+            }
+            (Some(_), Some(_), _) => {
+                let help = "keep `bits` in a word, `bytes` elsewhere";
+                let message = format!("`{name}` has two places: `bytes` and `bits`");
+                self.error_with_help("place", path.at_key(), message, help);
+                None
+            }
+            (None, None, _) => {
+                let help = "say where it stands: `bytes: 0..3`, or `bits: 7..4` in a word";
+                self.error_with_help("place", path.at_key(), format!("`{name}` has no place"), help);
+                None
+            }
+        }
+    }
+
+    /// Makes a signal of a field that is no word.
+    pub fn signal(&mut self, name: &str, merged: &Merged, place: Place, doc: Doc, owner: &str) -> Option<Signal> {
+        let field = &merged.field;
+        let encoding = self.encoding(name, merged, place, &doc, owner)?;
+        let signed = matches!(encoding, Encoding::Number { signed: true, .. });
+        let values = merged.path(self.diagnostics, "values");
+        let named = matches!(encoding, Encoding::Named(_));
+        let specials =
+            if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
+        let unit = field.unit.as_ref().and_then(|text| self.unit(&merged.path(self.diagnostics, "unit"), text));
+        let range = field.range.as_ref().and_then(|text| self.range(&merged.path(self.diagnostics, "range"), text));
+        let kinds = self.kinds(&merged.path(self.diagnostics, "in"), &field.kinds);
+        let mut signal = Signal {
+            name: name.to_owned(),
+            doc,
+            types: merged.types.clone(),
+            place,
+            encoding,
+            unit,
+            range,
+            specials,
+            default: None,
+            kinds,
+        };
+        if let Some(text) = &field.default {
+            signal.default = self.default(&merged.path(self.diagnostics, "default"), &signal, text);
+        }
+        Some(signal)
+    }
+
+    fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {
+        let bits = self.raw_text(path, signal, text, false)?;
+        let signed = matches!(signal.encoding, Encoding::Number { signed: true, .. });
+        let width = signal.place.width();
+        let negative = signed && bits >> (width - 1) == 1;
+        Some(i128::from(bits) - if negative { 1 << width } else { 0 })
+    }
+
+    /// Reads a physical value as written in a spec; `None` where it is not on the signal's grid, which is reported.
+    pub fn raw_text(&mut self, path: &Path, signal: &Signal, text: &str, unit: bool) -> Option<u64> {
+        let tables = Texts { enumerations: &self.tables.enumerations, status_words: &self.tables.status_words };
+        match raw_of_text(&tables, signal, text, unit) {
+            Ok(bits) => Some(bits),
+            Err(why) => {
+                self.error("value", path.at_value(), why);
+                None
+            }
+        }
+    }
+
+    fn encoding(&mut self, name: &str, merged: &Merged, place: Place, doc: &Doc, owner: &str) -> Option<Encoding> {
+        let field = &merged.field;
+        let otherwise = if owner.is_empty() { name.to_owned() } else { format!("{owner}_{name}") };
+        if !field.status.is_empty() {
+            return Some(Encoding::Status(self.status_word(merged, &otherwise, place.width(), doc)));
+        }
+        let signed = match field.format_of_number.as_deref() {
+            None | Some("unsigned") => false,
+            Some("signed") => true,
+            Some("float") => return self.float(name, merged, place),
+            Some("text") => return self.text(name, merged, place),
+            Some(other) => {
+                let formats = ["unsigned", "signed", "float", "text"].into_iter();
+                let at = merged.path(self.diagnostics, "as");
+                self.lookup(&at, "number format", other, formats);
+                return None;
+            }
+        };
+        let number = field.scale.is_some() || field.offset.is_some() || field.unit.is_some() || field.range.is_some();
+        if !field.values.is_empty() && !number {
+            return self.enumeration(merged, &otherwise, place.width(), doc).map(Encoding::Named);
+        }
+        let mut read = |key: &str, text: &Option<String>, otherwise: Rational| match text {
+            Some(text) => self.number(&merged.path(self.diagnostics, key), text),
+            None => Some(otherwise),
+        };
+        let scale = read("scale", &field.scale, Rational::ONE)?;
+        let offset = read("offset", &field.offset, Rational::ZERO)?;
+        Some(Encoding::Number { signed, scale, offset })
+    }
+
+    fn float(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
+        let at = merged.sources[0].key("as").at_value();
+        if place.width() != 32 {
+            self.error("type", at, format!("a float has 32 bits, the place of `{name}` has {}", place.width()));
+            return None;
+        }
+        if merged.field.scale.is_some() || merged.field.offset.is_some() {
+            let message = format!("`{name}` is a float, which is neither scaled nor offset");
+            self.error_with_help("type", at, message, "remove `scale` and `offset`");
+            return None;
+        }
+        Some(Encoding::Float)
+    }
+
+    fn text(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
+        if place.width() % 8 != 0 {
+            let message = format!("a text has whole bytes, the place of `{name}` has {} bits", place.width());
+            self.error("type", merged.sources[0].key("as").at_value(), message);
+            return None;
+        }
+        Some(Encoding::Text)
+    }
+
+    /// Makes one text signal of several parts.
+    fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
+        let fields = merged.path(self.diagnostics, "fields");
+        let parts = self.signals(&fields, &merged.field.fields.clone(), outer.word, &doc, outer.owner);
+        let format = merged.field.format.clone()?;
+        let at = merged.path(self.diagnostics, "format");
+        let pieces = self.pieces(&at, &format, &parts)?;
+        let place = self.packed_place(&at, &parts)?;
+        let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, "in"), &merged.field.kinds);
+        Some(Signal {
+            name: name.to_owned(),
+            doc,
+            types: merged.types.clone(),
+            place,
+            encoding: Encoding::Packed { pieces, parts },
+            unit: None,
+            range: None,
+            specials: Vec::new(),
+            default: None,
+            kinds,
+        })
+    }
+
+    /// Reads `{number:12}{letter}`.
+    fn pieces(&mut self, path: &Path, format: &str, parts: &[Signal]) -> Option<Vec<Piece>> {
+        let mut pieces = Vec::new();
+        let mut rest = format;
+        while let Some((literal, after)) = rest.split_once('{') {
+            let Some((inside, after)) = after.split_once('}') else {
+                let message = format!("the `{{` before `{after}` is not closed");
+                self.error_with_help("format", path.at_value(), message, "write parts as `{name}` or `{name:digits}`");
+                return None;
+            };
+            if !literal.is_empty() {
+                pieces.push(Piece::Literal(literal.to_owned()));
+            }
+            let (part, digits) = inside.split_once(':').map_or((inside, None), |(part, digits)| (part, Some(digits)));
+            let part = self.lookup(path, "part", part, parts.iter().map(|part| part.name.as_str()))?;
+            let digits = match digits {
+                Some(digits) => Some(usize::from(self.integer(path, digits, 1_u8, 20)?)),
+                None => None,
+            };
+            pieces.push(Piece::Part { part, digits });
+            rest = after;
+        }
+        if !rest.is_empty() {
+            pieces.push(Piece::Literal(rest.to_owned()));
+        }
+        Some(pieces)
+    }
+
+    /// Returns the run of bytes that the parts fill.
+    fn packed_place(&mut self, path: &Path, parts: &[Signal]) -> Option<Place> {
+        let mask = parts.iter().fold(0, |mask, part| mask | u64::from_be_bytes(part.place.mask()));
+        let (before, after) = (mask.leading_zeros(), mask.trailing_zeros());
+        let filled = mask != 0 && mask.count_ones() + before + after == 64 && before % 8 == 0 && after % 8 == 0;
+        if !filled {
+            let help = "let the parts follow each other, from the first to the last bit of a run of bytes";
+            let message = "the parts do not fill whole bytes without a gap".to_owned();
+            self.error_with_help("format", path.at_value(), message, help);
+            return None;
+        }
+        let byte = |bits: u32| u8::try_from(bits / 8).unwrap_or(0);
+        Some(Place::bytes(byte(before), 7 - byte(after)))
+    }
+}
+
+/// Returns the first byte of the frame in which a place has bits.
+pub fn first_byte(place: Place) -> u32 {
+    u64::from_be_bytes(place.mask()).leading_zeros() / 8
+}

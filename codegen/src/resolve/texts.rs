@@ -1,0 +1,200 @@
+//! Reads the texts of a spec: numbers, ranges, quantities, places and names.
+
+use std::fmt::Display;
+
+use canspec_runtime::Place;
+
+use super::Resolver;
+use crate::diagnostic::At;
+use crate::model::{Doc, Kind, Quantity, Range, Unit};
+use crate::number::Rational;
+use crate::syntax::ast::Names;
+use crate::syntax::tree::Path;
+
+/// The keys that say something about an item rather than to the codec.
+#[derive(Clone, Copy)]
+pub struct Remarks<'a> {
+    pub title: &'a Option<String>,
+    pub note: &'a Option<String>,
+    pub section: &'a Option<String>,
+    pub erratum: &'a Names,
+}
+
+/// Borrows the remarks of an item of the syntax.
+macro_rules! remarks {
+    ($item:expr) => {
+        $crate::resolve::texts::Remarks {
+            title: &$item.title,
+            note: &$item.note,
+            section: &$item.section,
+            erratum: &$item.erratum,
+        }
+    };
+}
+pub(super) use remarks;
+
+impl Remarks<'_> {
+    /// Makes the model's remarks; an item without a section of its own stands in that of `outer`.
+    pub fn doc(&self, path: &Path, outer: Option<&Doc>) -> Doc {
+        let inherited = || outer.and_then(|outer| outer.section.clone());
+        Doc {
+            title: self.title.clone(),
+            note: self.note.clone(),
+            section: self.section.clone().or_else(inherited),
+            errata: self.erratum.0.clone(),
+            path: path.clone(),
+        }
+    }
+}
+
+impl Resolver<'_> {
+    /// Reads a number.
+    pub fn number(&mut self, path: &Path, text: &str) -> Option<Rational> {
+        let number = Rational::parse(text);
+        if number.is_none() {
+            let help = "write `12`, `-40`, `0x1F`, `41.5` or `1/1024`";
+            self.error_with_help("number", path.at_value(), format!("`{text}` is not a number"), help);
+        }
+        number
+    }
+
+    /// Reads a whole number between two limits.
+    pub fn integer<N>(&mut self, path: &Path, text: &str, first: N, last: N) -> Option<N>
+    where
+        N: Copy + Display + Into<i128> + TryFrom<i128>,
+    {
+        let number = self.number(path, text)?;
+        let whole = number.to_integer().filter(|whole| (first.into()..=last.into()).contains(whole));
+        let fitting = whole.and_then(|whole| N::try_from(whole).ok());
+        if fitting.is_none() {
+            let message = format!("`{text}` is not a whole number from {first} to {last}");
+            self.error("number", path.at_value(), message);
+        }
+        fitting
+    }
+
+    /// Reads `minimum..maximum`.
+    pub fn range(&mut self, path: &Path, text: &str) -> Option<Range> {
+        let Some((minimum, maximum)) = text.split_once("..") else {
+            let help = "write the limits as `41.5..58.5`";
+            self.error_with_help("range", path.at_value(), format!("`{text}` is not a range"), help);
+            return None;
+        };
+        let range = Range { minimum: self.number(path, minimum)?, maximum: self.number(path, maximum)? };
+        if range.minimum > range.maximum {
+            let help = format!("write `{}..{}`", maximum.trim(), minimum.trim());
+            self.error_with_help("range", path.at_value(), format!("the range `{text}` ends below its start"), help);
+            return None;
+        }
+        Some(range)
+    }
+
+    /// Reads `high..low` or one number: bits of a word of `width` bits, 0 being the least significant.
+    pub fn bits(&mut self, path: &Path, text: &str, width: u8) -> Option<(u8, u8)> {
+        let (high, low) = text.split_once("..").unwrap_or((text, text));
+        let high = self.integer(path, high, 0, width - 1)?;
+        let low = self.integer(path, low, 0, width - 1)?;
+        if high < low {
+            let message = format!("bits run from the most to the least significant, `{text}` runs up");
+            self.error_with_help("place", path.at_value(), message, format!("write `{low}..{high}`"));
+            return None;
+        }
+        Some((high, low))
+    }
+
+    /// Reads `first..last` or one number: bytes of the payload, the most significant first.
+    pub fn bytes(&mut self, path: &Path, text: &str) -> Option<Place> {
+        let (first, last) = text.split_once("..").unwrap_or((text, text));
+        Some(Place::bytes(self.integer(path, first, 0, 7)?, self.integer(path, last, 0, 7)?))
+    }
+
+    /// Reads a unit of the language.
+    pub fn unit(&mut self, path: &Path, symbol: &str) -> Option<Unit> {
+        let unit = Unit::find(symbol);
+        if unit.is_none() {
+            let known: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
+            let help = format!("the units are {}", known.join(" "));
+            self.error_with_help("unit", path.at_value(), format!("there is no unit `{symbol}`"), help);
+        }
+        unit
+    }
+
+    /// Reads a number with an optional unit, such as `20 A`.
+    pub fn quantity(&mut self, path: &Path, text: &str) -> Option<Quantity> {
+        let (number, unit) = match text.split_once(' ') {
+            Some((number, symbol)) => (number, Some(self.unit(path, symbol)?)),
+            None => (text, None),
+        };
+        Some(Quantity { value: self.number(path, number)?, unit })
+    }
+
+    /// Finds the name that stands at `path` as a value.
+    pub fn lookup<'n>(
+        &mut self,
+        path: &Path,
+        what: &str,
+        name: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+    ) -> Option<usize> {
+        self.find(path.at_value(), what, name, names)
+    }
+
+    /// Finds the name that stands at `path` as a key.
+    pub fn lookup_key<'n>(
+        &mut self,
+        path: &Path,
+        what: &str,
+        name: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+    ) -> Option<usize> {
+        self.find(path.at_key(), what, name, names)
+    }
+
+    fn find<'n>(
+        &mut self,
+        at: At,
+        what: &str,
+        name: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+    ) -> Option<usize> {
+        let found = names.clone().position(|known| known == name);
+        if found.is_none() {
+            let message = format!("there is no {what} `{name}`");
+            self.error_with_help("name", at, message, suggestion(what, name, names));
+        }
+        found
+    }
+
+    /// Reads a list of `request`, `reply` and `report`.
+    pub fn kinds(&mut self, path: &Path, names: &[String]) -> Vec<Kind> {
+        let known = || Kind::ALL.into_iter().map(Kind::name);
+        let places = names.iter().enumerate();
+        places
+            .filter_map(|(index, name)| self.lookup(&path.index(index), "kind of frame", name, known()))
+            .map(|index| Kind::ALL[index])
+            .collect()
+    }
+
+    /// Tests that a name can be used as it is in Rust, in logs and on the command line.
+    pub fn check_name(&mut self, path: &Path, name: &str) {
+        let first = name.starts_with(|letter: char| letter.is_ascii_lowercase());
+        let rest = name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_');
+        if !(first && rest) {
+            let help = "names are lower-case letters, digits and `_`, and start with a letter";
+            self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
+        }
+    }
+}
+
+/// Names the nearest of the known names, or all of them.
+fn suggestion<'n>(what: &str, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
+    let near = names.clone().map(|known| (strsim::jaro_winkler(known, name), known));
+    let best = near.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
+    match best {
+        Some((_, best)) => format!("did you mean `{best}`?"),
+        None => {
+            let known: Vec<_> = names.map(|known| format!("`{known}`")).collect();
+            if known.is_empty() { format!("there is no {what} yet") } else { format!("there is {}", known.join(", ")) }
+        }
+    }
+}

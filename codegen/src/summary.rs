@@ -1,0 +1,64 @@
+//! What a spec contains, in numbers.
+
+use std::collections::BTreeSet;
+
+use crate::check::Counts;
+use crate::diagnostic::Diagnostics;
+use crate::model::Protocol;
+
+/// What a spec contains; the fields are those of `canspec check --format json`, in that order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// The file as it was named.
+    pub spec: String,
+    pub protocol: Option<String>,
+    pub messages: usize,
+    /// The fields that choose messages, and how many values of each are used.
+    pub selectors: Vec<(String, usize)>,
+    pub signals: usize,
+    /// Named bits of status words.
+    pub status_bits: usize,
+    /// All examples, those of types included.
+    pub examples: usize,
+    /// Examples with identifier and data that decoded and encoded back.
+    pub frames: usize,
+    /// Examples printed without data.
+    pub identifiers: usize,
+    /// Printed forms that fail as stated.
+    pub expected_failures: usize,
+    pub errata: usize,
+    pub errors: usize,
+    pub warnings: usize,
+}
+
+impl Summary {
+    pub(crate) fn new(spec: &str, protocol: Option<&Protocol>, counts: Counts, diagnostics: &Diagnostics) -> Self {
+        let count = |of: fn(&Protocol) -> usize| protocol.map_or(0, of);
+        Self {
+            spec: spec.to_owned(),
+            protocol: protocol.map(|protocol| protocol.name.clone()),
+            messages: count(|protocol| protocol.messages.len()),
+            selectors: protocol.map(selectors).unwrap_or_default(),
+            signals: count(|protocol| protocol.messages.iter().map(|message| message.signals.len()).sum()),
+            status_bits: count(|protocol| protocol.status_words.iter().map(|word| word.bits.len()).sum()),
+            examples: count(|protocol| protocol.examples.len() + protocol.value_examples.len()),
+            frames: counts.frames,
+            identifiers: counts.identifiers,
+            expected_failures: counts.expected_failures,
+            errata: count(|protocol| protocol.errata.len()),
+            errors: diagnostics.errors(),
+            warnings: diagnostics.warnings(),
+        }
+    }
+}
+
+/// Counts the values of each selector.
+fn selectors(protocol: &Protocol) -> Vec<(String, usize)> {
+    let shapes = || protocol.messages.iter().flat_map(|message| &message.shapes);
+    let values = |index: usize| {
+        let constants = shapes().flat_map(|shape| &shape.constants);
+        constants.filter(|(selector, _)| *selector == index).map(|(_, value)| value).collect::<BTreeSet<_>>().len()
+    };
+    let selectors = protocol.selectors.iter().enumerate().map(|(index, selector)| (selector.name.clone(), values(index)));
+    selectors.filter(|(_, values)| *values > 0).collect()
+}

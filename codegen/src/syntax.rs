@@ -1,0 +1,29 @@
+//! Text to tree to plain structs, in which every leaf is still its text.
+
+pub mod ast;
+mod gate;
+mod reader;
+pub mod tree;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::Source;
+
+/// Reads a spec, and reports all that is wrong with its syntax at once; there is a spec only if nothing is.
+///
+/// What is returned as diagnostics goes on to the later stages: it knows the text and the tree.
+pub fn parse(source: Source) -> (Option<ast::Spec>, Diagnostics) {
+    let (tree, mut problems) = gate::read(&source);
+    let spec = tree.as_ref().and_then(|tree| read_tree(tree, &mut problems));
+    (spec, Diagnostics::new(source).in_tree(tree).with(problems))
+}
+
+fn read_tree(tree: &tree::Node, problems: &mut Vec<Diagnostic>) -> Option<ast::Spec> {
+    match reader::read(tree) {
+        Ok(spec) if problems.is_empty() => Some(spec),
+        Ok(_) => None,
+        Err(found) => {
+            problems.extend(found);
+            None
+        }
+    }
+}

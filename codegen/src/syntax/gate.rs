@@ -1,0 +1,308 @@
+//! Text to tree, without the parts of YAML that a spec does without.
+
+mod complaint;
+
+use std::ops::Range;
+
+use indexmap::IndexMap;
+use indexmap::map::Entry as Slot;
+use saphyr_parser::{Event, Parser, ScalarStyle, Span};
+
+use super::tree::{Content, Entry, Node};
+use crate::diagnostic::Diagnostic;
+use crate::source::{Source, forbidden};
+
+/// Deepest nesting of maps and lists.
+const DEPTH_LIMIT: usize = 64;
+
+/// Most values in one file.
+const NODE_LIMIT: usize = 200_000;
+
+/// Most errors after which it is worth reading on.
+const PROBLEM_LIMIT: usize = 1000;
+
+/// Words that readers of YAML take for a text, a truth value or nothing, as they please.
+const UNCLEAR_WORDS: [&str; 10] = ["on", "off", "yes", "no", "y", "n", "true", "false", "null", "~"];
+
+/// Reads the tree of a spec and reports all that is refused; there is no tree where the text cannot be read to its end.
+pub(super) fn read(source: &Source) -> (Option<Node>, Vec<Diagnostic>) {
+    let mut gate = Gate { source, problems: Vec::new(), open: Vec::new(), root: None, nodes: 0, gap: 0 };
+    let read = gate.read_events();
+    let tree = read.and_then(|()| gate.finish());
+    match tree {
+        Ok(tree) => (Some(tree), gate.problems),
+        Err(stopped) => {
+            gate.problems.push(*stopped);
+            (None, gate.problems)
+        }
+    }
+}
+
+/// What makes it pointless to read on.
+type Stopped = Box<Diagnostic>;
+
+struct Gate<'a> {
+    source: &'a Source,
+    problems: Vec<Diagnostic>,
+    open: Vec<Open>,
+    root: Option<Node>,
+    nodes: usize,
+    /// Where the last event ended; up to the next one there are only indicators, blanks and comments.
+    gap: usize,
+}
+
+/// A map or a list of which the end is still to come.
+struct Open {
+    start: usize,
+    entries: Entries,
+}
+
+enum Entries {
+    List(Vec<Node>),
+    Map { entries: IndexMap<String, Entry>, key: Option<Key> },
+}
+
+struct Key {
+    name: String,
+    span: Range<usize>,
+}
+
+impl Gate<'_> {
+    fn read_events(&mut self) -> Result<(), Stopped> {
+        let mut parser = Parser::new_from_str(self.source.text());
+        while let Some(event) = parser.next_event() {
+            let (event, span) = event.map_err(|error| {
+                let at = self.source.byte_of_character(error.marker().index());
+                Box::new(complaint::translate(self.source.text(), at, error.info()))
+            })?;
+            let span = self.bytes(span);
+            self.take(event, span.clone())?;
+            if self.problems.len() >= PROBLEM_LIMIT {
+                let message = format!("more than {PROBLEM_LIMIT} errors, the rest of the file is not read");
+                return Err(stopped("yaml", span, message, "check that this is the spec you mean"));
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Node, Stopped> {
+        match self.root.take() {
+            Some(node @ Node { content: Content::Map(_), .. }) => Ok(node),
+            Some(node) if node.content != Content::Text(String::new()) => {
+                let message = format!("expected a map of the whole spec, found {}", node.describe());
+                Err(stopped("wrong_kind", node.span, message, "start with `canspec: 1`"))
+            }
+            _ => Err(stopped("yaml", 0..0, "the file is empty".to_owned(), "start with `canspec: 1`")),
+        }
+    }
+
+    fn take(&mut self, event: Event<'_>, span: Range<usize>) -> Result<(), Stopped> {
+        match event {
+            Event::DocumentStart(_) if self.root.is_some() => {
+                let message = "a second document starts here".to_owned();
+                return Err(stopped("yaml", span, message, "keep one spec to a file, and remove the `---`"));
+            }
+            Event::Scalar(text, style, anchor, tag) => {
+                self.refuse_properties(anchor, tag.is_some(), &span);
+                let span = self.written(span, text.is_empty() && style == ScalarStyle::Plain);
+                self.scalar(text.into_owned(), style, span)?;
+            }
+            Event::Alias(_) => self.alias(span)?,
+            Event::SequenceStart(anchor, tag) => {
+                self.refuse_properties(anchor, tag.is_some(), &span);
+                self.open(span, Entries::List(Vec::new()))?;
+            }
+            Event::MappingStart(anchor, tag) => {
+                self.refuse_properties(anchor, tag.is_some(), &span);
+                self.open(span, Entries::Map { entries: IndexMap::new(), key: None })?;
+            }
+            Event::SequenceEnd | Event::MappingEnd => self.close(span)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn scalar(&mut self, text: String, style: ScalarStyle, span: Range<usize>) -> Result<(), Stopped> {
+        let is_key = self.expects_key();
+        let mut node = Node { span, content: Content::Text(text) };
+        if let Some(problem) = self.problem_of_text(&node, style, is_key) {
+            self.problems.push(problem);
+            node.content = if is_key { node.content } else { Content::Refused };
+        }
+        self.put(node)
+    }
+
+    fn problem_of_text(&self, node: &Node, style: ScalarStyle, is_key: bool) -> Option<Diagnostic> {
+        let Content::Text(text) = &node.content else { return None };
+        if self.open.is_empty() {
+            return None;
+        }
+        let span = node.span.clone();
+        if style == ScalarStyle::Plain && text.is_empty() {
+            return Some(self.problem_of_nothing(span, is_key));
+        }
+        if style == ScalarStyle::Plain && UNCLEAR_WORDS.iter().any(|word| word.eq_ignore_ascii_case(text)) {
+            let message = format!("`{text}` is written without quotes");
+            let help = format!("write `\"{text}\"`: readers of YAML disagree on what the plain word means");
+            return Some(Diagnostic::error("plain_word", span, message).help(help));
+        }
+        if is_key && style == ScalarStyle::Plain && text == "<<" {
+            return Some(refused(span, "a merge key `<<`", "write out what it stands for"));
+        }
+        text.chars().find_map(|character| Some((character, forbidden(character)?))).map(|(character, what)| {
+            let message = format!("the text holds the {what} U+{:04X}", u32::from(character));
+            Diagnostic::error("encoding", span, message).help("write it without this character")
+        })
+    }
+
+    fn problem_of_nothing(&self, span: Range<usize>, is_key: bool) -> Diagnostic {
+        let key = match self.open.last() {
+            Some(Open { entries: Entries::Map { key: Some(key), .. }, .. }) => Some(key),
+            _ => None,
+        };
+        let (span, message) = match key {
+            _ if is_key => (span.start..span.start, "this key has no name".to_owned()),
+            Some(key) => (key.span.clone(), format!("`{}` has no value", key.name)),
+            None => (span.start..span.start, "this item of the list has no value".to_owned()),
+        };
+        Diagnostic::error("wrong_kind", span, message)
+            .help("write it, write `\"\"` for an empty text, or remove the line")
+    }
+
+    fn alias(&mut self, span: Range<usize>) -> Result<(), Stopped> {
+        self.problems.push(refused(span.clone(), "an alias", "write out what it stands for"));
+        self.put(Node { span, content: Content::Refused })
+    }
+
+    fn refuse_properties(&mut self, anchor: usize, tagged: bool, span: &Range<usize>) {
+        if anchor > 0 {
+            self.problems.push(refused(span.clone(), "an anchor", "remove it, and write out its aliases"));
+        }
+        if tagged {
+            self.problems.push(refused(span.clone(), "a tag", "remove it: every value is read as text"));
+        }
+    }
+
+    fn open(&mut self, span: Range<usize>, entries: Entries) -> Result<(), Stopped> {
+        if self.open.len() == DEPTH_LIMIT {
+            return Err(Box::new(complaint::too_deep(span)));
+        }
+        if self.expects_key() {
+            self.refuse_question_mark(span.start);
+        }
+        self.gap = span.start;
+        self.open.push(Open { start: span.start, entries });
+        Ok(())
+    }
+
+    fn close(&mut self, span: Range<usize>) -> Result<(), Stopped> {
+        let Some(open) = self.open.pop() else { return Ok(()) };
+        let content = match open.entries {
+            Entries::List(items) => Content::List(items),
+            Entries::Map { entries, .. } => Content::Map(entries),
+        };
+        self.gap = span.end;
+        self.put(Node { span: self.first_line(open.start..span.end.max(open.start)), content })
+    }
+
+    fn put(&mut self, node: Node) -> Result<(), Stopped> {
+        self.nodes += 1;
+        if self.nodes > NODE_LIMIT {
+            let message = format!("more than {NODE_LIMIT} values in one file");
+            return Err(stopped("yaml", node.span, message, "check that this is the spec you mean"));
+        }
+        if self.expects_key() {
+            self.put_key(node);
+        } else {
+            self.put_value(node);
+        }
+        Ok(())
+    }
+
+    fn put_key(&mut self, node: Node) {
+        let name = if let Content::Text(name) = node.content {
+            self.refuse_question_mark(node.span.start);
+            self.gap = node.span.end;
+            name
+        } else {
+            let what =
+                if node.content == Content::Refused { "a key that is an alias" } else { "a key that is no text" };
+            self.problems.push(refused(node.span.clone(), what, "write a plain name before the `:`"));
+            self.source.text()[node.span.clone()].to_owned()
+        };
+        if let Some(Open { entries: Entries::Map { key, .. }, .. }) = self.open.last_mut() {
+            *key = Some(Key { name, span: node.span });
+        }
+    }
+
+    fn put_value(&mut self, node: Node) {
+        if !matches!(node.content, Content::List(_) | Content::Map(_)) {
+            self.gap = node.span.end;
+        }
+        match self.open.last_mut().map(|open| &mut open.entries) {
+            None => self.root = Some(node),
+            Some(Entries::List(items)) => items.push(node),
+            Some(Entries::Map { entries, key }) => {
+                if let Some(key) = key.take() {
+                    self.problems.extend(put_entry(entries, key, node));
+                }
+            }
+        }
+    }
+
+    fn expects_key(&self) -> bool {
+        matches!(self.open.last(), Some(Open { entries: Entries::Map { key: None, .. }, .. }))
+    }
+
+    fn refuse_question_mark(&mut self, key: usize) {
+        let mut start = self.gap.min(key);
+        let gap = &self.source.text()[start..key];
+        for line in gap.split_inclusive('\n') {
+            let indicators = line.split('#').next().unwrap_or_default();
+            if let Some(at) = indicators.find('?') {
+                let span = start + at..start + at + 1;
+                self.problems.push(refused(span, "a `?` before a key", "write the key as `name: value`"));
+                return;
+            }
+            start += line.len();
+        }
+    }
+
+    /// Ends the span of a text where it is written; the parser lets one that is not written reach up to what follows.
+    fn written(&self, span: Range<usize>, unwritten: bool) -> Range<usize> {
+        let length = if unwritten { 0 } else { self.source.text()[span.clone()].trim_end().len() };
+        span.start..span.start + length
+    }
+
+    fn first_line(&self, span: Range<usize>) -> Range<usize> {
+        let line = self.source.text()[span.clone()].lines().next().unwrap_or_default();
+        span.start..span.start + line.trim_end().len()
+    }
+
+    fn bytes(&self, span: Span) -> Range<usize> {
+        let start = self.source.byte_of_character(span.start.index());
+        start..self.source.byte_of_character(span.end.index()).max(start)
+    }
+}
+
+fn put_entry(entries: &mut IndexMap<String, Entry>, key: Key, value: Node) -> Option<Diagnostic> {
+    match entries.entry(key.name) {
+        Slot::Vacant(slot) => {
+            slot.insert(Entry { key: key.span, value });
+            None
+        }
+        Slot::Occupied(first) => {
+            let problem = Diagnostic::error("duplicate_key", key.span, format!("duplicate key `{}`", first.key()));
+            let problem = problem.label("given again here").other(first.get().key.clone(), "first given here");
+            Some(problem.help("remove one of the two, or give it another name"))
+        }
+    }
+}
+
+fn refused(span: Range<usize>, what: &str, help: &str) -> Diagnostic {
+    Diagnostic::error("yaml", span, format!("{what} may not stand in a spec")).help(help)
+}
+
+fn stopped(rule: &'static str, span: Range<usize>, message: String, help: &str) -> Stopped {
+    Box::new(Diagnostic::error(rule, span, message).help(help))
+}

@@ -1,0 +1,59 @@
+//! What the YAML parser complains about, in words that say what to do.
+
+use std::ops::Range;
+
+use super::DEPTH_LIMIT;
+use crate::diagnostic::Diagnostic;
+
+/// Part of the parser's message, our message, and the help.
+const TRANSLATIONS: [(&str, &str, &str); 19] = [
+    ("tab", "a tab stands where only spaces may", "indent with spaces"),
+    ("unexpected end of stream", "this quoted text is never closed", "close it with the same quote"),
+    ("unknown anchor", "an alias may not stand in a spec", "write out what it stands for"),
+    (
+        "mapping values are not allowed",
+        "a `:` that ends no key",
+        "quote the text that holds it, or check the indentation",
+    ),
+    (
+        "illegal placement of ':'",
+        "a `:` that ends no key",
+        "quote the text that holds it, or close the bracket before it",
+    ),
+    ("expected ',' or '}'", "expected `,` or `}` in this map", "close the map, or quote the text that goes on here"),
+    ("expected ',' or ']'", "expected `,` or `]` in this list", "close the list, or quote the text that goes on here"),
+    ("did not find expected key", "expected a key at this indentation", "indent the line like the keys around it"),
+    ("did not find expected '-'", "expected a `-` at this indentation", "indent the line like the items around it"),
+    ("simple key expect", "a line without a `:`", "write `name: value`, or indent it under the text it belongs to"),
+    ("unexpected character", "an unquoted text cannot start with this character", "quote the text"),
+    (
+        "unknown escape",
+        "unknown escape in a text in double quotes",
+        "write `\\\\` for a backslash, or use single quotes",
+    ),
+    ("<document start>", "text after the end of the spec", "indent it like the keys it belongs to, or remove it"),
+    ("after double-quoted", "text after a closing quote", "put the whole text in quotes"),
+    ("expected node content", "expected a value here", "write it, or remove the indicator before it"),
+    ("misplaced bracket", "a closing bracket without an opening one", "remove it, or quote the text that holds it"),
+    ("sequence entries", "a `-` that starts no item", "start a line with it, or quote the text"),
+    ("only valid inside a block", "a `-` that starts no item", "start a line with it, or quote the text"),
+    ("indentation", "this line is indented too little or too much", "indent it like the lines it belongs to"),
+];
+
+/// Turns the parser's message into a diagnostic.
+pub(super) fn translate(text: &str, at: usize, complaint: &str) -> Diagnostic {
+    let span = at..at + text[at..].chars().next().filter(|character| *character != '\n').map_or(0, char::len_utf8);
+    if complaint.contains("recursion limit") {
+        return too_deep(span);
+    }
+    match TRANSLATIONS.iter().find(|(part, ..)| complaint.contains(part)) {
+        Some((_, message, help)) => Diagnostic::error("yaml", span, *message).help(*help),
+        None => Diagnostic::error("yaml", span, format!("this is not YAML: {complaint}")),
+    }
+}
+
+/// Reports nesting that no spec needs.
+pub(super) fn too_deep(span: Range<usize>) -> Diagnostic {
+    let message = format!("maps and lists are nested deeper than {DEPTH_LIMIT} levels");
+    Diagnostic::error("yaml", span, message).help("check the brackets and the indentation")
+}

@@ -1,0 +1,6 @@
+//! Codecs of the protocols that canspec ships: `no_std`, no allocation, one module a protocol.
+//!
+//! The modules are generated from the specs when this crate is built; each item names the section of the vendor's document.
+#![no_std]
+
+include!(concat!(env!("OUT_DIR"), "/protocols.rs"));

@@ -1,0 +1,265 @@
+//! Addressing modes: whom a request addresses, and who answers.
+
+use crate::{Bits, Error, Filter};
+
+/// A kind of address: a documented range of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AddressType {
+    name: &'static str,
+    first: i32,
+    last: i32,
+    offset: i32,
+    descending: bool,
+    strict: bool,
+    default: Option<i32>,
+}
+
+impl AddressType {
+    /// Returns addresses from `first` to `last` that stand in the field as they are.
+    pub const fn new(name: &'static str, first: i32, last: i32) -> Self {
+        Self { name, first, last, offset: 0, descending: false, strict: false, default: None }
+    }
+
+    /// Adds the number of field value 0.
+    #[must_use]
+    pub const fn offset(self, offset: i32) -> Self {
+        Self { offset, ..self }
+    }
+
+    /// Lets the field value go down while the number goes up.
+    #[must_use]
+    pub const fn descending(self) -> Self {
+        Self { descending: true, ..self }
+    }
+
+    /// Makes a number outside the range something else, rather than an undocumented address.
+    #[must_use]
+    pub const fn strict(self) -> Self {
+        Self { strict: true, ..self }
+    }
+
+    /// Adds the number that is sent unless the caller says otherwise.
+    #[must_use]
+    pub const fn default_number(self, number: i32) -> Self {
+        Self { default: Some(number), ..self }
+    }
+
+    /// Returns the number that a field value stands for.
+    pub const fn number(&self, raw: u32) -> i32 {
+        let raw = raw.cast_signed();
+        self.offset.wrapping_add(if self.descending { raw.wrapping_neg() } else { raw })
+    }
+
+    /// Returns the field value that stands for a number.
+    pub const fn raw(&self, number: i32) -> u32 {
+        let raw = number.wrapping_sub(self.offset);
+        (if self.descending { raw.wrapping_neg() } else { raw }).cast_unsigned()
+    }
+
+    /// Tests whether the document names this number.
+    pub const fn documents(&self, number: i32) -> bool {
+        self.first <= number && number <= self.last
+    }
+
+    /// Returns the number that is sent unless the caller says otherwise.
+    pub const fn sent_number(&self) -> i32 {
+        match self.default {
+            Some(number) => number,
+            None => self.first,
+        }
+    }
+
+    /// Returns the number if the document names it.
+    pub(crate) fn documented(&self, number: i32) -> Result<i32, Error> {
+        let Self { name: address, first, last, .. } = *self;
+        if self.documents(number) { Ok(number) } else { Err(Error::Address { address, number, first, last }) }
+    }
+}
+
+/// A field of the identifier that holds an address.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Address {
+    bits: Bits,
+    kind: &'static AddressType,
+    excluded: &'static [(u32, u32)],
+}
+
+impl Address {
+    /// Returns an address that stands in these bits of the identifier.
+    pub const fn new(bits: Bits, kind: &'static AddressType) -> Self {
+        Self { bits, kind, excluded: &[] }
+    }
+
+    /// Adds inclusive ranges of field values that are something else.
+    #[must_use]
+    pub const fn excluding(self, excluded: &'static [(u32, u32)]) -> Self {
+        Self { excluded, ..self }
+    }
+
+    pub(crate) const fn kind(&self) -> &'static AddressType {
+        self.kind
+    }
+
+    fn number(&self, id: u32) -> i32 {
+        self.kind.number(self.bits.of(id))
+    }
+
+    fn is_documented(&self, id: u32) -> bool {
+        self.kind.documents(self.number(id))
+    }
+
+    fn is_tolerated(&self, id: u32) -> bool {
+        let raw = self.bits.of(id);
+        !self.kind.strict && !self.excluded.iter().any(|(first, last)| (*first..=*last).contains(&raw))
+    }
+}
+
+/// Constants and addresses that an identifier must show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    /// Fields of the identifier and what they must be.
+    pub constants: &'static [(Bits, u32)],
+    /// Fields of the identifier that hold an address.
+    pub addresses: &'static [Address],
+}
+
+impl Pattern {
+    /// Tests an identifier: `Some(true)` with documented addresses, `Some(false)` with tolerated ones.
+    fn fit(&self, id: u32) -> Option<bool> {
+        let constants = self.constants.iter().all(|(bits, value)| bits.of(id) == *value);
+        let documented = self.addresses.iter().all(|address| address.is_documented(id));
+        let tolerated = self.addresses.iter().all(|address| address.is_documented(id) || address.is_tolerated(id));
+        (constants && tolerated).then_some(documented)
+    }
+
+    /// Tests whether the identifier shows a number of this kind.
+    pub(crate) fn has(&self, kind: &AddressType) -> bool {
+        self.addresses.iter().any(|address| address.kind == kind)
+    }
+
+    /// Narrows a filter to the constants, and to those addresses whose number is known.
+    pub(crate) fn narrow(&self, filter: Filter, number: impl Fn(&AddressType) -> Option<i32>) -> Filter {
+        let fixed = self.constants.iter().fold(filter, |filter, (bits, value)| filter.id(*bits, *value));
+        self.addresses.iter().fold(fixed, |filter, address| match number(address.kind) {
+            Some(number) => filter.id(address.bits, address.kind.raw(number)),
+            None => filter,
+        })
+    }
+}
+
+/// An addressing mode: what the identifiers of requests and replies look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mode {
+    /// Name of the mode.
+    pub name: &'static str,
+    /// The kind of address that a caller chooses.
+    pub target: Option<&'static AddressType>,
+    /// Identifier of the request.
+    pub request: Option<Pattern>,
+    /// Identifier of the reply where the module addressed answers.
+    pub one: Option<Pattern>,
+    /// Identifier of the replies where each module addressed answers.
+    pub each: Option<Pattern>,
+    /// Identifier of the reply where one module answers for all.
+    pub coordinator: Option<Pattern>,
+}
+
+/// Who answers a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Who {
+    /// The module addressed.
+    One,
+    /// Each module addressed.
+    Each,
+    /// One module for all.
+    Coordinator,
+    /// Nobody.
+    Nobody,
+}
+
+/// What a frame is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Towards a module: reads and sets alike.
+    Request,
+    /// Towards the controller, echoes and failures included.
+    Reply,
+    /// Sent unasked.
+    Report,
+}
+
+impl Mode {
+    pub(crate) fn reply(&self, who: Who) -> Option<Pattern> {
+        match who {
+            Who::One => self.one,
+            Who::Each => self.each,
+            Who::Coordinator => self.coordinator,
+            Who::Nobody => None,
+        }
+    }
+
+    /// Returns the patterns of a kind of frame, and who sends such a reply.
+    fn patterns(&self, kind: Kind) -> [(Option<Who>, Option<Pattern>); 3] {
+        match kind {
+            Kind::Request => [(None, self.request), (None, None), (None, None)],
+            Kind::Reply | Kind::Report => {
+                [Who::One, Who::Each, Who::Coordinator].map(|who| (Some(who), self.reply(who)))
+            }
+        }
+    }
+}
+
+/// The addressing mode that an identifier shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Addressing {
+    rank: Rank,
+    mode: &'static Mode,
+    pattern: Pattern,
+}
+
+/// How well a mode fits: one that the message has, then documented addresses, then the number of constants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Rank {
+    is_offered: bool,
+    is_documented: bool,
+    constants: usize,
+}
+
+impl Addressing {
+    /// Finds the mode that fits best; `answers` says who answers, mode by mode.
+    pub(crate) fn find(modes: &'static [Mode], answers: &[Option<Who>], kind: Kind, id: u32) -> Option<Self> {
+        let fitting = modes.iter().zip(answers).flat_map(|(mode, answer)| {
+            mode.patterns(kind).into_iter().filter_map(move |(who, pattern)| {
+                let is_offered = if who.is_none() { answer.is_some() } else { *answer == who };
+                let pattern = pattern?;
+                let rank = Rank { is_offered, is_documented: pattern.fit(id)?, constants: pattern.constants.len() };
+                Some(Self { rank, mode, pattern })
+            })
+        });
+        fitting.reduce(|best, next| if next.rank > best.rank { next } else { best })
+    }
+
+    /// Returns the mode.
+    pub const fn mode(&self) -> &'static Mode {
+        self.mode
+    }
+
+    /// Tests whether the message travels in this mode.
+    pub const fn is_offered(&self) -> bool {
+        self.rank.is_offered
+    }
+
+    /// Tests whether the document names every address.
+    pub const fn is_documented(&self) -> bool {
+        self.rank.is_documented
+    }
+
+    pub(crate) const fn rank(&self) -> Rank {
+        self.rank
+    }
+
+    /// Refuses addresses that the document does not name.
+    pub(crate) fn documented(&self, id: u32) -> Result<(), Error> {
+        self.pattern.addresses.iter().try_for_each(|address| address.kind.documented(address.number(id)).map(drop))
+    }
+}

@@ -1,0 +1,95 @@
+//! Why a frame is not built.
+
+use core::fmt;
+
+use crate::Number;
+
+/// Why a frame is not built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The value lies outside the documented range, or outside what the signal's bits can hold.
+    Limits {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the signal.
+        signal: &'static str,
+        /// The refused value.
+        value: Number,
+        /// Unit of value and limits.
+        unit: Option<&'static str>,
+        /// The smallest legal value.
+        minimum: Number,
+        /// The largest legal value.
+        maximum: Number,
+    },
+    /// The value is infinite or not a number.
+    NotFinite {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the signal.
+        signal: &'static str,
+    },
+    /// The signal has no value of this kind or name.
+    Meaning {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the signal.
+        signal: &'static str,
+    },
+    /// The message does not travel in this addressing mode, or in no known one.
+    Mode {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the access.
+        access: &'static str,
+        /// Name of the addressing mode, if the identifier shows one.
+        mode: Option<&'static str>,
+    },
+    /// The address lies outside the documented range.
+    Address {
+        /// Name of the kind of address.
+        address: &'static str,
+        /// The refused address.
+        number: i32,
+        /// The first address.
+        first: i32,
+        /// The last address.
+        last: i32,
+    },
+    /// The identifier belongs to another message, kind of frame or protocol.
+    Identifier {
+        /// Name of the message.
+        message: &'static str,
+        /// The refused identifier.
+        id: u32,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Limits { message, signal, value, unit, minimum, maximum } => {
+                let (space, unit) = unit.map_or(("", ""), |unit| (" ", unit));
+                write!(
+                    formatter,
+                    "`{signal}` of `{message}` is {value}{space}{unit}, but its limits are {minimum} and {maximum}{space}{unit}"
+                )
+            }
+            Self::NotFinite { message, signal } => write!(formatter, "`{signal}` of `{message}` is no finite number"),
+            Self::Meaning { message, signal } => write!(formatter, "`{signal}` of `{message}` has no such value"),
+            Self::Mode { message, access, mode: Some(mode) } => {
+                write!(formatter, "`{message}` has no `{access}` with the addressing mode `{mode}`")
+            }
+            Self::Mode { message, access, mode: None } => {
+                write!(formatter, "the identifier shows no addressing mode for `{access}` of `{message}`")
+            }
+            Self::Address { address, number, first, last } => {
+                write!(formatter, "`{address}` is {number}, but its limits are {first} and {last}")
+            }
+            Self::Identifier { message, id } => write!(formatter, "the identifier 0x{id:X} is none of `{message}`"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}

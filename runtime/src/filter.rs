@@ -1,0 +1,193 @@
+//! What a frame must show, as mask and value over identifier and data.
+
+use crate::frame::{padded, raw_id};
+use crate::{Bits, Data, Frame, Place};
+
+/// A field of the data that chooses the message, or says whether a request was accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Selector {
+    /// Name of the field.
+    pub name: &'static str,
+    /// Place in the data.
+    pub place: Place,
+    normal: Option<u64>,
+}
+
+impl Selector {
+    /// Returns a selector.
+    pub const fn new(name: &'static str, place: Place) -> Self {
+        Self { name, place, normal: None }
+    }
+
+    /// Sets the value of a reply that is no error reply.
+    #[must_use]
+    pub const fn normal(self, normal: u64) -> Self {
+        Self { normal: Some(normal), ..self }
+    }
+
+    fn is_normal(&self, data: Data) -> bool {
+        self.normal.is_none_or(|normal| self.place.get(&data) == normal)
+    }
+}
+
+/// What identifier and data of a frame must show, and what is written there when such a frame is built.
+///
+/// Bits of the value outside the mask are written, but anything is accepted in their place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Filter {
+    extended: bool,
+    id_mask: u32,
+    id_value: u32,
+    data_mask: Data,
+    data_value: Data,
+    selectors: &'static [Selector],
+}
+
+impl Filter {
+    /// Accepts every frame with a 29-bit identifier.
+    pub const EXTENDED: Self =
+        Self { extended: true, id_mask: 0, id_value: 0, data_mask: [0; 8], data_value: [0; 8], selectors: &[] };
+    /// Accepts every frame with an 11-bit identifier.
+    pub const STANDARD: Self = Self { extended: false, ..Self::EXTENDED };
+
+    /// Requires a value in a field of the identifier.
+    #[must_use]
+    pub const fn id(self, bits: Bits, value: u32) -> Self {
+        Self { id_mask: put(self.id_mask, bits, u32::MAX), ..self.send_id(bits, value) }
+    }
+
+    /// Writes a value in a field of the identifier, and accepts any.
+    #[must_use]
+    pub const fn send_id(self, bits: Bits, value: u32) -> Self {
+        Self { id_mask: put(self.id_mask, bits, 0), id_value: put(self.id_value, bits, value), ..self }
+    }
+
+    /// Requires a value in the data.
+    #[must_use]
+    pub const fn data(mut self, place: Place, value: u64) -> Self {
+        place.put(&mut self.data_mask, u64::MAX);
+        place.put(&mut self.data_value, value);
+        self
+    }
+
+    /// Sets which selectors such frames have in their data.
+    #[must_use]
+    pub const fn selectors(self, selectors: &'static [Selector]) -> Self {
+        Self { selectors, ..self }
+    }
+
+    /// Requires these bits of the identifier and leaves the others as they are.
+    #[must_use]
+    pub const fn id_bits(self, mask: u32, value: u32) -> Self {
+        let id_value = (self.id_value & !mask) | (value & mask);
+        Self { id_mask: self.id_mask | mask, id_value, ..self }
+    }
+
+    /// Tests a frame.
+    pub fn matches(&self, frame: &impl embedded_can::Frame) -> bool {
+        let (id, extended) = raw_id(frame.id());
+        extended == self.extended
+            && self.matches_id(id)
+            && self.matches_data(&padded(frame.data()))
+            && !frame.is_remote_frame()
+    }
+
+    /// Tests an identifier of the right width.
+    pub const fn matches_id(&self, id: u32) -> bool {
+        (id ^ self.id_value) & self.id_mask == 0
+    }
+
+    /// Tests data bytes.
+    pub fn matches_data(&self, data: &Data) -> bool {
+        let word = |data: Data| u64::from_be_bytes(data);
+        (word(*data) ^ word(self.data_value)) & word(self.data_mask) == 0
+    }
+
+    /// Returns the selectors that such frames have in their data.
+    pub const fn data_selectors(&self) -> &'static [Selector] {
+        self.selectors
+    }
+
+    pub(crate) fn has_normal_selectors(&self, data: Data) -> bool {
+        self.selectors.iter().all(|selector| selector.is_normal(data))
+    }
+
+    /// Tests whether identifiers have 29 bits rather than 11.
+    pub const fn is_extended(&self) -> bool {
+        self.extended
+    }
+
+    /// Returns the bits of the identifier that count: the mask of a hardware acceptance filter.
+    pub const fn id_mask(&self) -> u32 {
+        self.id_mask
+    }
+
+    /// Returns what these bits must be: the identifier of a hardware acceptance filter.
+    pub const fn id_value(&self) -> u32 {
+        self.id_value & self.id_mask
+    }
+
+    /// Returns the bits of the data that count.
+    pub const fn data_mask(&self) -> Data {
+        self.data_mask
+    }
+
+    /// Returns the bytes that are written when such a frame is built.
+    pub const fn data_value(&self) -> Data {
+        self.data_value
+    }
+
+    /// Returns the frame that shows what the filter asks for, with zeros elsewhere.
+    pub const fn frame(&self, length: u8) -> Frame {
+        Frame::new_raw(self.id_value, self.extended, self.data_value, length)
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
+const fn put(id: u32, bits: Bits, value: u32) -> u32 {
+    bits.put(id as u64, value as u64) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COMMAND: Bits = Bits::new(21, 16);
+    const ERROR: Bits = Bits::new(28, 26);
+    const FUNCTION: Place = Place::byte(0);
+
+    fn frame(id: u32, first: u8) -> Frame {
+        Frame::new_raw(id, true, [first, 0, 0, 0, 0, 0, 0, 0], 8)
+    }
+
+    #[test]
+    fn only_the_bits_of_the_mask_count() {
+        let filter = Filter::EXTENDED.id(COMMAND, 0x1C).send_id(ERROR, 2);
+        assert_eq!((filter.id_mask(), filter.id_value()), (0x003F_0000, 0x001C_0000));
+        assert!(filter.matches(&frame(0x029C_03F0, 7)));
+        assert!(!filter.matches(&frame(0x029B_03F0, 7)));
+        assert_eq!(filter.frame(8), frame(0x081C_0000, 0));
+    }
+
+    #[test]
+    fn data_are_tested_too() {
+        let filter = Filter::EXTENDED.data(FUNCTION, 0x41);
+        assert!(filter.matches(&frame(0, 0x41)));
+        assert!(!filter.matches(&frame(0, 0x42)));
+        assert_eq!(filter.frame(2).bytes(), [0x41, 0, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn the_width_of_the_identifier_counts() {
+        let standard = Frame::new_raw(0x7FF, false, [0; 8], 8);
+        assert!(Filter::STANDARD.matches(&standard));
+        assert!(!Filter::EXTENDED.matches(&standard));
+    }
+
+    #[test]
+    fn a_later_requirement_replaces_an_earlier_one() {
+        let filter = Filter::EXTENDED.id(COMMAND, 0x3F).id(COMMAND, 0x01).id_bits(0x0F, 0x05);
+        assert_eq!((filter.id_mask(), filter.id_value()), (0x003F_000F, 0x0001_0005));
+        assert_eq!(filter.send_id(COMMAND, 0).id_mask(), 0x0F);
+    }
+}

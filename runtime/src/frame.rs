@@ -1,0 +1,135 @@
+//! Classic CAN data frames.
+
+use core::fmt;
+
+use embedded_can::{ExtendedId, Id, StandardId};
+
+use crate::Data;
+
+/// A classic CAN data frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Frame {
+    id: u32,
+    extended: bool,
+    length: u8,
+    data: Data,
+}
+
+impl Frame {
+    /// Returns a frame with the low 29 or 11 bits of `id` and the first `length` bytes of `data`, at most 8.
+    pub const fn new_raw(id: u32, extended: bool, data: Data, length: u8) -> Self {
+        let id = id & if extended { 0x1FFF_FFFF } else { 0x7FF };
+        Self { id, extended, length: if length < 8 { length } else { 8 }, data }
+    }
+
+    /// Returns the identifier as a number.
+    pub const fn raw_id(&self) -> u32 {
+        self.id
+    }
+
+    /// Returns the bytes as they are read: eight, of which those beyond the frame's length are 0.
+    pub fn bytes(&self) -> Data {
+        padded(embedded_can::Frame::data(self))
+    }
+}
+
+impl embedded_can::Frame for Frame {
+    fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
+        let (raw, extended) = raw_id(id.into());
+        let length = u8::try_from(data.len()).ok().filter(|length| *length <= 8)?;
+        Some(Self::new_raw(raw, extended, padded(data), length))
+    }
+
+    fn new_remote(_: impl Into<Id>, _: usize) -> Option<Self> {
+        None
+    }
+
+    fn is_extended(&self) -> bool {
+        self.extended
+    }
+
+    fn is_remote_frame(&self) -> bool {
+        false
+    }
+
+    fn id(&self) -> Id {
+        if self.extended {
+            Id::Extended(ExtendedId::new(self.id).unwrap_or(ExtendedId::ZERO))
+        } else {
+            Id::Standard(u16::try_from(self.id).ok().and_then(StandardId::new).unwrap_or(StandardId::ZERO))
+        }
+    }
+
+    fn dlc(&self) -> usize {
+        self.length.into()
+    }
+
+    fn data(&self) -> &[u8] {
+        self.data.get(..self.length.into()).unwrap_or(&self.data)
+    }
+}
+
+impl fmt::Display for Frame {
+    /// Writes `029C03F0#000B71B000003A98`.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = if self.extended { 8 } else { 3 };
+        write!(formatter, "{:0digits$X}#", self.id)?;
+        embedded_can::Frame::data(self).iter().try_for_each(|byte| write!(formatter, "{byte:02X}"))
+    }
+}
+
+/// Returns an identifier as a number, and whether it is an extended one.
+pub fn raw_id(id: Id) -> (u32, bool) {
+    match id {
+        Id::Standard(id) => (id.as_raw().into(), false),
+        Id::Extended(id) => (id.as_raw(), true),
+    }
+}
+
+/// Returns the first eight of `bytes`, with zeros where there are fewer.
+pub fn padded(bytes: &[u8]) -> Data {
+    let mut data = [0; 8];
+    for (byte, value) in data.iter_mut().zip(bytes) {
+        *byte = *value;
+    }
+    data
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use embedded_can::Frame as _;
+
+    use super::*;
+
+    #[test]
+    fn a_frame_is_written_as_in_a_log() {
+        let frame = Frame::new_raw(0x029C_03F0, true, [0x00, 0x0B, 0x71, 0xB0, 0x00, 0x00, 0x3A, 0x98], 8);
+        assert_eq!(frame.to_string(), "029C03F0#000B71B000003A98");
+        assert_eq!(Frame::new_raw(0x83, false, [0x55, 1, 2, 3, 4, 5, 6, 7], 2).to_string(), "083#5501");
+    }
+
+    #[test]
+    fn a_frame_keeps_identifier_and_data() {
+        let id = ExtendedId::new(0x029C_03F0).expect("29 bits");
+        let frame = Frame::new(id, &[1, 2, 3]).expect("three bytes");
+        assert_eq!((frame.id(), frame.dlc(), frame.data()), (Id::Extended(id), 3, &[1, 2, 3][..]));
+        assert_eq!(frame.bytes(), [1, 2, 3, 0, 0, 0, 0, 0]);
+        let id = StandardId::new(0x7FF).expect("11 bits");
+        let frame = Frame::new(id, &[]).expect("no bytes");
+        assert_eq!((frame.id(), frame.dlc(), frame.data()), (Id::Standard(id), 0, &[][..]));
+    }
+
+    #[test]
+    fn nine_bytes_and_remote_frames_are_refused() {
+        assert_eq!(Frame::new(StandardId::ZERO, &[0; 9]), None);
+        assert_eq!(Frame::new_remote(StandardId::ZERO, 0), None);
+    }
+
+    #[test]
+    fn bits_and_bytes_that_no_frame_has_are_dropped() {
+        let frame = Frame::new_raw(u32::MAX, false, [0xFF; 8], 200);
+        assert_eq!((frame.raw_id(), frame.dlc()), (0x7FF, 8));
+    }
+}

@@ -1,0 +1,194 @@
+//! Packed values: several numbers and texts that are written as one text.
+
+use core::fmt::{self, Write};
+
+use crate::{Data, Legend, Place, Raw, Word};
+
+/// A piece of a packed value's text; places count from the first byte of the value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Piece {
+    /// The same characters in every text.
+    Literal(&'static str),
+    /// The ASCII characters at a place.
+    Text(Place),
+    /// A number in decimal digits.
+    Number {
+        /// Place of the number.
+        place: Place,
+        /// How many digits it has; 0 for as many as it needs.
+        digits: u8,
+        /// The smallest and the largest number.
+        limits: (u64, u64),
+    },
+}
+
+impl Piece {
+    /// Returns a number that has as many digits as it needs.
+    pub const fn number(place: Place) -> Self {
+        Self::Number { place, digits: 0, limits: (0, place.max()) }
+    }
+
+    /// Returns a number of so many digits, with zeros in front.
+    pub const fn digits(place: Place, digits: u8) -> Self {
+        Self::Number { place, digits, limits: (0, place.max()) }
+    }
+
+    /// Sets the limits of a number.
+    #[must_use]
+    pub const fn limits(self, minimum: u64, maximum: u64) -> Self {
+        match self {
+            Self::Number { place, digits, .. } => Self::Number { place, digits, limits: (minimum, maximum) },
+            other => other,
+        }
+    }
+
+    fn write(&self, data: Data, formatter: &mut impl Write) -> fmt::Result {
+        match *self {
+            Self::Literal(literal) => formatter.write_str(literal),
+            Self::Text(place) => {
+                let letters = place.get(&data).to_be_bytes().into_iter().skip(8 - bytes(place));
+                letters.map(char::from).try_for_each(|letter| formatter.write_char(letter))
+            }
+            Self::Number { place, digits, .. } => {
+                write!(formatter, "{:0width$}", place.get(&data), width = usize::from(digits))
+            }
+        }
+    }
+
+    /// Takes this piece off the front of a text.
+    fn parse<'t>(&self, text: &'t str, is_last: bool, data: &mut Data) -> Option<&'t str> {
+        match *self {
+            Self::Literal(literal) => text.strip_prefix(literal),
+            Self::Text(place) => {
+                let (letters, rest) = text.split_at_checked(bytes(place))?;
+                place.put(data, letters.bytes().fold(0, |bits, byte| bits << 8 | u64::from(byte)));
+                letters.bytes().all(|byte| matches!(byte, b' '..=b'~')).then_some(rest)
+            }
+            Self::Number { place, digits, limits: (minimum, maximum) } => {
+                let length = match digits {
+                    0 if is_last => text.len(),
+                    0 => text.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(text.len()),
+                    digits => digits.into(),
+                };
+                let (number, rest) = text.split_at_checked(length)?;
+                let is_plain = number.bytes().all(|byte| byte.is_ascii_digit());
+                let number = number.parse().ok().filter(|number| is_plain && (minimum..=maximum).contains(number))?;
+                place.put(data, number);
+                Some(rest)
+            }
+        }
+    }
+}
+
+/// Returns how many whole bytes a place has.
+fn bytes(place: Place) -> usize {
+    usize::from(place.width() / 8)
+}
+
+/// A packed value: a struct of parts that is written as one text.
+pub trait Packed: Word<Raw = u64> {
+    /// Returns the text of the value, or `None` if that text would not give the same value.
+    fn text(self) -> Option<PackedText> {
+        text(self)
+    }
+
+    /// Writes the parts in the documented form, be the text exact or not.
+    ///
+    /// # Errors
+    ///
+    /// Passes on what the formatter returns.
+    fn write(self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Legend::Text(bytes, pieces) = Self::LEGEND else { return Ok(()) };
+        PackedText { data: left_aligned(self.raw(), bytes), pieces }.write(formatter)
+    }
+
+    /// Reads a text of the documented form.
+    fn parse(text: &str) -> Option<Self> {
+        parse(text)
+    }
+}
+
+/// The text of a packed value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PackedText {
+    data: Data,
+    pieces: &'static [Piece],
+}
+
+impl fmt::Display for PackedText {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(formatter)
+    }
+}
+
+impl PackedText {
+    fn write(&self, formatter: &mut impl Write) -> fmt::Result {
+        self.pieces.iter().try_for_each(|piece| piece.write(self.data, formatter))
+    }
+
+    /// Tests whether the text gives the same value.
+    fn is_exact(&self) -> bool {
+        let mut written = Buffer::default();
+        self.write(&mut written).is_ok()
+            && written.as_str().and_then(|text| parse_data(text, self.pieces)) == Some(self.data)
+    }
+}
+
+/// Writes a packed value, if its text gives the same value.
+pub(crate) fn text<W: Word>(value: W) -> Option<PackedText> {
+    let Legend::Text(bytes, pieces) = W::LEGEND else { return None };
+    let text = PackedText { data: left_aligned(value.raw().to_bits(), bytes), pieces };
+    text.is_exact().then_some(text)
+}
+
+/// Reads a packed value.
+pub(crate) fn parse<W: Word>(text: &str) -> Option<W> {
+    let Legend::Text(bytes, pieces) = W::LEGEND else { return None };
+    parse_data(text, pieces).map(|data| W::from_bits(right_aligned(data, bytes)))
+}
+
+fn parse_data(text: &str, pieces: &[Piece]) -> Option<Data> {
+    let mut data = [0; 8];
+    let (last, others) = pieces.split_last()?;
+    let rest = others.iter().try_fold(text, |rest, piece| piece.parse(rest, false, &mut data))?;
+    last.parse(rest, true, &mut data)?.is_empty().then_some(data)
+}
+
+/// Returns a word of so many bytes from its first byte on.
+pub const fn left_aligned(word: u64, bytes: u8) -> Data {
+    word.wrapping_shl(64_u32.wrapping_sub(8 * bytes as u32)).to_be_bytes()
+}
+
+/// Returns the word that stands in the first bytes.
+pub const fn right_aligned(data: Data, bytes: u8) -> u64 {
+    u64::from_be_bytes(data).wrapping_shr(64_u32.wrapping_sub(8 * bytes as u32))
+}
+
+/// Takes a text of up to 96 bytes.
+#[derive(Clone, Copy)]
+struct Buffer {
+    bytes: [u8; 96],
+    length: usize,
+}
+
+impl Default for Buffer {
+    fn default() -> Self {
+        Self { bytes: [0; 96], length: 0 }
+    }
+}
+
+impl Buffer {
+    fn as_str(&self) -> Option<&str> {
+        core::str::from_utf8(self.bytes.get(..self.length)?).ok()
+    }
+}
+
+impl Write for Buffer {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let end = self.length.saturating_add(text.len());
+        self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?.copy_from_slice(text.as_bytes());
+        self.length = end;
+        Ok(())
+    }
+}

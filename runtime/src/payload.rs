@@ -1,0 +1,41 @@
+//! Data bytes while they are written.
+
+use crate::Data;
+
+/// The data bytes of a message while they are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Payload {
+    message: &'static str,
+    data: Data,
+    keeps_limits: bool,
+}
+
+impl Payload {
+    /// Returns the bytes of a message that takes whatever fits its signals, as in a reply.
+    pub const fn new(message: &'static str, data: Data) -> Self {
+        Self { message, data, keeps_limits: false }
+    }
+
+    /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
+    pub const fn within_limits(message: &'static str, data: Data) -> Self {
+        Self { message, data, keeps_limits: true }
+    }
+
+    /// Returns the bytes written so far.
+    pub const fn data(&self) -> &Data {
+        &self.data
+    }
+
+    /// Returns the name of the message.
+    pub const fn message(&self) -> &'static str {
+        self.message
+    }
+
+    pub(crate) const fn keeps_limits(&self) -> bool {
+        self.keeps_limits
+    }
+
+    pub(crate) const fn replace(&mut self, data: Data) {
+        self.data = data;
+    }
+}

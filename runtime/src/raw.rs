@@ -1,0 +1,154 @@
+//! The Rust types of raw values.
+
+use crate::{Number, PackedText, StatusBit};
+
+/// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text or a packed value.
+pub trait Raw: Copy {
+    /// Whether the bits are a number in two's complement.
+    const SIGNED: bool = false;
+
+    /// Takes the low bits of a word, sign-extended if the type is signed.
+    fn from_bits(bits: u64) -> Self;
+
+    /// Returns the bits of the word, sign-extended if the type is signed.
+    fn to_bits(self) -> u64;
+
+    /// Returns what the value means.
+    fn meaning(&self) -> Meaning<'_>;
+
+    /// Returns the value that means `meaning`, if there is one.
+    fn from_meaning(meaning: Meaning<'_>) -> Option<Self>;
+
+    /// Tests whether the bits give the same value; the parts of a packed value can be too large for their places.
+    fn is_whole(self) -> bool {
+        true
+    }
+
+    /// Returns the number that limits apply to: the integer, or the float.
+    fn number(self) -> Number {
+        if Self::SIGNED { Number::Signed(self.to_bits().cast_signed()) } else { Number::Unsigned(self.to_bits()) }
+    }
+
+    /// Returns a limit as precisely as this type can meet it.
+    fn limit(exact: f64) -> f64 {
+        exact
+    }
+}
+
+/// A raw value that physical values are scaled from.
+pub trait Integer: Raw {}
+
+/// What a value means to code that does not know its type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Meaning<'a> {
+    /// A number in the signal's unit.
+    Number(Number),
+    /// The name of a named value.
+    Name(&'a str),
+    /// A text.
+    Text(&'a str),
+    /// The text of a packed value.
+    Packed(PackedText),
+    /// The set bits of a status word, and what they stand for.
+    Status(u64, &'static [StatusBit]),
+    /// Nothing: a value without a name, no finite number, or a text that would not give these bits.
+    None,
+}
+
+macro_rules! unsigned {
+    ($($type:ty)*) => {$(
+        impl Integer for $type {}
+
+        impl Raw for $type {
+            #[expect(clippy::allow_attributes, reason = "not every width truncates")]
+            #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
+            fn from_bits(bits: u64) -> Self {
+                bits as Self
+            }
+
+            fn to_bits(self) -> u64 {
+                self.into()
+            }
+
+            fn meaning(&self) -> Meaning<'_> {
+                Meaning::Number(self.number())
+            }
+
+            fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
+                whole(meaning)?.try_into().ok()
+            }
+        }
+    )*};
+}
+
+macro_rules! signed {
+    ($($type:ty)*) => {$(
+        impl Integer for $type {}
+
+        impl Raw for $type {
+            const SIGNED: bool = true;
+
+            #[expect(clippy::allow_attributes, reason = "not every width truncates")]
+            #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
+            fn from_bits(bits: u64) -> Self {
+                bits.cast_signed() as Self
+            }
+
+            fn to_bits(self) -> u64 {
+                i64::from(self).cast_unsigned()
+            }
+
+            fn meaning(&self) -> Meaning<'_> {
+                Meaning::Number(self.number())
+            }
+
+            fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
+                whole(meaning)?.try_into().ok()
+            }
+        }
+    )*};
+}
+
+unsigned!(u8 u16 u32 u64);
+signed!(i8 i16 i32 i64);
+
+/// Returns an integer.
+fn whole(meaning: Meaning<'_>) -> Option<i128> {
+    match meaning {
+        Meaning::Number(Number::Unsigned(number)) => Some(number.into()),
+        Meaning::Number(Number::Signed(number)) => Some(number.into()),
+        _ => None,
+    }
+}
+
+impl Raw for f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "a float has 32 bits")]
+    fn from_bits(bits: u64) -> Self {
+        Self::from_bits(bits as u32)
+    }
+
+    fn to_bits(self) -> u64 {
+        f32::to_bits(self).into()
+    }
+
+    fn meaning(&self) -> Meaning<'_> {
+        if self.is_finite() { Meaning::Number(self.number()) } else { Meaning::None }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what is sent")]
+    fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
+        let Meaning::Number(number) = meaning else { return None };
+        let nearest = number.to_f64() as Self;
+        (nearest.is_finite() || !number.to_f64().is_finite()).then_some(nearest)
+    }
+
+    fn number(self) -> Number {
+        Number::Float(self.into())
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
+    fn limit(exact: f64) -> f64 {
+        (exact as Self).into()
+    }
+}

@@ -1,0 +1,248 @@
+//! Requests: how they are built, and which frames answer them.
+
+use core::marker::PhantomData;
+
+use crate::address::{AddressType, Addressing, Kind, Mode, Pattern, Who};
+use crate::{Error, Filter, Frame, Layout, Payload, Protocol};
+
+/// Whom a request of a protocol can address.
+pub trait Destination: Copy {
+    /// The messages of the protocol.
+    type Protocol: Protocol;
+
+    /// Returns the mode as an index into [`Protocol::MODES`].
+    fn mode(self) -> usize;
+
+    /// Returns the address, unless the mode has none to choose.
+    fn number(self) -> Option<i32>;
+}
+
+/// A target, and the address from which it is addressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Route<T> {
+    target: T,
+    sender: Option<i32>,
+}
+
+impl<T: Destination> From<T> for Route<T> {
+    fn from(target: T) -> Self {
+        Self { target, sender: None }
+    }
+}
+
+impl<T: Destination> Route<T> {
+    /// Returns the route from a sender's own address.
+    pub const fn new(target: T, sender: i32) -> Self {
+        Self { target, sender: Some(sender) }
+    }
+
+    fn mode(&self) -> Option<&'static Mode> {
+        T::Protocol::MODES.get(self.target.mode())
+    }
+
+    /// Returns the number that a kind of address has in a request.
+    fn number(&self, kind: &AddressType) -> i32 {
+        let chosen =
+            if self.mode().is_some_and(|mode| mode.target == Some(kind)) { self.target.number() } else { self.sender };
+        chosen.unwrap_or(kind.sent_number())
+    }
+}
+
+/// How a message travels by one access: which frames exist, what they show, and who answers.
+#[derive(Clone, Copy, Debug)]
+pub struct Exchange {
+    message: &'static str,
+    access: &'static str,
+    length: u8,
+    answers: &'static [Option<Who>],
+    request: Option<Filter>,
+    reply: Option<Filter>,
+    report: Option<Filter>,
+}
+
+impl Exchange {
+    /// Returns an exchange without frames; `answers` says who answers, mode by mode.
+    pub const fn new(message: &'static str, access: &'static str, answers: &'static [Option<Who>]) -> Self {
+        Self { message, access, length: 8, answers, request: None, reply: None, report: None }
+    }
+
+    /// Sets how many data bytes its frames have.
+    #[must_use]
+    pub const fn length(self, length: u8) -> Self {
+        Self { length, ..self }
+    }
+
+    /// Adds what a request shows.
+    #[must_use]
+    pub const fn request(self, request: Filter) -> Self {
+        Self { request: Some(request), ..self }
+    }
+
+    /// Adds what a reply shows.
+    #[must_use]
+    pub const fn reply(self, reply: Filter) -> Self {
+        Self { reply: Some(reply), ..self }
+    }
+
+    /// Adds what a report shows.
+    #[must_use]
+    pub const fn report(self, report: Filter) -> Self {
+        Self { report: Some(report), ..self }
+    }
+
+    /// Returns the name of the message.
+    pub const fn message(&self) -> &'static str {
+        self.message
+    }
+
+    /// Returns the number of data bytes.
+    pub const fn data_length(&self) -> u8 {
+        self.length
+    }
+
+    /// Returns what a kind of frame shows.
+    pub const fn filter(&self, kind: Kind) -> Option<Filter> {
+        match kind {
+            Kind::Request => self.request,
+            Kind::Reply => self.reply,
+            Kind::Report => self.report,
+        }
+    }
+
+    /// Returns the name of the access.
+    pub const fn access(&self) -> &'static str {
+        self.access
+    }
+
+    /// Returns the addressing mode that an identifier shows.
+    pub(crate) fn addressing(&self, modes: &'static [Mode], kind: Kind, id: u32) -> Option<Addressing> {
+        Addressing::find(modes, self.answers, kind, id)
+    }
+
+    /// Builds the request that carries `message`.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a mode that the message does not have, an address that the document does not name, and values outside
+    /// their limits.
+    pub fn request_to<T: Destination, R>(
+        &self,
+        route: impl Into<Route<T>>,
+        message: &impl Layout,
+    ) -> Result<Request<R>, Error> {
+        let route = route.into();
+        let (mode, who, pattern, request) = self.way(&route)?;
+        for address in pattern.addresses {
+            address.kind().documented(route.number(address.kind()))?;
+        }
+        let filter = pattern.narrow(request, |kind| Some(route.number(kind)));
+        let frame = self.fill(filter, Payload::within_limits(self.message, filter.data_value()), message)?;
+        let replies = self.replies(mode, who, |kind| pattern.has(kind).then(|| route.number(kind)));
+        Ok(Request { frame, replies, normal: T::Protocol::NORMAL, reply: PhantomData })
+    }
+
+    fn way<T: Destination>(&self, route: &Route<T>) -> Result<(&'static Mode, Who, Pattern, Filter), Error> {
+        let mode = route.mode();
+        let who = self.answers.get(route.target.mode()).copied().flatten();
+        match (mode, who, mode.and_then(|mode| mode.request), self.request) {
+            (Some(mode), Some(who), Some(pattern), Some(request)) => Ok((mode, who, pattern, request)),
+            _ => Err(self.no_mode(mode)),
+        }
+    }
+
+    pub(crate) fn no_mode(&self, mode: Option<&Mode>) -> Error {
+        Error::Mode { message: self.message, access: self.access, mode: mode.map(|mode| mode.name) }
+    }
+
+    fn fill(&self, filter: Filter, mut payload: Payload, message: &impl Layout) -> Result<Frame, Error> {
+        message.encode(&mut payload)?;
+        Ok(Frame::new_raw(filter.frame(self.length).raw_id(), filter.is_extended(), *payload.data(), self.length))
+    }
+
+    fn replies(&self, mode: &Mode, who: Who, number: impl Fn(&AddressType) -> Option<i32>) -> Replies {
+        let filter = self.reply.zip(mode.reply(who)).map(|(reply, pattern)| pattern.narrow(reply, number));
+        match (who, filter) {
+            (Who::One, Some(filter)) => Replies::One(filter),
+            (Who::Each, Some(filter)) => Replies::Each(filter),
+            (Who::Coordinator, Some(filter)) => Replies::Coordinator(filter),
+            _ => Replies::Nobody,
+        }
+    }
+}
+
+/// Which replies a request gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Replies {
+    /// None.
+    Nobody,
+    /// One, from the module addressed.
+    One(Filter),
+    /// One from each module addressed.
+    Each(Filter),
+    /// One, from the module that answers for all.
+    Coordinator(Filter),
+}
+
+impl Replies {
+    /// Returns what the replies show: also the filter that lets only them pass.
+    pub const fn filter(&self) -> Option<&Filter> {
+        match self {
+            Self::Nobody => None,
+            Self::One(filter) | Self::Each(filter) | Self::Coordinator(filter) => Some(filter),
+        }
+    }
+}
+
+/// A request ready to be sent, whose replies carry `R`.
+#[derive(Debug)]
+pub struct Request<R> {
+    frame: Frame,
+    replies: Replies,
+    normal: Filter,
+    reply: PhantomData<fn() -> R>,
+}
+
+impl<R: Layout> Request<R> {
+    /// Returns the frame.
+    pub const fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Returns which replies it gets.
+    pub const fn replies(&self) -> &Replies {
+        &self.replies
+    }
+
+    /// Tests whether a frame answers this request, be it with an error.
+    pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
+        self.replies.filter().is_some_and(|filter| filter.matches(frame)) && frame.dlc() == self.frame_length()
+    }
+
+    /// Tests whether a frame answers this request with an error.
+    pub fn is_error_reply(&self, frame: &impl embedded_can::Frame) -> bool {
+        self.is_reply(frame) && !self.is_normal(frame)
+    }
+
+    /// Decodes a frame that answers this request without an error.
+    pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<R> {
+        let answers = self.is_reply(frame) && self.is_normal(frame);
+        answers.then(|| R::decode(&crate::frame::padded(frame.data())))
+    }
+
+    fn is_normal(&self, frame: &impl embedded_can::Frame) -> bool {
+        let has_normal_selectors = |filter: &Filter| filter.has_normal_selectors(crate::frame::padded(frame.data()));
+        self.normal.matches(frame) && self.replies.filter().is_none_or(has_normal_selectors)
+    }
+
+    fn frame_length(&self) -> usize {
+        embedded_can::Frame::dlc(&self.frame)
+    }
+}
+
+impl<R> Clone for Request<R> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<R> Copy for Request<R> {}

@@ -1,0 +1,167 @@
+//! Exact scaling between raw and physical values.
+
+/// What a raw value is worth: physical = raw × scale + offset, both exact fractions.
+///
+/// ```
+/// use canspec_runtime::Scale;
+///
+/// const TENTHS: Scale = Scale::new(1, 10);
+/// const HALF_DEGREES: Scale = Scale::new(1, 2).offset(-40, 1);
+///
+/// assert_eq!(TENTHS.physical(3), 0.3);
+/// assert_eq!(TENTHS.raw(0.3), Some(3));
+/// assert_eq!(HALF_DEGREES.physical(110), 15.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Scale {
+    numerator: i64,
+    denominator: i64,
+    /// Makes `denominator` a common denominator of scale and offset.
+    factor: i64,
+    /// The offset as numerator over the common denominator.
+    offset: i64,
+}
+
+impl Scale {
+    /// Counts one by one: raw and physical value are the same number.
+    pub const ONE: Self = Self::new(1, 1);
+
+    /// Returns a scale without offset.
+    pub const fn new(numerator: i64, denominator: i64) -> Self {
+        let common = greatest_common_divisor(numerator, denominator);
+        Self { numerator: numerator / common, denominator: denominator / common, factor: 1, offset: 0 }
+    }
+
+    /// Returns the same scale with an offset in physical units.
+    #[must_use]
+    pub const fn offset(self, numerator: i64, denominator: i64) -> Self {
+        let common = greatest_common_divisor(self.denominator, denominator);
+        let factor = denominator / common;
+        let offset = numerator.saturating_mul(self.denominator / common);
+        Self { factor, offset, ..self }
+    }
+
+    /// Returns the double nearest to the physical value of `raw`.
+    ///
+    /// Sum and product are exact as long as their size stays below 2⁵³, so that the division is the only rounding.
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    pub const fn physical(self, raw: i64) -> f64 {
+        let sum = raw.saturating_mul(self.numerator).saturating_mul(self.factor).saturating_add(self.offset);
+        sum as f64 / self.common_denominator()
+    }
+
+    /// Returns the raw value nearest to a physical value, ties away from zero, or `None` for what 64 bits cannot hold.
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    pub const fn raw(self, physical: f64) -> Option<i64> {
+        let offset = self.offset as f64 / self.common_denominator();
+        nearest((physical - offset) * self.denominator as f64 / self.numerator as f64)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    const fn common_denominator(self) -> f64 {
+        self.denominator.saturating_mul(self.factor) as f64
+    }
+}
+
+/// Returns the integer nearest to `value`, ties away from zero, or `None` for what 64 bits cannot hold.
+#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the limits are tested first")]
+pub const fn nearest(value: f64) -> Option<i64> {
+    const LIMIT: f64 = 9_223_372_036_854_775_808.0;
+    if !(value >= -LIMIT && value < LIMIT) {
+        return None;
+    }
+    let whole = value as i64;
+    let rest = value - whole as f64;
+    Some(if rest >= 0.5 {
+        whole.saturating_add(1)
+    } else if rest <= -0.5 {
+        whole.saturating_sub(1)
+    } else {
+        whole
+    })
+}
+
+/// Euclid's algorithm; 1 for two zeros, so that it can always divide.
+const fn greatest_common_divisor(mut a: i64, mut b: i64) -> i64 {
+    while b != 0 {
+        (a, b) = (b, a.wrapping_rem(b));
+    }
+    if a == 0 { 1 } else { a.saturating_abs() }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "scaling is exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ties_go_away_from_zero() {
+        let rounded = [0.5, 1.5, 2.5, -0.5, -1.5, -2.5, 0.499_999_999_999_999_94, -0.499_999_999_999_999_94];
+        assert_eq!(rounded.map(nearest), [1, 2, 3, -1, -2, -3, 0, 0].map(Some));
+    }
+
+    #[test]
+    fn what_is_no_number_of_64_bits_has_no_raw_value() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 9_223_372_036_854_775_808.0, -1e19] {
+            assert_eq!(nearest(value), None);
+        }
+        assert_eq!(nearest(-9_223_372_036_854_775_808.0), Some(i64::MIN));
+        assert_eq!(nearest(9_223_372_036_854_774_784.0), Some(9_223_372_036_854_774_784));
+        assert_eq!(nearest(4_503_599_627_370_497.0), Some(4_503_599_627_370_497));
+    }
+
+    #[test]
+    fn thousandths_hit_the_double_that_is_nearest() {
+        let thousandths = Scale::new(1, 1000);
+        assert_eq!(thousandths.physical(299_977), 299.977);
+        assert_eq!(thousandths.physical(199_985), 199.985);
+        assert_eq!(thousandths.raw(299.977), Some(299_977));
+        assert_eq!(thousandths.raw(0.0005), Some(1));
+        assert_eq!(thousandths.raw(0.000_499), Some(0));
+    }
+
+    #[test]
+    fn every_millivolt_to_a_thousand_volts_encodes_to_its_own_raw_value() {
+        let thousandths = Scale::new(1, 1000);
+        for millivolt in 0..=1_000_000 {
+            let written: f64 = std::format!("{}.{:03}", millivolt / 1000, millivolt % 1000).parse().expect("a number");
+            assert_eq!(thousandths.physical(millivolt), written);
+            assert_eq!(thousandths.raw(written), Some(millivolt));
+        }
+    }
+
+    #[test]
+    fn scales_above_one_round_to_the_nearest_step() {
+        let tens = Scale::new(10, 1);
+        assert_eq!(tens.physical(1500), 15_000.0);
+        assert_eq!(
+            [14_994.9, 14_995.0, 15_004.9, 15_005.0].map(|power| tens.raw(power)),
+            [1499, 1500, 1500, 1501].map(Some)
+        );
+    }
+
+    #[test]
+    fn offsets_are_exact_fractions_too() {
+        let half_degrees = Scale::new(1, 2).offset(-40, 1);
+        assert_eq!(half_degrees.physical(0), -40.0);
+        assert_eq!(half_degrees.raw(15.0), Some(110));
+        // 7/3 + 1/10 = 73/30 = 2.4333333333333331..., by fractions.
+        let thirds = Scale::new(1, 3).offset(1, 10);
+        assert_eq!(thirds.physical(7), 2.433_333_333_333_333);
+        assert_eq!(thirds.raw(2.433_333_333_333_333), Some(7));
+    }
+
+    #[test]
+    fn negative_scales_count_down() {
+        let extended_group = Scale::new(-1, 1).offset(0xFD, 1);
+        assert_eq!(extended_group.physical(0xF8), 5.0);
+        assert_eq!(extended_group.raw(5.0), Some(0xF8));
+    }
+
+    #[test]
+    fn fractions_are_taken_in_lowest_terms() {
+        assert_eq!(Scale::new(2, 100), Scale::new(1, 50));
+        assert_eq!(Scale::new(1, 10).offset(83, 2), Scale::new(1, 10).offset(415, 10));
+        assert!(Scale::new(0, 0).physical(1).is_nan());
+    }
+}

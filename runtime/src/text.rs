@@ -1,0 +1,81 @@
+//! ASCII texts.
+
+use core::fmt;
+
+use crate::{Meaning, Raw};
+
+/// A text of at most `N` ASCII characters; the bytes behind a shorter one are 0.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Text<const N: usize>([u8; N]);
+
+impl<const N: usize> Text<N> {
+    /// Takes a text of at most `N` printable ASCII characters, or returns `None` for another.
+    pub fn new(text: &str) -> Option<Self> {
+        let mut bytes = [0; N];
+        bytes.get_mut(..text.len())?.copy_from_slice(text.as_bytes());
+        text.bytes().all(is_printable).then_some(Self(bytes))
+    }
+
+    /// Returns the bytes as they stand in the frame.
+    pub const fn as_bytes(&self) -> &[u8; N] {
+        &self.0
+    }
+
+    /// Returns the text, or `None` if the bytes are no printable ASCII with nothing but zeros behind.
+    pub fn as_str(&self) -> Option<&str> {
+        let length = self.0.iter().rposition(|byte| *byte != 0).map_or(0, |last| last.saturating_add(1));
+        let text = self.0.get(..length)?;
+        text.iter().all(|byte| is_printable(*byte)).then(|| core::str::from_utf8(text).ok()).flatten()
+    }
+}
+
+const fn is_printable(byte: u8) -> bool {
+    matches!(byte, b' '..=b'~')
+}
+
+impl<const N: usize> Default for Text<N> {
+    fn default() -> Self {
+        Self([0; N])
+    }
+}
+
+impl<const N: usize> fmt::Display for Text<N> {
+    /// Writes the text; other bytes than printable ASCII are escaped.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.as_str() {
+            Some(text) => formatter.pad(text),
+            None => self.0.escape_ascii().fmt(formatter),
+        }
+    }
+}
+
+impl<const N: usize> fmt::Debug for Text<N> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "\"{}\"", self.0.escape_ascii())
+    }
+}
+
+impl<const N: usize> Raw for Text<N> {
+    fn from_bits(bits: u64) -> Self {
+        let mut text = [0; N];
+        for (byte, value) in text.iter_mut().rev().zip(bits.to_le_bytes()) {
+            *byte = value;
+        }
+        Self(text)
+    }
+
+    fn to_bits(self) -> u64 {
+        self.0.iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte))
+    }
+
+    fn meaning(&self) -> Meaning<'_> {
+        self.as_str().map_or(Meaning::None, Meaning::Text)
+    }
+
+    fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
+        match meaning {
+            Meaning::Text(text) => Self::new(text),
+            _ => None,
+        }
+    }
+}

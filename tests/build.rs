@@ -1,0 +1,77 @@
+//! Generates codecs of the feature specs, and a list of every protocol: those that ship and those of the features.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use canspec_codegen::{compile, emit, source::Source};
+
+fn main() {
+    let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets it"));
+    let mut list = Protocols::default();
+    for (name, path) in specs(&root.join("../specs")) {
+        list.visit(&format!("canspec_protocols::{name}"), &path);
+    }
+    for (name, path) in specs(&root.join("specs/features")) {
+        fs::write(out.join(format!("{name}.rs")), generate(&path)).expect("OUT_DIR can be written");
+        list.module(&name);
+        list.visit(&name, &path);
+    }
+    fs::write(out.join("protocols.rs"), list.finish()).expect("OUT_DIR can be written");
+}
+
+/// Returns the specs of a folder by protocol, in order.
+fn specs(folder: &Path) -> Vec<(String, PathBuf)> {
+    println!("cargo::rerun-if-changed={}", folder.display());
+    let entries = fs::read_dir(folder).expect("the folder exists").flatten().map(|entry| entry.path());
+    let yaml = entries.filter(|path| path.extension().is_some_and(|ending| ending == "yaml"));
+    let mut specs: Vec<_> = yaml
+        .map(|path| (path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default(), path))
+        .collect();
+    specs.sort();
+    specs.iter().for_each(|(_, path)| println!("cargo::rerun-if-changed={}", path.display()));
+    specs
+}
+
+/// Compiles a feature spec; a wrong one stops the build with its diagnostics.
+fn generate(path: &Path) -> String {
+    let outcome = match Source::read(path) {
+        Ok(source) => compile(source),
+        Err(diagnostics) => panic!("{}", diagnostics.concise()),
+    };
+    match outcome.protocol {
+        Some(protocol) => emit::rust(&protocol),
+        None => panic!("{}", outcome.diagnostics.concise()),
+    }
+}
+
+/// The list of protocols as Rust.
+#[derive(Default)]
+struct Protocols {
+    modules: String,
+    visits: String,
+}
+
+impl Protocols {
+    fn module(&mut self, name: &str) {
+        let _ = writeln!(
+            self.modules,
+            "/// Generated from `specs/features/{name}.yaml`.\n\
+             #[deny(warnings, missing_docs, unsafe_code)]\n\
+             pub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
+        );
+    }
+
+    fn visit(&mut self, module: &str, path: &Path) {
+        let _ = writeln!(self.visits, "    visitor.visit::<{module}::Message>({path:?});");
+    }
+
+    fn finish(self) -> String {
+        format!(
+            "{}\n/// Shows every protocol to a visitor, with the path of its spec.\n\
+             pub fn visit(visitor: &mut impl Visitor) {{\n{}}}\n",
+            self.modules, self.visits
+        )
+    }
+}

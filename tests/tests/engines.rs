@@ -1,0 +1,207 @@
+//! The interpreter and the generated code agree, to the last bit.
+
+use std::collections::BTreeMap;
+
+use canspec_codegen::interpret::{self, Frame, Input, Value, raw_of};
+use canspec_codegen::model::{Encoding, Message, Protocol, Signal};
+use canspec_runtime::{AnySignal, Meaning, Number, Payload, Problem, Reading, Received};
+use canspec_tests::{Frames, Visitor, protocol, visit};
+use embedded_can::Frame as _;
+
+/// How many random frames each protocol sees.
+const FRAMES: usize = 50_000;
+
+/// What either engine says of a frame.
+#[derive(Debug, PartialEq)]
+struct Report {
+    message: String,
+    access: String,
+    kind: String,
+    addressing: Option<String>,
+    signals: Vec<(String, Option<String>, u64, String)>,
+    selectors: Vec<(String, u64)>,
+    reserved: [u8; 8],
+    encoded: Option<Vec<u8>>,
+}
+
+/// Returns the frame as the generated code takes it.
+fn received_frame(frame: &Frame) -> canspec_runtime::Frame {
+    let mut data = [0; 8];
+    data[..frame.data.len()].copy_from_slice(&frame.data);
+    let length = u8::try_from(frame.data.len()).expect("at most 8 bytes");
+    canspec_runtime::Frame::new_raw(frame.id, frame.extended, data, length)
+}
+
+fn generated<P: canspec_runtime::Protocol>(frame: &Frame) -> Result<Report, Problem> {
+    let frame = received_frame(frame);
+    let data = frame.bytes();
+    let received = Received::<P>::decode(&frame)?;
+    let mut signals = Vec::new();
+    received.visit(|reading| signals.push(shown(&reading)));
+    let exchange = received.exchange();
+    let selectors = exchange.data_selectors().iter();
+    Ok(Report {
+        message: exchange.message().to_owned(),
+        access: exchange.access().to_owned(),
+        kind: format!("{:?}", received.kind()),
+        addressing: received.addressing().map(|addressing| addressing.mode().name.to_owned()),
+        signals,
+        selectors: selectors.map(|selector| (selector.name.to_owned(), selector.place.get(&data))).collect(),
+        reserved: received.reserved(),
+        encoded: received.encode().ok().map(|frame| frame.data().to_vec()),
+    })
+}
+
+fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
+    let bits = match reading.raw {
+        Number::Unsigned(raw) => raw,
+        Number::Signed(raw) => raw.cast_unsigned(),
+        Number::Float(_) => panic!("a raw value is an integer"),
+    };
+    let meaning = match reading.meaning {
+        Meaning::Number(Number::Float(value)) => format!("{:016X}", value.to_bits()),
+        Meaning::Number(number) => number.to_string(),
+        Meaning::Name(name) | Meaning::Text(name) => name.to_owned(),
+        Meaning::Packed(text) => text.to_string(),
+        Meaning::Status(..) => "status".to_owned(),
+        _ => "none".to_owned(),
+    };
+    (reading.name.to_owned(), reading.unit.map(str::to_owned), bits, meaning)
+}
+
+fn interpreted(protocol: &Protocol, frame: &Frame) -> Result<Report, Problem> {
+    let decoded = interpret::decode(protocol, frame).map_err(|problem| match problem.problem {
+        interpret::Problem::Frame => Problem::Frame,
+        interpret::Problem::Foreign => Problem::Foreign,
+        interpret::Problem::Identifier => Problem::Identifier,
+        interpret::Problem::UnknownMessage => Problem::UnknownMessage,
+        interpret::Problem::Length => Problem::Length,
+    })?;
+    let message = &protocol.messages[decoded.message];
+    let content = canspec_codegen::check::content(protocol, &decoded);
+    let selectors = decoded.selectors.iter();
+    Ok(Report {
+        message: message.name.clone(),
+        access: protocol.accesses[decoded.access].name.clone(),
+        kind: format!("{:?}", decoded.kind),
+        addressing: decoded.addressing.map(|mode| protocol.modes[mode].name.clone()),
+        signals: decoded.signals.iter().map(|reading| read(&message.signals[reading.signal], reading)).collect(),
+        selectors: selectors.map(|(index, raw)| (protocol.selectors[*index].name.clone(), *raw)).collect(),
+        reserved: decoded.reserved,
+        encoded: interpret::encode(protocol, &content).ok().map(|frame| frame.data),
+    })
+}
+
+fn read(signal: &Signal, reading: &interpret::Reading) -> (String, Option<String>, u64, String) {
+    let width = signal.place.width();
+    let signed = matches!(signal.encoding, Encoding::Number { signed: true, .. });
+    let negative = signed && reading.bits >> (width - 1) == 1;
+    let bits = if negative && width < 64 { reading.bits | u64::MAX << width } else { reading.bits };
+    let meaning = match &reading.value {
+        Value::None => "none".to_owned(),
+        Value::Integer(value) => value.to_string(),
+        Value::Number(value) => format!("{:016X}", value.to_bits()),
+        Value::Name(text) | Value::Text(text) => text.clone(),
+        Value::Status { .. } => "status".to_owned(),
+    };
+    (signal.name.clone(), signal.unit.map(|unit| unit.symbol.to_owned()), bits, meaning)
+}
+
+struct Decoding {
+    recognised: usize,
+}
+
+impl Visitor for Decoding {
+    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
+        let protocol = protocol(path);
+        let mut frames = Frames::new(&protocol, 0xCA25);
+        for _ in 0..FRAMES {
+            let frame = frames.next_frame();
+            let report = interpreted(&protocol, &frame);
+            assert_eq!(generated::<P>(&frame), report, "{}: {:X?}", protocol.name, frame);
+            self.recognised += usize::from(report.is_ok());
+        }
+    }
+}
+
+#[test]
+fn random_frames_mean_the_same_to_both_engines_and_encode_to_the_same_bytes() {
+    let mut decoding = Decoding { recognised: 0 };
+    visit(&mut decoding);
+    assert!(decoding.recognised > FRAMES, "only {} frames were recognised at all", decoding.recognised);
+}
+
+/// Values around the limits, between the steps, and at random.
+fn candidates(signal: &Signal, random: &mut fastrand::Rng) -> Vec<f64> {
+    match &signal.encoding {
+        Encoding::Number { .. } | Encoding::Float => {
+            let limits = signal.range.iter().flat_map(|range| [range.minimum.to_f64(), range.maximum.to_f64()]);
+            let mut values = vec![0.0, -0.0, 0.5, 1.5, 2.5, -0.5, -1.5, 0.049_999_999_999_999_99, f64::NAN, f64::INFINITY, 1e300];
+            values.extend(limits.flat_map(|limit| [limit, limit.next_up(), limit.next_down()]));
+            values.extend((0..40).map(|_| random.f64() * 2_f64.powi(random.i32(-12..40)) * f64::from(random.i8(-1..=1))));
+            values
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The signals of the generated code, by message.
+type Signals = BTreeMap<&'static str, &'static [&'static dyn AnySignal]>;
+
+/// Collects the signals of the generated code from frames that carry them.
+fn signals<P: canspec_runtime::Protocol>(protocol: &Protocol) -> Signals {
+    let mut frames = Frames::new(protocol, 0x516);
+    let mut signals = Signals::new();
+    for frame in std::iter::repeat_with(|| frames.next_frame()).take(20_000) {
+        let Ok(received) = Received::<P>::decode(&received_frame(&frame)) else { continue };
+        let carried = received.message.layout().signals();
+        let known = signals.entry(received.exchange().message()).or_insert(carried);
+        if known.len() < carried.len() {
+            *known = carried;
+        }
+    }
+    signals
+}
+
+/// Writes a value through a signal of the generated code.
+fn written(known: &dyn AnySignal, value: f64, request: bool) -> Option<[u8; 8]> {
+    let mut payload = if request { Payload::within_limits([0; 8]) } else { Payload::new([0; 8]) };
+    known.write(Meaning::Number(Number::Float(value)), &mut payload).ok().map(|()| *payload.data())
+}
+
+struct Values;
+
+impl Visitor for Values {
+    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
+        let protocol = protocol(path);
+        let mut random = fastrand::Rng::with_seed(0xE2C0);
+        let generated = signals::<P>(&protocol);
+        for message in &protocol.messages {
+            for signal in &message.signals {
+                let known = generated[message.name.as_str()].iter().find(|known| known.name() == signal.name);
+                let known = known.expect("both engines know the signal");
+                for value in candidates(signal, &mut random) {
+                    compare_encoding(&protocol, message, signal, *known, value);
+                }
+            }
+        }
+    }
+}
+
+fn compare_encoding(protocol: &Protocol, message: &Message, signal: &Signal, known: &dyn AnySignal, value: f64) {
+    for request in [true, false] {
+        let bits = raw_of(protocol, message, signal, &Input::Number(value), request).ok();
+        let expected = bits.map(|bits| {
+            let mut data = [0; 8];
+            signal.place.put(&mut data, bits);
+            data
+        });
+        let data = written(known, value, request);
+        assert_eq!(data, expected, "{}.{}.{} = {value}, request: {request}", protocol.name, message.name, signal.name);
+    }
+}
+
+#[test]
+fn random_values_are_refused_by_both_engines_or_encode_to_the_same_bits() {
+    visit(&mut Values);
+}

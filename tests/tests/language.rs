@@ -1,0 +1,209 @@
+//! The language reference and the vendor guide: their YAML is compiled, and the reference lists every key there is.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use canspec_codegen::compile;
+use canspec_codegen::diagnostic::Diagnostics;
+use canspec_codegen::source::Source;
+
+const REFERENCE: &str = "docs/language.md";
+const VENDOR_GUIDE: &str = "docs/adding-a-vendor.md";
+
+/// Headings of the reference, each with a spec fragment in which `nothing` stands where the keys below that heading may.
+const PLACES: [(&str, &str); 22] = [
+    ("The top level", "nothing: x"),
+    ("`document`", "document: {title: t, version: v, nothing: x}"),
+    ("Fields", "identifier:\n  command: {bits: 28..16, nothing: x}"),
+    ("Fields", "header:\n  function: {bytes: 0, nothing: x}"),
+    ("Fields", "types:\n  level: {nothing: x}"),
+    ("Fields", "types:\n  level: {fields: {part: {nothing: x}}}"),
+    ("Fields", "messages:\n  other: {access: [read], fields: {level: {nothing: x}}}"),
+    ("Fields", "messages:\n  other: {access: [read], value: {nothing: x}}"),
+    ("Fields", "models:\n  small: {types: {level: {nothing: x}}}"),
+    ("Status bits", "types:\n  level: {status: {low: {bit: 0, nothing: x}}}"),
+    ("Examples of a type", "types:\n  level: {examples: [{bytes: 00, means: 0, nothing: x}]}"),
+    ("`addressing`", "addressing:\n  all: {nothing: x}"),
+    ("`access`", "access:\n  scan: {nothing: x}"),
+    ("`foreign`", "foreign:\n  others: {match: {command: 1}, nothing: x}"),
+    ("`messages`", "messages:\n  other: {access: [read], nothing: x}"),
+    ("Examples of frames", "messages:\n  other: {access: [read], examples: [{nothing: x}]}"),
+    ("Examples of frames", "examples:\n  start: {frames: [{nothing: x}]}"),
+    ("`examples`", "examples:\n  start: {frames: [], nothing: x}"),
+    ("`models`", "models:\n  small: {nothing: x}"),
+    ("`timing`", "timing:\n  pause: {time: 1 s, nothing: x}"),
+    ("`procedures`", "procedures:\n  start: {steps: [], nothing: x}"),
+    ("`errata`", "errata:\n  E1: {kind: note, prints: a, uses: b, because: c, nothing: x}"),
+];
+
+#[test]
+fn every_block_of_the_reference_does_what_it_says() {
+    check_blocks(REFERENCE);
+}
+
+#[test]
+fn every_block_of_the_vendor_guide_does_what_it_says() {
+    check_blocks(VENDOR_GUIDE);
+}
+
+#[test]
+fn the_reference_lists_exactly_the_keys_that_are_read() {
+    let text = read(REFERENCE);
+    let blocks = blocks(&text);
+    let smallest = &blocks.first().expect("the reference starts with a whole spec").lines;
+    for (heading, probe) in PLACES {
+        let spec = merged(smallest, &numbered(probe));
+        assert_eq!(listed_keys(&text, heading), allowed_keys(&compiled(&spec)), "the keys below `{heading}`");
+    }
+}
+
+/// A line of a document and its number, counted from 1.
+type Line<'a> = (usize, &'a str);
+
+/// A key and the lines of its entry.
+type Entry<'a> = (&'a str, Vec<Line<'a>>);
+
+/// A block of YAML, and the rule that it breaks if it is there to show that.
+struct Block<'a> {
+    fails: Option<&'a str>,
+    lines: Vec<Line<'a>>,
+}
+
+fn read(document: &str) -> String {
+    let path = format!("{}/../{document}", env!("CARGO_MANIFEST_DIR"));
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+fn check_blocks(document: &str) {
+    let text = read(document);
+    let blocks = blocks(&text);
+    let smallest = &blocks.first().expect("a document starts with a whole spec").lines;
+    let complaints: Vec<_> = blocks.iter().filter_map(|block| complaint(document, smallest, block)).collect();
+    assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
+}
+
+/// Says what is wrong with a block.
+fn complaint(document: &str, smallest: &[Line], block: &Block) -> Option<String> {
+    let spec = if is_whole(block) { block.lines.clone() } else { merged(smallest, &block.lines) };
+    let diagnostics = compiled(&spec);
+    let rules: BTreeSet<_> = diagnostics.located().map(|found| found.rule).collect();
+    if rules == block.fails.into_iter().collect() {
+        return None;
+    }
+    let (first, _) = block.lines.first()?;
+    let wanted = block.fails.map_or_else(|| "compiles".to_owned(), |rule| format!("fails by the rule `{rule}`"));
+    Some(format!("{document}:{first}: this block {wanted}, but:\n{}", listing(document, &spec, &diagnostics)))
+}
+
+/// Lists what is wrong by the lines of the document.
+fn listing(document: &str, spec: &[Line], diagnostics: &Diagnostics) -> String {
+    let lines = diagnostics.located().map(|found| {
+        let line = found.place.and_then(|place| spec.get(place.line - 1)).map_or(0, |(number, _)| *number);
+        format!("  {document}:{line}: {}[{}]: {}", found.severity, found.rule, found.message)
+    });
+    let lines: Vec<_> = lines.collect();
+    if lines.is_empty() { "  nothing is wrong with it".to_owned() } else { lines.join("\n") }
+}
+
+fn compiled(spec: &[Line]) -> Diagnostics {
+    let text: String = spec.iter().map(|(_, text)| format!("{text}\n")).collect();
+    match Source::new("spec.yaml", text.into_bytes()) {
+        Ok(source) => compile(source).diagnostics,
+        Err(diagnostics) => diagnostics,
+    }
+}
+
+/// Returns the blocks of a document that are fenced as YAML.
+fn blocks(text: &str) -> Vec<Block<'_>> {
+    let mut blocks = Vec::new();
+    let mut lines = numbered(text).into_iter();
+    while let Some((number, line)) = lines.next() {
+        let Some(info) = line.strip_prefix("```yaml") else { continue };
+        let fails = info.trim().strip_prefix("fails=");
+        assert!(fails.is_some() || info.trim().is_empty(), "line {number}: `{info}` says nothing to this test");
+        blocks.push(Block { fails, lines: lines.by_ref().take_while(|(_, line)| *line != "```").collect() });
+    }
+    blocks
+}
+
+fn numbered(text: &str) -> Vec<Line<'_>> {
+    text.lines().enumerate().map(|(index, line)| (index + 1, line)).collect()
+}
+
+fn is_whole(block: &Block) -> bool {
+    block.lines.iter().any(|(_, line)| line.starts_with("canspec:"))
+}
+
+/// Adds a fragment to a spec: entries of its maps are added to those of the spec and win; all else is replaced.
+fn merged<'a>(spec: &[Line<'a>], fragment: &[Line<'a>]) -> Vec<Line<'a>> {
+    let mut sections = entries(spec, 0);
+    for section in entries(fragment, 0) {
+        let known = sections.iter().find(|(key, _)| *key == section.0);
+        let section = known.and_then(|known| extended(known, &section)).unwrap_or(section);
+        put(&mut sections, section);
+    }
+    lines_of(sections)
+}
+
+/// Joins two sections that are maps; an identifier is one layout and is never joined.
+fn extended<'a>(known: &Entry<'a>, section: &Entry<'a>) -> Option<Entry<'a>> {
+    let is_map =
+        |(key, lines): &Entry| *key != "identifier" && lines.first().is_some_and(|(_, line)| line.ends_with(':'));
+    if !is_map(known) || !is_map(section) {
+        return None;
+    }
+    let (heading, below) = known.1.split_first()?;
+    let mut joined = entries(below, 2);
+    for entry in entries(&section.1, 2) {
+        put(&mut joined, entry);
+    }
+    let lines = std::iter::once(*heading).chain(lines_of(joined));
+    Some((known.0, lines.collect()))
+}
+
+fn put<'a>(entries: &mut Vec<Entry<'a>>, entry: Entry<'a>) {
+    match entries.iter_mut().find(|(key, _)| *key == entry.0) {
+        Some(known) => *known = entry,
+        None => entries.push(entry),
+    }
+}
+
+fn lines_of(entries: Vec<Entry>) -> Vec<Line> {
+    entries.into_iter().flat_map(|(_, lines)| lines).collect()
+}
+
+/// Splits a map in block form at its keys, which are indented so far.
+fn entries<'a>(lines: &[Line<'a>], indent: usize) -> Vec<Entry<'a>> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for &(number, line) in lines {
+        let starts = line.len() - line.trim_start().len() == indent && !line.trim_start().is_empty();
+        match entries.last_mut() {
+            _ if starts => entries.push((line.split(':').next().unwrap_or(line).trim(), vec![(number, line)])),
+            Some((_, lines)) => lines.push((number, line)),
+            None => {}
+        }
+    }
+    entries
+}
+
+/// Returns the keys in the table rows below a heading of the reference.
+fn listed_keys<'a>(text: &'a str, heading: &str) -> BTreeSet<&'a str> {
+    let level = |line: &str| line.bytes().take_while(|byte| *byte == b'#').count();
+    let mut lines = text.lines().skip_while(|line| level(line) == 0 || line.trim_start_matches('#').trim() != heading);
+    assert!(lines.next().is_some(), "the reference has no heading `{heading}`");
+    let rows = lines.take_while(|line| level(line) == 0).filter_map(|line| line.strip_prefix("| "));
+    rows.flat_map(|row| quoted(row.split(" |").next().unwrap_or(row))).collect()
+}
+
+/// Returns the keys that the compiler names where it finds another one.
+fn allowed_keys(diagnostics: &Diagnostics) -> BTreeSet<&str> {
+    let unknown = diagnostics.located().find(|found| found.rule == "unknown_key");
+    let help = unknown.and_then(|found| found.help).unwrap_or_else(|| panic!("no unknown key in {diagnostics}"));
+    let (_, allowed) = help.split_once("allowed here: ").unwrap_or_else(|| panic!("no keys in `{help}`"));
+    quoted(allowed).collect()
+}
+
+/// Returns what stands in backquotes.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}

@@ -1,0 +1,143 @@
+//! Raw values survive the way to a physical value and back, in both engines; set-points on the grid meet their own raw value.
+
+use canspec_codegen::interpret::{Input, Value, physical, raw_of};
+use canspec_codegen::model::{Encoding, Message, Protocol, Signal};
+use canspec_protocols::infy::SetModuleOutput;
+use canspec_runtime::{AnySignal, Payload, Reading, Received};
+use canspec_tests::{Frames, Visitor, protocol, visit};
+
+/// How many random raw values a signal of more than 16 bits sees.
+const SAMPLE: usize = 20_000;
+
+/// Every raw value up to 16 bits; beyond, the edges and a sample.
+fn raw_values(width: u8) -> Vec<u64> {
+    let max = u64::MAX >> (64 - width);
+    if width <= 16 {
+        return (0..=max).collect();
+    }
+    let mut random = fastrand::Rng::with_seed(width.into());
+    let mut values: Vec<_> = (0..SAMPLE).map(|_| random.u64(..) & max).collect();
+    for bit in 0..width {
+        let power = 1 << bit;
+        values.extend([power - 1, power, power + 1, max - power, max ^ power].map(|raw| raw & max));
+    }
+    values
+}
+
+struct Sweep {
+    signals: usize,
+}
+
+impl Visitor for Sweep {
+    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
+        let protocol = protocol(path);
+        for message in &protocol.messages {
+            for signal in &message.signals {
+                interpreter(&protocol, message, signal);
+                self.signals += 1;
+            }
+        }
+        generated::<P>(&protocol);
+    }
+}
+
+fn interpreter(protocol: &Protocol, message: &Message, signal: &Signal) {
+    for bits in raw_values(signal.place.width()) {
+        let value = physical(protocol, signal, bits);
+        let back = raw_of(protocol, message, signal, &input(protocol, signal, &value, bits), false);
+        assert_eq!(back, Ok(bits), "{}.{}.{}: {value:?}", protocol.name, message.name, signal.name);
+    }
+}
+
+fn input(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Input {
+    match value {
+        Value::None => Input::Raw(bits.into()),
+        Value::Integer(value) => Input::Integer(*value),
+        Value::Number(value) => Input::Number(*value),
+        Value::Name(text) | Value::Text(text) => Input::Text(text.clone()),
+        Value::Status { set, unknown } => {
+            let Encoding::Status(word) = signal.encoding else { panic!("only status words have bits") };
+            let bits = protocol.status_words[word].bits.iter().filter(|bit| set.contains(&bit.bit));
+            Input::Status { set: bits.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
+        }
+    }
+}
+
+/// Sweeps the signals of the generated code, found in frames that carry them.
+fn generated<P: canspec_runtime::Protocol>(protocol: &Protocol) {
+    let mut frames = Frames::new(protocol, 0x5EED);
+    let mut swept = Vec::new();
+    for frame in std::iter::repeat_with(|| frames.next_frame()).take(20_000) {
+        let mut data = [0; 8];
+        data[..frame.data.len()].copy_from_slice(&frame.data);
+        let length = u8::try_from(frame.data.len()).expect("at most 8 bytes");
+        let frame = canspec_runtime::Frame::new_raw(frame.id, frame.extended, data, length);
+        let Ok(received) = Received::<P>::decode(&frame) else { continue };
+        for signal in received.message.layout().signals() {
+            let name = (received.exchange().message(), signal.name());
+            if !swept.contains(&name) {
+                swept.push(name);
+                sweep(*signal);
+            }
+        }
+    }
+    assert_eq!(swept.len(), protocol.messages.iter().map(|message| message.signals.len()).sum::<usize>());
+}
+
+fn sweep(signal: &dyn AnySignal) {
+    let place = signal.place();
+    for bits in raw_values(place.width()) {
+        let mut data = [0; 8];
+        place.put(&mut data, bits);
+        signal.read(&data, &mut |reading: Reading| {
+            let mut payload = Payload::new([0; 8]);
+            if reading.meaning == canspec_runtime::Meaning::None {
+                return;
+            }
+            let written = signal.write(reading.meaning, &mut payload);
+            assert_eq!(written.map(|()| *payload.data()), Ok(data), "{}: {:?}", signal.name(), reading.meaning);
+        });
+    }
+}
+
+#[test]
+fn every_raw_value_survives_the_way_to_its_physical_value_and_back() {
+    let mut sweep = Sweep { signals: 0 };
+    visit(&mut sweep);
+    assert!(sweep.signals >= 34, "{} signals", sweep.signals);
+}
+
+/// Returns `millivolts` as a person writes them in volts: the text decides the double, not an operation of ours.
+fn volts(millivolts: u32) -> f64 {
+    let text = format!("{}.{:03}", millivolts / 1000, millivolts % 1000);
+    text.parse().expect("a decimal number")
+}
+
+#[test]
+fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_generated_code() {
+    for millivolts in 0..=1_000_000 {
+        let mut payload = Payload::new([0; 8]);
+        SetModuleOutput::VOLTAGE.encode(volts(millivolts), &mut payload).expect("the value fits 32 bits");
+        assert_eq!(payload.data()[..4], millivolts.to_be_bytes());
+    }
+}
+
+#[test]
+fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_the_interpreter() {
+    let protocol = protocol(concat!(env!("CARGO_MANIFEST_DIR"), "/../specs/infy.yaml"));
+    let message = protocol.messages.iter().find(|message| message.name == "set_module_output").expect("a message");
+    for millivolts in 0..=1_000_000 {
+        let bits = raw_of(&protocol, message, &message.signals[0], &Input::Number(volts(millivolts)), true);
+        assert_eq!(bits, Ok(millivolts.into()));
+    }
+}
+
+#[test]
+fn a_value_between_two_steps_goes_to_the_nearer_one_and_a_tie_away_from_zero() {
+    // Halves of a step that a double holds exactly: 1/16 V is 62.5 mV.
+    for (volts, millivolts) in [(0.0625, 63), (0.1875, 188), (0.0624, 62), (0.000_4, 0), (0.000_6, 1), (1.0625, 1063)] {
+        let mut payload = Payload::new([0; 8]);
+        SetModuleOutput::VOLTAGE.encode(volts, &mut payload).expect("the value fits");
+        assert_eq!(SetModuleOutput::VOLTAGE.get(payload.data()), millivolts, "{volts} V");
+    }
+}
