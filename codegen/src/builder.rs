@@ -1,6 +1,7 @@
 //! Compiles specs from a build script.
 
 use std::ffi::OsStr;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -58,10 +59,10 @@ impl Builder {
                     .ok_or_else(|| io::Error::other("OUT_DIR is not set: this is for build scripts"))
                     .and_then(|out| write(Path::new(&out), &protocols));
                 if let Err(error) = written {
-                    println!("cargo::error=the generated code cannot be written: {error}");
+                    tell("error", format_args!("the generated code cannot be written: {error}"));
                 }
             }
-            Err(lines) => lines.iter().for_each(|line| println!("cargo::error={line}")),
+            Err(lines) => lines.iter().for_each(|line| tell("error", line)),
         }
     }
 
@@ -69,7 +70,7 @@ impl Builder {
     fn compiled(self) -> Result<Vec<Protocol>, Vec<String>> {
         let (mut protocols, mut errors) = (Vec::new(), Vec::new());
         for path in self.paths().map_err(|error| vec![error])? {
-            println!("cargo::rerun-if-changed={}", path.display());
+            tell("rerun-if-changed", path.display());
             match compile_file(&path) {
                 Ok(protocol) => protocols.push(protocol),
                 Err(diagnostics) => errors.extend(diagnostics.concise().lines().map(str::to_owned)),
@@ -82,7 +83,7 @@ impl Builder {
     fn paths(&self) -> Result<Vec<PathBuf>, String> {
         let mut paths = self.specs.clone();
         for folder in &self.folders {
-            println!("cargo::rerun-if-changed={}", folder.display());
+            tell("rerun-if-changed", folder.display());
             let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
             let files = entries.flatten().map(|entry| entry.path());
             paths.extend(files.filter(|path| path.extension() == Some(OsStr::new("yaml"))));
@@ -98,25 +99,32 @@ fn compile_file(path: &Path) -> Result<Protocol, Diagnostics> {
     match outcome.protocol {
         Some(protocol) => {
             let warnings = outcome.diagnostics.located().filter(|known| known.severity == Severity::Warning);
-            warnings.for_each(|warning| println!("cargo::warning={}", warning.message));
+            warnings.for_each(|warning| tell("warning", warning.message));
             Ok(protocol)
         }
         None => Err(outcome.diagnostics),
     }
 }
 
+/// Gives cargo an instruction.
+#[expect(clippy::print_stdout, reason = "cargo reads what a build script prints")]
+fn tell(instruction: &str, text: impl Display) {
+    println!("cargo::{instruction}={text}");
+}
+
 /// Writes a file for each protocol, and one that includes them all as modules.
 fn write(out: &Path, protocols: &[Protocol]) -> io::Result<()> {
-    let mut index = String::new();
     for protocol in protocols {
-        let name = &protocol.name;
-        write_changed(&out.join(format!("{name}.rs")), &emit::rust(protocol))?;
-        let title = protocol.title.replace('"', "'");
-        index.push_str(&format!(
-            "#[doc = \"{title}.\"]\npub mod {name} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\"));\n}}\n"
-        ));
+        write_changed(&out.join(format!("{}.rs", protocol.name)), &emit::rust(protocol))?;
     }
-    write_changed(&out.join("protocols.rs"), &index)
+    let modules: Vec<_> = protocols.iter().map(module).collect();
+    write_changed(&out.join("protocols.rs"), &modules.concat())
+}
+
+/// Returns the module that includes the file of a protocol.
+fn module(protocol: &Protocol) -> String {
+    let (name, title) = (&protocol.name, format!("{}.", protocol.title));
+    format!("#[doc = {title:?}]\npub mod {name} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\"));\n}}\n")
 }
 
 /// Leaves a file alone that has the text already, so that nothing is built again.

@@ -2,6 +2,7 @@
 
 mod direction;
 mod ambiguous;
+mod default_value;
 mod erratum;
 mod example;
 mod grid;
@@ -22,12 +23,13 @@ use crate::model::Protocol;
 type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what the protocol is, in order.
-const RULES: [Check; 10] = [
+const RULES: [Check; 11] = [
     outside_frame::check,
     overlap::check,
     grid::check,
     range_width::check,
     special_value::check,
+    default_value::check,
     direction::check,
     ambiguous::check,
     rust_name::check,

@@ -133,9 +133,11 @@ impl Diagnostics {
         self
     }
 
-    /// Adds a diagnostic.
+    /// Adds a diagnostic, once; many fields can take the same mistake from one type.
     pub fn push(&mut self, item: Diagnostic) {
-        self.items.push(item);
+        if !self.items.contains(&item) {
+            self.items.push(item);
+        }
     }
 
     /// Returns the text of the spec.

@@ -1,5 +1,6 @@
 //! The interpreter: decodes and encodes by the model, at run time.
 
+mod content;
 mod decode;
 mod encode;
 mod request;
@@ -17,19 +18,24 @@ use crate::model::{Kind, Protocol};
 /// A frame as it stood on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
+    /// Identifier.
     pub id: u32,
     /// 29-bit identifier rather than 11-bit.
     pub extended: bool,
     /// Data bytes, at most 8.
     pub data: Vec<u8>,
+    /// What sort of frame it is.
     pub form: Form,
 }
 
 /// What sort of frame it is; only data frames are ever recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
+    /// A classic data frame.
     Data,
+    /// A remote frame, which asks for data.
     Remote,
+    /// An error frame.
     Error,
     /// CAN FD.
     Fd,
@@ -42,6 +48,7 @@ pub struct Decoded {
     pub message: usize,
     /// Index into [`Protocol::accesses`].
     pub access: usize,
+    /// What the frame is for.
     pub kind: Kind,
     /// Index into [`Protocol::modes`], if one fits.
     pub addressing: Option<usize>,
@@ -49,11 +56,13 @@ pub struct Decoded {
     pub identifier: Vec<u32>,
     /// Payload selectors: index into [`Protocol::selectors`] and raw value.
     pub selectors: Vec<(usize, u64)>,
+    /// Values of the signals that the frame carries.
     pub signals: Vec<Reading>,
     /// Set bits of the data bytes that nothing covers, first byte first.
     pub reserved: [u8; 8],
     /// Data bytes of the frame.
     pub length: usize,
+    /// What the document does not foresee.
     pub notes: Vec<Note>,
 }
 
@@ -64,6 +73,7 @@ pub struct Reading {
     pub signal: usize,
     /// The bits, as the low bits of a number; not sign-extended.
     pub bits: u64,
+    /// The physical value.
     pub value: Value,
 }
 
@@ -78,9 +88,15 @@ pub enum Value {
     Number(f64),
     /// The name of a named value.
     Name(String),
+    /// A text, packed or in ASCII.
     Text(String),
-    /// Bit numbers that are set and have a name, and the set bits without one.
-    Status { set: Vec<u8>, unknown: u64 },
+    /// The set bits of a status word.
+    Status {
+        /// Numbers of the set bits that have a name.
+        set: Vec<u8>,
+        /// Set bits without a name.
+        unknown: u64,
+    },
 }
 
 /// Something about a recognised frame that the document does not foresee.
@@ -88,13 +104,28 @@ pub enum Value {
 pub struct Note {
     /// `error_code`, `reserved_bit`, `unknown_value`, `unknown_bit`, `address`, `addressing`, `access`, `out_of_range`, `not_finite`, `constant`.
     pub rule: &'static str,
+    /// What was found, in one sentence without a full stop.
     pub text: String,
 }
+
+/// The rules of notes.
+pub const NOTES: [&str; 8] = [
+    "error_code",
+    "addressing",
+    "address",
+    "unknown_value",
+    "unknown_bit",
+    "out_of_range",
+    "not_finite",
+    "reserved_bit",
+];
 
 /// A frame that is not recognised, as far as it could be split.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unrecognised {
+    /// Which test failed.
     pub problem: Problem,
+    /// What was found, in one sentence without a full stop.
     pub text: String,
     /// Values of the identifier's fields, in order; empty if it was not split.
     pub identifier: Vec<u32>,
@@ -107,10 +138,13 @@ pub struct Unrecognised {
 pub enum Problem {
     /// A remote, error or FD frame.
     Frame,
+    /// An identifier that belongs to somebody else.
     Foreign,
     /// Width, a fixed bit, or a direction that cannot be known.
     Identifier,
+    /// No message has these constants in the identifier, or in the data bytes.
     UnknownMessage,
+    /// Another number of data bytes.
     Length,
 }
 
@@ -127,15 +161,20 @@ impl Problem {
     }
 }
 
-/// What [`encode`] makes a frame of: the content of a decoded line.
+/// What [`encode()`] makes a frame of: the content of a decoded line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Content {
+    /// Name of the message.
     pub message: String,
+    /// Name of the access; `None` for whichever fits.
     pub access: Option<String>,
+    /// What the frame is for; `None` for whatever identifier and selectors show.
     pub kind: Option<Kind>,
     /// Named fields of the identifier and their raw values.
     pub identifier: Vec<(String, u64)>,
+    /// Selectors of the data bytes and their raw values.
     pub selectors: Vec<(String, u64)>,
+    /// Signals and their values.
     pub signals: Vec<(String, Input)>,
     /// Bits to set beside the signals, first byte first.
     pub reserved: Vec<u8>,
@@ -146,12 +185,19 @@ pub struct Content {
 pub enum Input {
     /// The raw value: sign-extended where the signal is signed, or the bit pattern.
     Raw(i128),
+    /// An unscaled number, or a whole one that is still to be scaled.
     Integer(i128),
+    /// A physical value.
     Number(f64),
     /// A name, or a text.
     Text(String),
-    /// Names of the set bits, and set bits without a name.
-    Status { set: Vec<String>, unknown: u64 },
+    /// The set bits of a status word.
+    Status {
+        /// Names of the set bits.
+        set: Vec<String>,
+        /// Set bits without a name.
+        unknown: u64,
+    },
 }
 
 /// Why a frame was not made; names message, signal, value, unit and limits.
@@ -165,6 +211,11 @@ impl fmt::Display for Refusal {
 }
 
 impl std::error::Error for Refusal {}
+
+/// Shows bytes as documents print them.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |text, byte| format!("{text}{byte:02X}"))
+}
 
 /// Shows an address field as documents print it.
 fn hexadecimal(value: u32) -> String {

@@ -15,32 +15,51 @@ pub struct Protocol {
     pub name: String,
     /// The spec's file name, without folders.
     pub file: String,
+    /// What the devices are, without a full stop.
     pub title: String,
+    /// The vendor document that the spec follows.
     pub document: Document,
     /// Bit rates of the bus in bit/s.
     pub bit_rates: Vec<u32>,
+    /// Layout of the identifier.
     pub identifier: Identifier,
     /// Fields whose constants choose a message: of the identifier, of the header, of a message.
     pub selectors: Vec<Selector>,
+    /// Named values of signals, selectors and fields of the identifier.
     pub enumerations: Vec<Enumeration>,
+    /// Status words of signals.
     pub status_words: Vec<StatusWord>,
+    /// Kinds of addresses that the addressing modes name.
     pub address_types: Vec<AddressType>,
+    /// Addressing modes in the order of the spec.
     pub modes: Vec<Mode>,
-    /// How an identifier shows that a frame goes to a module, and that it goes to the controller.
+    /// How an identifier shows that a frame goes to a module.
     pub to_module: Direction,
+    /// How an identifier shows that a frame goes to the controller.
     pub to_controller: Direction,
+    /// Accesses in the order of the spec.
     pub accesses: Vec<Access>,
+    /// Identifiers that are never sent, and refused on receipt.
     pub foreign: Vec<Foreign>,
+    /// Messages in the order of the spec.
     pub messages: Vec<Message>,
+    /// Device models in the order of the spec.
     pub models: Vec<DeviceModel>,
+    /// Times that the document states.
     pub timing: Vec<Timing>,
+    /// Procedures that the document describes.
     pub procedures: Vec<Procedure>,
     /// Examples of whole messages in the order of the spec, then those of the sequences.
     pub examples: Vec<Example>,
+    /// Examples of types: bytes alone, and the value they mean.
     pub value_examples: Vec<ValueExample>,
-    /// Remarks of the example sequences and of the types.
+    /// What the spec says beside the sequences of examples.
     pub sequences: Vec<Doc>,
+    /// What the spec says beside the types.
     pub types: Vec<Doc>,
+    /// Remarks of words of fields, which are no signals themselves.
+    pub words: Vec<Doc>,
+    /// Departures from the document.
     pub errata: Vec<Erratum>,
 }
 
@@ -48,9 +67,13 @@ pub struct Protocol {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Document {
+    /// Title as printed.
     pub title: String,
+    /// Version as printed.
     pub version: String,
+    /// Date of that version, if the spec states it.
     pub date: Option<String>,
+    /// Name of the file that was read, if the spec states it.
     pub file: Option<String>,
 }
 
@@ -58,12 +81,15 @@ pub struct Document {
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Doc {
+    /// What the item is, in a few words without a full stop.
     pub title: Option<String>,
+    /// What else a reader must know.
     pub note: Option<String>,
     /// The item's own section, or that of what it stands in.
     pub section: Option<String>,
     /// Errata by name.
     pub errata: Vec<String>,
+    /// Place in the spec.
     pub path: Path,
 }
 
@@ -77,6 +103,7 @@ pub struct Identifier {
     pub fields: Vec<IdentifierField>,
     /// Bits with a fixed value: constant fields, `ones` and `zeros`.
     pub mask: u32,
+    /// Values of these bits.
     pub value: u32,
 }
 
@@ -84,11 +111,15 @@ pub struct Identifier {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct IdentifierField {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// Least significant bit.
     pub shift: u8,
+    /// Number of bits, `1..=29`.
     pub width: u8,
+    /// The only value of this protocol, if there is one.
     pub constant: Option<u32>,
     /// Sent unless the caller says otherwise.
     pub send: Option<u32>,
@@ -115,8 +146,11 @@ impl IdentifierField {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Selector {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// Where it stands.
     pub place: SelectorPlace,
     /// The value of a reply that is no error reply.
     pub normal: Option<u64>,
@@ -130,6 +164,7 @@ pub struct Selector {
 pub enum SelectorPlace {
     /// Index into [`Identifier::fields`].
     Identifier(usize),
+    /// In the data bytes.
     Payload(Place),
 }
 
@@ -139,9 +174,11 @@ pub enum SelectorPlace {
 pub struct Enumeration {
     /// Name of the type, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// Width of the raw value in bits.
     pub width: u8,
+    /// Named values in the order of the spec.
     pub values: Vec<NamedValue>,
 }
 
@@ -151,6 +188,7 @@ pub struct Enumeration {
 pub struct NamedValue {
     /// Raw value, sign-extended where the signal is signed.
     pub raw: i128,
+    /// Name in the spec, in `snake_case`.
     pub name: String,
 }
 
@@ -160,7 +198,9 @@ pub struct NamedValue {
 pub struct StatusWord {
     /// Name of the type, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// Number of bits, `1..=64`.
     pub width: u8,
     /// Bits by number, the lowest first.
     pub bits: Vec<StatusBit>,
@@ -177,15 +217,21 @@ impl StatusWord {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct StatusBit {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// Number of the bit, 0 = least significant.
     pub bit: u8,
+    /// How grave the set bit is, if the document says so.
     pub severity: Option<Severity>,
+    /// Condition that sets the bit.
     pub set_when: Option<String>,
+    /// Condition that clears the bit.
     pub clear_when: Option<String>,
     /// What the device does while the bit is set.
     pub effect: Option<String>,
+    /// What the device's LED shows while the bit is set.
     pub led: Option<String>,
 }
 
@@ -205,13 +251,17 @@ pub enum Severity {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct AddressType {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
-    /// Documented numbers.
+    /// First number that the document names.
     pub first: i64,
+    /// Last number that the document names.
     pub last: i64,
-    /// raw = (number - offset) * sign, where sign is 1 or -1.
+    /// Number of raw 0.
     pub offset: i64,
+    /// Step of the number from one raw value to the next, 1 or -1: raw = (number - offset) * sign.
     pub sign: i64,
     /// A number outside the range is something else, rather than an undocumented address.
     pub strict: bool,
@@ -246,11 +296,17 @@ impl AddressType {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Mode {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// What the identifier of a request shows.
     pub request: Option<AddressPattern>,
+    /// What the identifier of a reply or report shows if the one module addressed sends it.
     pub one: Option<AddressPattern>,
+    /// What the identifier of a reply or report shows if each module addressed sends one.
     pub each: Option<AddressPattern>,
+    /// What the identifier of a reply or report shows if one module sends it for all.
     pub coordinator: Option<AddressPattern>,
     /// The address type that the caller chooses in a request: index into [`Protocol::address_types`].
     pub target: Option<usize>,
@@ -272,11 +328,13 @@ impl Mode {
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct AddressPattern {
-    /// Constants as mask and value over the identifier.
+    /// Bits of the identifier that are constant.
     pub mask: u32,
+    /// Values of these bits.
     pub value: u32,
     /// How many fields the constants cover.
     pub constants: usize,
+    /// Fields that hold addresses.
     pub addresses: Vec<Address>,
 }
 
@@ -296,6 +354,7 @@ pub struct Address {
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Direction {
+    /// Lists of tests; a direction is shown if all tests of one list hold.
     pub any: Vec<Vec<FieldTest>>,
 }
 
@@ -353,7 +412,9 @@ pub enum Who {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Access {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// The kinds of frames that exist.
     pub kinds: Vec<Kind>,
@@ -369,7 +430,9 @@ pub struct Access {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Foreign {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// Inclusive ranges of raw values, all of which must hold: `None` is the identifier as a whole, else an index into [`Identifier::fields`].
     pub ranges: Vec<(Option<usize>, u32, u32)>,
@@ -379,16 +442,19 @@ pub struct Foreign {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Message {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// Data bytes of its frames.
     pub length: u8,
     /// Signals by first byte, then as written.
     pub signals: Vec<Signal>,
+    /// Accesses by which it travels.
     pub accesses: Vec<MessageAccess>,
     /// The frames that exist: one for each access and kind.
     pub shapes: Vec<Shape>,
-    /// Index into [`Protocol::timing`].
+    /// Index into [`Protocol::timing`]: how often its report comes, if not as its access says.
     pub every: Option<usize>,
 }
 
@@ -408,6 +474,7 @@ pub struct MessageAccess {
 pub struct Shape {
     /// Index into [`Message::accesses`].
     pub access: usize,
+    /// What the frame is for.
     pub kind: Kind,
     /// What chooses this frame: selectors (index into [`Protocol::selectors`]) and their values.
     pub constants: Vec<(usize, u64)>,
@@ -421,12 +488,17 @@ pub struct Shape {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Signal {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
     /// The entries of `types` it takes keys from, the last first.
     pub types: Vec<String>,
+    /// Bits of the data bytes.
     pub place: Place,
+    /// What these bits mean.
     pub encoding: Encoding,
+    /// Unit of the physical value.
     pub unit: Option<Unit>,
     /// Physical limits.
     pub range: Option<Range>,
@@ -443,7 +515,14 @@ pub struct Signal {
 #[non_exhaustive]
 pub enum Encoding {
     /// physical = raw * scale + offset.
-    Number { signed: bool, scale: Rational, offset: Rational },
+    Number {
+        /// Two's complement.
+        signed: bool,
+        /// Physical value of one step.
+        scale: Rational,
+        /// Physical value of raw 0.
+        offset: Rational,
+    },
     /// IEEE 754 single precision.
     Float,
     /// Index into [`Protocol::enumerations`].
@@ -453,7 +532,12 @@ pub enum Encoding {
     /// ASCII, the first character at the most significant byte of the place.
     Text,
     /// One text made of several parts.
-    Packed { pieces: Vec<Piece>, parts: Vec<Signal> },
+    Packed {
+        /// What the text consists of, in order.
+        pieces: Vec<Piece>,
+        /// Bits of the payload that the pieces name.
+        parts: Vec<Signal>,
+    },
 }
 
 impl Encoding {
@@ -467,10 +551,13 @@ impl Encoding {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Piece {
+    /// A text that stands as it is.
     Literal(String),
-    /// Index of the part, and to how many digits a number is filled with zeros.
+    /// The text or the number of a part.
     Part {
+        /// Index into the parts of the packed value.
         part: usize,
+        /// To how many digits a number is filled with zeros.
         digits: Option<usize>,
     },
 }
@@ -479,7 +566,9 @@ pub enum Piece {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Range {
+    /// Lowest value.
     pub minimum: Rational,
+    /// Highest value.
     pub maximum: Rational,
 }
 
@@ -520,11 +609,17 @@ impl Unit {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct DeviceModel {
+    /// Name in the spec, as the vendor spells it.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// Item numbers.
     pub items: Vec<String>,
+    /// Most devices that can work together, if the document says so.
     pub max_parallel: Option<u32>,
+    /// Bit rates of this model in bit/s; empty if the document says nothing of it.
     pub bit_rates: Vec<u32>,
+    /// Ratings that no message carries, by name.
     pub facts: Vec<(String, Quantity)>,
     /// What this model changes of a type, by the type's name.
     pub types: Vec<TypeOfModel>,
@@ -534,10 +629,13 @@ pub struct DeviceModel {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct TypeOfModel {
+    /// Name of the type.
     pub name: String,
+    /// Physical limits of this model, if it has its own.
     pub range: Option<Range>,
     /// Physical value that the device starts with.
     pub default: Option<Rational>,
+    /// What the spec says beside it.
     pub doc: Doc,
 }
 
@@ -545,7 +643,9 @@ pub struct TypeOfModel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Quantity {
+    /// The number.
     pub value: Rational,
+    /// Its unit, if it has one.
     pub unit: Option<Unit>,
 }
 
@@ -553,10 +653,15 @@ pub struct Quantity {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Timing {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// The shortest and the longest time.
     pub range: Range,
+    /// Unit of the range.
     pub unit: Unit,
+    /// Lower limit that holds beside a recommended time.
     pub minimum: Option<Quantity>,
 }
 
@@ -564,8 +669,11 @@ pub struct Timing {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Procedure {
+    /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// One sentence each; names of messages stand in backquotes.
     pub steps: Vec<String>,
 }
 
@@ -573,9 +681,13 @@ pub struct Procedure {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Example {
+    /// What the spec says beside it.
     pub doc: Doc,
+    /// What the spec says the frame is for.
     pub kind: Kind,
+    /// Identifier.
     pub id: u32,
+    /// 29-bit identifier rather than 11-bit.
     pub extended: bool,
     /// `None` where the document prints an identifier alone.
     pub data: Option<Vec<u8>>,
@@ -585,6 +697,7 @@ pub struct Example {
     pub means: Vec<Meaning>,
     /// Rules of the notes that decoding must report.
     pub notes: Vec<String>,
+    /// How the frame fails, if it has to.
     pub fails: Option<Failure>,
     /// The document does not print it.
     pub ours: bool,
@@ -602,6 +715,7 @@ pub struct Meaning {
     pub text: String,
     /// The raw bits, if the value lies on the signal's grid.
     pub raw: Option<u64>,
+    /// Place in the spec.
     pub path: Path,
 }
 
@@ -609,9 +723,13 @@ pub struct Meaning {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Failure {
+    /// Its identifier has the wrong width or a wrong fixed bit, or does not show its direction.
     Identifier,
+    /// Its identifier belongs to somebody else.
     Foreign,
+    /// It has another number of data bytes.
     Length,
+    /// No message has its constants.
     UnknownMessage,
     /// It decodes as another message.
     Message,
@@ -643,10 +761,13 @@ impl Failure {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ValueExample {
+    /// What the spec says beside it.
     pub doc: Doc,
     /// The type as a signal at the first byte.
     pub signal: Signal,
+    /// The bytes, followed by zeros.
     pub data: [u8; 8],
+    /// The value they mean.
     pub meaning: Meaning,
 }
 
@@ -654,12 +775,19 @@ pub struct ValueExample {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Erratum {
+    /// Name in the spec.
     pub name: String,
+    /// What is wrong: `vendor`, `translation`, `ocr`, `unclear`, `gap` or `note`.
     pub kind: String,
+    /// Section of the document that prints it.
     pub section: Option<String>,
+    /// What the document prints.
     pub prints: String,
+    /// What the spec uses.
     pub uses: String,
+    /// Why the spec departs from the document.
     pub because: String,
+    /// Place in the spec.
     pub path: Path,
 }
 
@@ -684,6 +812,7 @@ impl Protocol {
         docs.extend(self.procedures.iter().map(|procedure| &procedure.doc));
         docs.extend(self.sequences.iter());
         docs.extend(self.types.iter());
+        docs.extend(self.words.iter());
         docs.extend(self.examples.iter().map(|example| &example.doc));
         docs.extend(self.value_examples.iter().map(|example| &example.doc));
         docs

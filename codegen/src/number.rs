@@ -10,8 +10,8 @@ pub struct Rational {
     denominator: i128,
 }
 
-/// Largest numerator and denominator that a spec may write: products of two still fit an `i128`.
-const LIMIT: i128 = 1 << 62;
+/// What numerators and denominators of a spec stay below, so that every raw value of 64 bits can be written.
+const LIMIT: i128 = 1 << 64;
 
 impl Rational {
     /// Zero.
@@ -43,13 +43,13 @@ impl Rational {
             None => (1, numerator),
         };
         let (digits, places) = match magnitude.split_once('.') {
-            Some((whole, fraction)) if !fraction.is_empty() => (format!("{whole}{fraction}"), fraction.len()),
+            Some((whole, fraction)) if !whole.is_empty() && !fraction.is_empty() => (format!("{whole}{fraction}"), fraction.len()),
             Some(_) => return None,
             None => (magnitude.to_owned(), 0),
         };
         let power = 10_i128.checked_pow(u32::try_from(places).ok()?)?;
         let value = Self::new(negative * natural(&digits)?, denominator.checked_mul(power)?)?;
-        (value.numerator.abs() <= 2 * LIMIT && value.denominator <= LIMIT).then_some(value)
+        (value.numerator.abs() < LIMIT && value.denominator < LIMIT).then_some(value)
     }
 
     /// Returns the numerator.

@@ -5,6 +5,7 @@ mod addressing;
 mod data;
 mod examples;
 mod identifier;
+mod keys;
 mod messages;
 mod patterns;
 mod signals;
@@ -36,29 +37,38 @@ struct Tables {
     selectors: Vec<model::Selector>,
     enumerations: Vec<model::Enumeration>,
     status_words: Vec<model::StatusWord>,
+    /// Remarks of words, which are no signals themselves.
+    words: Vec<model::Doc>,
+    /// Types that a field names.
+    used_types: Vec<String>,
 }
 
 impl Resolver<'_> {
     fn protocol(mut self, file: &str) -> Option<Protocol> {
         self.version();
         let name = self.protocol_name();
+        let bit_rates = self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone());
+        let timing = self.timing();
+        let device_models = self.models();
+        let procedures = self.procedures();
+        let errata = self.errata();
         let identifier = self.identifier()?;
         self.header_selectors();
-        let address_types = self.address_types(&identifier);
+        let address_types = self.address_types();
         let modes = self.modes(&identifier, &address_types);
         let (to_module, to_controller) = addressing::directions(&identifier, &address_types, &modes);
-        let timing = self.timing();
         let accesses = self.accesses(&modes, &timing);
         let messages = self.messages(&identifier, &modes, &accesses, &timing);
         let foreign = self.foreign(&identifier);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
+        self.check_types_used();
         Some(Protocol {
             name,
             file: file.to_owned(),
             title: self.spec.title.clone(),
             document: self.document(),
-            bit_rates: self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone()),
+            bit_rates,
             identifier,
             address_types,
             modes,
@@ -67,14 +77,15 @@ impl Resolver<'_> {
             accesses,
             foreign,
             messages,
-            models: self.models(),
+            models: device_models,
             timing,
-            procedures: self.procedures(),
+            procedures,
             examples,
             value_examples,
             sequences: self.sequences(),
             types: self.type_docs(),
-            errata: self.errata(),
+            errata,
+            words: self.tables.words,
             selectors: self.tables.selectors,
             enumerations: self.tables.enumerations,
             status_words: self.tables.status_words,

@@ -10,13 +10,14 @@ pub struct Rule {
 }
 
 /// Every rule, in the order of the stages.
-pub const RULES: [Rule; 38] = [
+pub const RULES: [Rule; 41] = [
     rule("file", "the file cannot be read"),
     rule("encoding", "the text is not UTF-8, or holds a character that has no place in a spec"),
     rule("yaml", "the text is not YAML, or uses a part of YAML that a spec does without"),
     rule("plain_word", "a word such as `on` or `null`, which readers of YAML take for different things, is not quoted"),
     rule("duplicate_key", "a key stands twice in one map"),
     rule("unknown_key", "a key does not exist in this place"),
+    rule("misplaced_key", "a key means nothing where it stands"),
     rule("missing_key", "a key that has to be there is not"),
     rule("wrong_kind", "a text, a list or a map stands where another of the three belongs"),
     rule("version", "the spec is written in another version of the language"),
@@ -29,6 +30,7 @@ pub const RULES: [Rule; 38] = [
     rule("identifier_layout", "the fields of the identifier leave a gap, share bits, or do not fill 11 or 29 bits"),
     rule("type", "keys of a field or of its types contradict each other"),
     rule("format", "the text form of a packed value does not fit its parts"),
+    rule("unused_type", "nothing uses a type"),
     rule("named_value", "two named values share a raw value or a name"),
     rule("value_width", "a named raw value does not fit the bits of its field"),
     rule("status_bit", "one bit of a status word has two names"),
@@ -42,6 +44,7 @@ pub const RULES: [Rule; 38] = [
     rule("grid", "a scale cannot be computed exactly"),
     rule("range_width", "a range exceeds what the raw value can hold"),
     rule("special_value", "a special value lies inside the range"),
+    rule("default_value", "a default lies outside the range"),
     rule("direction", "an identifier does not show whether it is a request or a reply"),
     rule("ambiguous", "one frame fits two messages, or two accesses of one message"),
     rule("rust_name", "a name cannot be used in Rust, or two names become one"),

@@ -11,10 +11,13 @@ use crate::model::Protocol;
 pub struct Summary {
     /// The file as it was named.
     pub spec: String,
+    /// Name of the protocol, if the spec could be resolved.
     pub protocol: Option<String>,
+    /// Messages, registers included.
     pub messages: usize,
     /// The fields that choose messages, and how many values of each are used.
     pub selectors: Vec<(String, usize)>,
+    /// Signals of all messages.
     pub signals: usize,
     /// Named bits of status words.
     pub status_bits: usize,
@@ -26,8 +29,11 @@ pub struct Summary {
     pub identifiers: usize,
     /// Printed forms that fail as stated.
     pub expected_failures: usize,
+    /// Departures from the document.
     pub errata: usize,
+    /// Diagnostics that make the spec unusable.
     pub errors: usize,
+    /// Diagnostics that only ask for a look.
     pub warnings: usize,
 }
 
@@ -59,6 +65,7 @@ fn selectors(protocol: &Protocol) -> Vec<(String, usize)> {
         let constants = shapes().flat_map(|shape| &shape.constants);
         constants.filter(|(selector, _)| *selector == index).map(|(_, value)| value).collect::<BTreeSet<_>>().len()
     };
-    let selectors = protocol.selectors.iter().enumerate().map(|(index, selector)| (selector.name.clone(), values(index)));
+    let selectors =
+        protocol.selectors.iter().enumerate().map(|(index, selector)| (selector.name.clone(), values(index)));
     selectors.filter(|(_, values)| *values > 0).collect()
 }

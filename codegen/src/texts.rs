@@ -3,19 +3,12 @@
 use crate::model::{Encoding, Enumeration, Piece, Signal, StatusWord};
 use crate::number::Rational;
 
-/// The named values and status words of a protocol.
-#[derive(Clone, Copy)]
-pub struct Texts<'a> {
-    pub enumerations: &'a [Enumeration],
-    pub status_words: &'a [StatusWord],
-}
-
 /// Returns the raw bits of a physical value as a spec writes it, with its unit if `unit` says so.
 ///
 /// # Errors
 ///
 /// Says in one sentence what is wrong: no such name, not a number, the wrong unit, off the grid, too large.
-pub fn raw_of_text(texts: &Texts, signal: &Signal, text: &str, unit: bool) -> Result<u64, String> {
+pub fn raw_of_text(enumerations: &[Enumeration], signal: &Signal, text: &str, unit: bool) -> Result<u64, String> {
     match &signal.encoding {
         Encoding::Number { signed, scale, offset } => {
             if let Some(special) = signal.specials.iter().find(|special| special.name == text) {
@@ -23,16 +16,18 @@ pub fn raw_of_text(texts: &Texts, signal: &Signal, text: &str, unit: bool) -> Re
             }
             let value = quantity(signal, text, unit)?;
             let raw = value.minus(*offset).and_then(|value| value.over(*scale)).and_then(Rational::to_integer);
-            let raw = raw.ok_or_else(|| format!("`{text}` is no whole number of steps of {scale} for `{}`", signal.name))?;
+            let raw =
+                raw.ok_or_else(|| format!("`{text}` is no whole number of steps of {scale} for `{}`", signal.name))?;
             raw_bits(signal, raw, *signed)
         }
         Encoding::Float => float_bits(signal, text, unit),
-        Encoding::Named(index) => named_bits(&texts.enumerations[*index], signal, text),
-        Encoding::Status(_) => Err(format!("`{}` is a status word; write the names of its set bits as a list", signal.name)),
-        Encoding::Text => text_bits(signal, text),
-        Encoding::Packed { pieces, parts } => {
-            parse_packed(pieces, parts, signal, text).ok_or_else(|| format!("`{text}` is not of the form of `{}`", signal.name))
+        Encoding::Named(index) => named_bits(&enumerations[*index], signal, text),
+        Encoding::Status(_) => {
+            Err(format!("`{}` is a status word; write the names of its set bits as a list", signal.name))
         }
+        Encoding::Text => text_bits(signal, text),
+        Encoding::Packed { pieces, parts } => parse_packed(pieces, parts, signal, text)
+            .ok_or_else(|| format!("`{text}` is not of the form of `{}`", signal.name)),
     }
 }
 
@@ -156,21 +151,23 @@ fn parse_part(part: &Signal, text: &str) -> Option<u64> {
 pub fn write_packed(pieces: &[Piece], parts: &[Signal], signal: &Signal, bits: u64) -> Option<String> {
     let mut data = [0; 8];
     signal.place.put(&mut data, bits);
-    let mut text = String::new();
-    for piece in pieces {
-        match piece {
-            Piece::Literal(literal) => text.push_str(literal),
-            Piece::Part { part, digits } => {
-                let part = &parts[*part];
-                let raw = part.place.get(&data);
-                match part.encoding {
-                    Encoding::Text => text.push_str(&text_of_bits(part, raw)?),
-                    _ => text.push_str(&format!("{raw:0width$}", width = digits.unwrap_or(1))),
-                }
+    let texts = pieces.iter().map(|piece| write_piece(piece, parts, data));
+    let text = texts.collect::<Option<String>>()?;
+    (parse_packed(pieces, parts, signal, &text) == Some(bits)).then_some(text)
+}
+
+fn write_piece(piece: &Piece, parts: &[Signal], data: [u8; 8]) -> Option<String> {
+    match piece {
+        Piece::Literal(literal) => Some(literal.clone()),
+        Piece::Part { part, digits } => {
+            let part = &parts[*part];
+            let raw = part.place.get(&data);
+            match part.encoding {
+                Encoding::Text => text_of_bits(part, raw),
+                _ => Some(format!("{raw:0width$}", width = digits.unwrap_or(1))),
             }
         }
     }
-    (parse_packed(pieces, parts, signal, &text) == Some(bits)).then_some(text)
 }
 
 /// Tests a part against its range.

@@ -21,6 +21,8 @@ mod request;
 mod scale;
 mod signal;
 mod status;
+#[cfg(test)]
+mod tests;
 mod text;
 mod word;
 

@@ -187,8 +187,96 @@ impl Buffer {
 impl Write for Buffer {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let end = self.length.saturating_add(text.len());
-        self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?.copy_from_slice(text.as_bytes());
+        let free = self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?;
+        free.iter_mut().zip(text.bytes()).for_each(|(byte, letter)| *byte = letter);
         self.length = end;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+    use crate::{Payload, Signal, Text};
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    struct Barcode {
+        letter: Text<1>,
+        number: u64,
+        suffix: u16,
+    }
+
+    impl Barcode {
+        const LETTER: Place = Place::byte(0);
+        const NUMBER: Place = Place::bytes(1, 5);
+        const SUFFIX: Place = Place::bytes(6, 7);
+    }
+
+    impl Word for Barcode {
+        type Raw = u64;
+        const LEGEND: Legend<Self> = Legend::Text(
+            8,
+            &[
+                Piece::digits(Self::NUMBER, 12).limits(0, 999_999_999_999),
+                Piece::Text(Self::LETTER),
+                Piece::digits(Self::SUFFIX, 4).limits(0, 9_999),
+            ],
+        );
+
+        fn from_raw(raw: u64) -> Self {
+            let data = left_aligned(raw, 8);
+            let [number, suffix] = [Self::NUMBER.get(&data), Self::SUFFIX.get(&data)];
+            Self { letter: Self::LETTER.read(&data), number, suffix: Raw::from_bits(suffix) }
+        }
+
+        fn raw(self) -> u64 {
+            let mut data = [0; 8];
+            Self::LETTER.write(self.letter, &mut data);
+            Self::NUMBER.write(self.number, &mut data);
+            Self::SUFFIX.write(self.suffix, &mut data);
+            right_aligned(data, 8)
+        }
+    }
+
+    impl Packed for Barcode {}
+
+    /// 0x130C15A3FB is 81807123451, 0x06A8 is 1704, 0x56 is `V`.
+    const PRINTED: u64 = 0x5613_0C15_A3FB_06A8;
+
+    #[test]
+    fn a_barcode_is_written_and_read_as_printed() {
+        let barcode = Barcode::from_raw(PRINTED);
+        assert_eq!((barcode.number, barcode.suffix), (81_807_123_451, 1704));
+        assert_eq!(barcode.text().map(|text| text.to_string()).as_deref(), Some("081807123451V1704"));
+        assert_eq!(Barcode::parse("081807123451V1704"), Some(barcode));
+        assert_eq!(barcode.raw(), PRINTED);
+    }
+
+    #[test]
+    fn a_text_of_another_form_is_refused() {
+        for text in
+            ["", "81807123451V1704", "081807123451V17045", "081807123451V170", "0818071234 1V1704", "+81807123451V1704"]
+        {
+            assert_eq!(Barcode::parse(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_value_that_its_text_would_not_give_has_none() {
+        assert_eq!(Barcode::from_raw(0x5613_0C15_A3FB_2710).text(), None);
+        assert_eq!(Barcode::from_raw(0x00FF_FFFF_FFFF_0000).text(), None);
+        assert_eq!(Barcode::from_raw(u64::MAX).text(), None);
+    }
+
+    #[test]
+    fn a_part_that_does_not_fit_is_refused() {
+        const SIGNAL: Signal<Barcode> = Signal::new("value", Place::bytes(0, 7));
+        let mut payload = Payload::new("barcode", [0; 8]);
+        let barcode = Barcode { number: 1 << 40, ..Barcode::from_raw(PRINTED) };
+        assert!(SIGNAL.put(barcode, &mut payload).is_err());
+        assert_eq!(SIGNAL.put(Barcode::from_raw(u64::MAX), &mut payload), Ok(()));
+        assert_eq!(payload.data(), &[0xFF; 8]);
     }
 }

@@ -1,6 +1,6 @@
 //! Recognising frames.
 
-use core::fmt;
+use core::fmt::{self, Debug};
 
 use embedded_can::Frame as _;
 
@@ -8,7 +8,7 @@ use crate::frame::{padded, raw_id};
 use crate::{Addressing, Data, Error, Exchange, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading, Selector};
 
 /// A protocol, implemented by the enum of its messages.
-pub trait Protocol: Copy + 'static {
+pub trait Protocol: Copy + Debug + 'static {
     /// The fields of the identifier.
     type Identifier: IdentifierFields;
     /// What every frame shows.
@@ -25,7 +25,7 @@ pub trait Protocol: Copy + 'static {
 }
 
 /// The identifier of a protocol, split into its fields.
-pub trait IdentifierFields: Copy + PartialEq {
+pub trait IdentifierFields: Copy + Debug + PartialEq {
     /// Splits an identifier.
     fn from_raw(id: u32) -> Self;
 

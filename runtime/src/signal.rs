@@ -282,11 +282,120 @@ impl<R: Raw> AnySignal for Signal<R> {
 
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
         if let Some(raw) = self.special_value(meaning).or_else(|| self.unscaled(meaning)) {
+            if let Meaning::Number(number @ Number::Float(_)) = meaning {
+                self.check(number, Some(raw.to_bits()), payload)?;
+            }
             return self.put(raw, payload);
         }
         match meaning {
             Meaning::Number(number) => encode_scaled(self, self.exact_scale(), number.to_f64(), payload),
             _ => Err(self.meaningless(payload)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+
+    const CURRENT: Signal<i16> = Signal::new("current", Place::bytes(7, 0).bits(23, 12)).unit("A").scale(1, 10);
+    const TEMPERATURE: Signal<u8> = Signal::new("temperature", Place::byte(3))
+        .unit("°C")
+        .scale(1, 2)
+        .offset(-40, 1)
+        .limits(-40.0, 80.0)
+        .specials(&[(255, "broken")]);
+    const FREQUENCY: Signal<f32> = Signal::new("frequency", Place::bytes(4, 7)).unit("Hz").limits(45.0, 25.7 + 40.0);
+    const GROUP: Signal<u8> = Signal::new("group", Place::byte(0).bits(5, 0)).limits(1.0, 62.0);
+
+    fn reply() -> Payload {
+        Payload::new("report", [0; 8])
+    }
+
+    fn request() -> Payload {
+        Payload::within_limits("report", [0; 8])
+    }
+
+    fn refusal(result: Result<(), Error>) -> std::string::String {
+        result.expect_err("a refusal").to_string()
+    }
+
+    #[test]
+    fn a_signed_signal_of_twelve_bits_keeps_its_sign_and_its_neighbours() {
+        let mut payload = Payload::new("report", [0x73, 0x0A, 0x00, 0x6E, 0, 0, 0, 0]);
+        assert_eq!(CURRENT.encode(23.4, &mut payload), Ok(()));
+        assert_eq!(payload.data(), &[0x73, 0xAA, 0x0E, 0x6E, 0, 0, 0, 0]);
+        assert_eq!(CURRENT.encode(-0.25, &mut payload), Ok(()));
+        assert_eq!((CURRENT.get(payload.data()), CURRENT.decode(payload.data())), (-3, -0.3));
+        assert_eq!(payload.data(), &[0x73, 0xDA, 0xFF, 0x6E, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn what_the_bits_cannot_hold_is_refused_and_changes_nothing() {
+        let mut payload = reply();
+        let text = refusal(CURRENT.encode(204.75, &mut payload));
+        assert_eq!(text, "`current` of `report` is 204.75 A, but its limits are -204.8 and 204.7 A");
+        assert!(CURRENT.put(2048, &mut payload).is_err());
+        assert!(CURRENT.put(-2049, &mut payload).is_err());
+        assert!(TEMPERATURE.encode(-40.25, &mut payload).is_err());
+        assert_eq!(payload, reply());
+        assert_eq!(CURRENT.put(-2048, &mut payload), Ok(()));
+        assert_eq!(TEMPERATURE.encode(-40.24, &mut payload), Ok(()));
+    }
+
+    #[test]
+    fn limits_count_in_requests_only() {
+        assert_eq!(TEMPERATURE.encode(80.5, &mut reply()), Ok(()));
+        let text = refusal(TEMPERATURE.encode(80.2, &mut request()));
+        assert_eq!(text, "`temperature` of `report` is 80.2 °C, but its limits are -40 and 80 °C");
+        let text = refusal(GROUP.put(0, &mut request()));
+        assert_eq!(text, "`group` of `report` is 0, but its limits are 1 and 62");
+        assert_eq!(GROUP.put(0, &mut reply()), Ok(()));
+    }
+
+    #[test]
+    fn a_special_value_is_legal_outside_the_limits() {
+        assert_eq!(TEMPERATURE.put(255, &mut request()), Ok(()));
+        assert_eq!(TEMPERATURE.encode(87.5, &mut request()), Ok(()));
+        assert!(TEMPERATURE.encode(87.4, &mut request()).is_err());
+        let mut payload = request();
+        assert_eq!(TEMPERATURE.write(Meaning::Name("broken"), &mut payload), Ok(()));
+        TEMPERATURE.read(payload.data(), &mut |reading| assert_eq!(reading.meaning, Meaning::Name("broken")));
+    }
+
+    #[test]
+    fn a_float_meets_a_limit_as_precisely_as_it_can() {
+        assert_eq!(FREQUENCY.put(65.7, &mut request()), Ok(()));
+        assert!(FREQUENCY.put(65.700_01, &mut request()).is_err());
+    }
+
+    #[test]
+    fn what_is_not_finite_is_refused_in_requests() {
+        assert_eq!(refusal(FREQUENCY.put(f32::NAN, &mut request())), "`frequency` of `report` is no finite number");
+        assert_eq!(FREQUENCY.put(f32::INFINITY, &mut reply()), Ok(()));
+        assert_eq!(refusal(CURRENT.encode(f64::NAN, &mut reply())), "`current` of `report` is no finite number");
+        assert!(CURRENT.encode(f64::INFINITY, &mut reply()).is_err());
+    }
+
+    #[test]
+    fn a_float_keeps_the_bits_of_a_nan() {
+        let data = [0, 0, 0, 0, 0x7F, 0xC0, 0x12, 0x34];
+        FREQUENCY.read(&data, &mut |reading| {
+            assert_eq!((reading.raw, reading.meaning), (Number::Unsigned(0x7FC0_1234), Meaning::None));
+        });
+        let mut payload = reply();
+        assert_eq!(FREQUENCY.put(FREQUENCY.get(&data), &mut payload), Ok(()));
+        assert_eq!(payload.data(), &data);
+    }
+
+    #[test]
+    fn every_number_of_64_bits_is_exact() {
+        const COUNTER: Signal<u64> = Signal::new("counter", Place::bytes(0, 7));
+        let mut payload = reply();
+        assert_eq!(COUNTER.put(u64::MAX, &mut payload), Ok(()));
+        assert_eq!(COUNTER.get(payload.data()), u64::MAX);
+        assert!(COUNTER.encode(-1.0, &mut payload).is_err());
     }
 }

@@ -12,8 +12,8 @@ impl<const N: usize> Text<N> {
     /// Takes a text of at most `N` printable ASCII characters, or returns `None` for another.
     pub fn new(text: &str) -> Option<Self> {
         let mut bytes = [0; N];
-        bytes.get_mut(..text.len())?.copy_from_slice(text.as_bytes());
-        text.bytes().all(is_printable).then_some(Self(bytes))
+        bytes.iter_mut().zip(text.bytes()).for_each(|(byte, letter)| *byte = letter);
+        (text.len() <= N && text.bytes().all(is_printable)).then_some(Self(bytes))
     }
 
     /// Returns the bytes as they stand in the frame.
@@ -77,5 +77,34 @@ impl<const N: usize> Raw for Text<N> {
             Meaning::Text(text) => Self::new(text),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn a_text_stands_in_the_order_of_its_bytes() {
+        let text = Text::<4>::new("AB12").expect("four letters");
+        assert_eq!(text.to_bits(), 0x4142_3132);
+        assert_eq!(Text::<4>::from_bits(0x4142_3132), text);
+        assert_eq!(text.to_string(), "AB12");
+    }
+
+    #[test]
+    fn a_short_text_is_filled_up_with_zeros() {
+        assert_eq!(Text::<4>::new("A").map(Raw::to_bits), Some(0x4100_0000));
+        assert_eq!(Text::<4>::from_bits(0x4100_0000).as_str(), Some("A"));
+    }
+
+    #[test]
+    fn what_is_no_printable_ascii_is_no_text() {
+        assert_eq!(Text::<4>::new("ABCDE"), None);
+        assert_eq!(Text::<4>::new("é"), None);
+        assert_eq!(Text::<4>::from_bits(0x4100_4200).as_str(), None);
+        assert_eq!(Text::<1>::from_bits(0x8A).to_string(), "\\x8a");
     }
 }

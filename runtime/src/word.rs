@@ -122,3 +122,83 @@ impl<W: Word> Raw for W {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Power {
+        On,
+        Off,
+        Unknown(u8),
+    }
+
+    impl Word for Power {
+        type Raw = u8;
+        const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
+
+        fn from_raw(raw: u8) -> Self {
+            match raw {
+                0 => Self::On,
+                1 => Self::Off,
+                _ => Self::Unknown(raw),
+            }
+        }
+
+        fn raw(self) -> u8 {
+            match self {
+                Self::On => 0,
+                Self::Off => 1,
+                Self::Unknown(raw) => raw,
+            }
+        }
+    }
+
+    impl Named for Power {}
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    struct Status(u8);
+
+    impl Word for Status {
+        type Raw = u8;
+        const LEGEND: Legend<Self> =
+            Legend::Bits(&[StatusBit::state(0, "dc_off", "DC side is off"), StatusBit::alarm(5, "hot", "Too hot")]);
+
+        fn from_raw(raw: u8) -> Self {
+            Self(raw)
+        }
+
+        fn raw(self) -> u8 {
+            self.0
+        }
+    }
+
+    impl StatusWord for Status {}
+
+    #[test]
+    fn values_have_names_both_ways() {
+        assert_eq!(Power::from_raw(1).name(), Some("off"));
+        assert_eq!(Power::from_name("off"), Some(Power::Off));
+        assert_eq!(Power::from_name("of"), None);
+    }
+
+    #[test]
+    fn a_value_without_a_name_is_kept() {
+        assert_eq!(Power::from_bits(7), Power::Unknown(7));
+        assert_eq!((Power::Unknown(7).to_bits(), Power::Unknown(7).name()), (7, None));
+        assert_eq!(Power::Unknown(7).meaning(), Meaning::None);
+    }
+
+    #[test]
+    fn a_status_word_names_its_set_bits_and_keeps_the_others() {
+        let status = Status::from_raw(0b1010_0001);
+        assert_eq!(status.set_bits().map(|bit| bit.name).collect::<Vec<_>>(), ["dc_off", "hot"]);
+        assert_eq!(status.unknown(), 0b1000_0000);
+        assert!(status.contains(Status(0b0010_0000)) && !status.contains(Status(0b0010_0010)));
+        assert_eq!(Status(1).union(Status(4)), Status(5));
+        assert!(Status(0).is_empty());
+    }
+}

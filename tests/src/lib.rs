@@ -8,6 +8,11 @@ use canspec_codegen::{Outcome, compile, source::Source};
 
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 
+/// The README's Rust compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
+
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
@@ -75,7 +80,10 @@ impl<'a> Frames<'a> {
         let mode = &protocol.modes[self.random.usize(..protocol.modes.len())];
         let patterns = [&mode.request, &mode.one, &mode.each, &mode.coordinator];
         let pattern = patterns[self.random.usize(..4)].as_ref();
-        let mut id = pattern.map_or_else(|| self.random.u32(..), |pattern| self.addressed(pattern));
+        let mut id = match pattern {
+            Some(pattern) => self.addressed(pattern),
+            None => self.random.u32(..),
+        };
         let mut data = self.random.u64(..).to_be_bytes();
         for (selector, value) in &shape.constants {
             match protocol.selectors[*selector].place {
@@ -94,8 +102,10 @@ impl<'a> Frames<'a> {
     fn addressed(&mut self, pattern: &AddressPattern) -> u32 {
         let identifier = &self.protocol.identifier;
         let mut id = self.random.u32(..) & !pattern.mask | pattern.value;
-        for field in identifier.fields.iter().filter(|field| field.normal.is_some() && self.random.u8(..4) > 0) {
-            id &= !field.mask();
+        for field in identifier.fields.iter().filter(|field| field.normal.is_some()) {
+            if self.random.u8(..4) > 0 {
+                id &= !field.mask();
+            }
         }
         for address in &pattern.addresses {
             let field = &identifier.fields[address.field];

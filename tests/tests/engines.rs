@@ -34,19 +34,17 @@ fn received_frame(frame: &Frame) -> canspec_runtime::Frame {
 
 fn generated<P: canspec_runtime::Protocol>(frame: &Frame) -> Result<Report, Problem> {
     let frame = received_frame(frame);
-    let data = frame.bytes();
     let received = Received::<P>::decode(&frame)?;
     let mut signals = Vec::new();
     received.visit(|reading| signals.push(shown(&reading)));
     let exchange = received.exchange();
-    let selectors = exchange.data_selectors().iter();
     Ok(Report {
         message: exchange.message().to_owned(),
         access: exchange.access().to_owned(),
         kind: format!("{:?}", received.kind()),
         addressing: received.addressing().map(|addressing| addressing.mode().name.to_owned()),
         signals,
-        selectors: selectors.map(|selector| (selector.name.to_owned(), selector.place.get(&data))).collect(),
+        selectors: received.selectors().map(|(selector, raw)| (selector.name.to_owned(), raw)).collect(),
         reserved: received.reserved(),
         encoded: received.encode().ok().map(|frame| frame.data().to_vec()),
     })
@@ -78,7 +76,7 @@ fn interpreted(protocol: &Protocol, frame: &Frame) -> Result<Report, Problem> {
         interpret::Problem::Length => Problem::Length,
     })?;
     let message = &protocol.messages[decoded.message];
-    let content = canspec_codegen::check::content(protocol, &decoded);
+    let content = interpret::Content::of(protocol, &decoded);
     let selectors = decoded.selectors.iter();
     Ok(Report {
         message: message.name.clone(),
@@ -165,7 +163,7 @@ fn signals<P: canspec_runtime::Protocol>(protocol: &Protocol) -> Signals {
 
 /// Writes a value through a signal of the generated code.
 fn written(known: &dyn AnySignal, value: f64, request: bool) -> Option<[u8; 8]> {
-    let mut payload = if request { Payload::within_limits([0; 8]) } else { Payload::new([0; 8]) };
+    let mut payload = if request { Payload::within_limits("message", [0; 8]) } else { Payload::new("message", [0; 8]) };
     known.write(Meaning::Number(Number::Float(value)), &mut payload).ok().map(|()| *payload.data())
 }
 

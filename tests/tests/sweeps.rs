@@ -1,9 +1,9 @@
 //! Raw values survive the way to a physical value and back, in both engines; set-points on the grid meet their own raw value.
 
-use canspec_codegen::interpret::{Input, Value, physical, raw_of};
-use canspec_codegen::model::{Encoding, Message, Protocol, Signal};
+use canspec_codegen::interpret::{Input, physical, raw_of};
+use canspec_codegen::model::{Message, Protocol, Signal};
 use canspec_protocols::infy::SetModuleOutput;
-use canspec_runtime::{AnySignal, Payload, Reading, Received};
+use canspec_runtime::{AnySignal, Meaning, Payload, Reading, Received};
 use canspec_tests::{Frames, Visitor, protocol, visit};
 
 /// How many random raw values a signal of more than 16 bits sees.
@@ -44,22 +44,8 @@ impl Visitor for Sweep {
 fn interpreter(protocol: &Protocol, message: &Message, signal: &Signal) {
     for bits in raw_values(signal.place.width()) {
         let value = physical(protocol, signal, bits);
-        let back = raw_of(protocol, message, signal, &input(protocol, signal, &value, bits), false);
+        let back = raw_of(protocol, message, signal, &Input::of(protocol, signal, &value, bits), false);
         assert_eq!(back, Ok(bits), "{}.{}.{}: {value:?}", protocol.name, message.name, signal.name);
-    }
-}
-
-fn input(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Input {
-    match value {
-        Value::None => Input::Raw(bits.into()),
-        Value::Integer(value) => Input::Integer(*value),
-        Value::Number(value) => Input::Number(*value),
-        Value::Name(text) | Value::Text(text) => Input::Text(text.clone()),
-        Value::Status { set, unknown } => {
-            let Encoding::Status(word) = signal.encoding else { panic!("only status words have bits") };
-            let bits = protocol.status_words[word].bits.iter().filter(|bit| set.contains(&bit.bit));
-            Input::Status { set: bits.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
-        }
     }
 }
 
@@ -90,11 +76,14 @@ fn sweep(signal: &dyn AnySignal) {
         let mut data = [0; 8];
         place.put(&mut data, bits);
         signal.read(&data, &mut |reading: Reading| {
-            let mut payload = Payload::new([0; 8]);
-            if reading.meaning == canspec_runtime::Meaning::None {
-                return;
-            }
-            let written = signal.write(reading.meaning, &mut payload);
+            let mut payload = Payload::new("message", [0; 8]);
+            let text = if let Meaning::Packed(text) = reading.meaning { text.to_string() } else { String::new() };
+            let meaning = match reading.meaning {
+                Meaning::None => return,
+                Meaning::Packed(_) => Meaning::Text(&text),
+                meaning => meaning,
+            };
+            let written = signal.write(meaning, &mut payload);
             assert_eq!(written.map(|()| *payload.data()), Ok(data), "{}: {:?}", signal.name(), reading.meaning);
         });
     }
@@ -116,7 +105,7 @@ fn volts(millivolts: u32) -> f64 {
 #[test]
 fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_generated_code() {
     for millivolts in 0..=1_000_000 {
-        let mut payload = Payload::new([0; 8]);
+        let mut payload = Payload::new("message", [0; 8]);
         SetModuleOutput::VOLTAGE.encode(volts(millivolts), &mut payload).expect("the value fits 32 bits");
         assert_eq!(payload.data()[..4], millivolts.to_be_bytes());
     }
@@ -136,7 +125,7 @@ fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_the_interp
 fn a_value_between_two_steps_goes_to_the_nearer_one_and_a_tie_away_from_zero() {
     // Halves of a step that a double holds exactly: 1/16 V is 62.5 mV.
     for (volts, millivolts) in [(0.0625, 63), (0.1875, 188), (0.0624, 62), (0.000_4, 0), (0.000_6, 1), (1.0625, 1063)] {
-        let mut payload = Payload::new([0; 8]);
+        let mut payload = Payload::new("message", [0; 8]);
         SetModuleOutput::VOLTAGE.encode(volts, &mut payload).expect("the value fits");
         assert_eq!(SetModuleOutput::VOLTAGE.get(payload.data()), millivolts, "{volts} V");
     }

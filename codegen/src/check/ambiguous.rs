@@ -9,11 +9,8 @@ use crate::model::{AddressPattern, Kind, Message, Protocol, Shape, Who};
 type Ranges = Vec<(u32, u32)>;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let frames: Vec<_> = protocol
-        .messages
-        .iter()
-        .flat_map(|message| message.shapes.iter().map(move |shape| (message, shape)))
-        .collect();
+    let frames: Vec<_> =
+        protocol.messages.iter().flat_map(|message| message.shapes.iter().map(move |shape| (message, shape))).collect();
     let mut reported: Vec<(&str, &str)> = Vec::new();
     for (index, one) in frames.iter().enumerate() {
         let Some(other) = frames[..index].iter().find(|other| both_fit(protocol, *one, **other)) else { continue };
@@ -32,11 +29,11 @@ fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape
     };
     let text = format!("a frame can be {} and {}", name(other), name(one));
     let help = "give one of the two another constant, or addressing modes of its own";
-    let diagnostic = Diagnostic::error("ambiguous", one.0.doc.path.at_key(), text).help(help);
-    diagnostics.push(match one.0.name == other.0.name {
-        true => diagnostic,
-        false => diagnostic.other(other.0.doc.path.at_key(), "the other message"),
-    });
+    let mut diagnostic = Diagnostic::error("ambiguous", one.0.doc.path.at_key(), text).help(help);
+    if one.0.name != other.0.name {
+        diagnostic = diagnostic.other(other.0.doc.path.at_key(), "the other message");
+    }
+    diagnostics.push(diagnostic);
 }
 
 fn both_fit(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> bool {
@@ -44,9 +41,9 @@ fn both_fit(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Sha
     same_direction
         && one.0.length == other.0.length
         && agree(one.1, other.1)
-        && patterns(protocol, one).iter().any(|pattern| {
-            patterns(protocol, other).iter().any(|opposite| intersect(protocol, pattern, opposite))
-        })
+        && patterns(protocol, one)
+            .iter()
+            .any(|pattern| patterns(protocol, other).iter().any(|opposite| intersect(protocol, pattern, opposite)))
 }
 
 /// Tests whether no selector has two values.
@@ -72,8 +69,8 @@ fn patterns<'a>(protocol: &'a Protocol, (message, shape): (&Message, &Shape)) ->
 /// Tests whether one identifier fits both patterns.
 fn intersect(protocol: &Protocol, one: &AddressPattern, other: &AddressPattern) -> bool {
     (0..protocol.identifier.fields.len()).all(|field| {
-        let (these, those) = (accepted(protocol, one, field), accepted(protocol, other, field));
-        these.iter().any(|(first, last)| those.iter().any(|(start, end)| first <= end && start <= last))
+        let (ranges, others) = (accepted(protocol, one, field), accepted(protocol, other, field));
+        ranges.iter().any(|(first, last)| others.iter().any(|(start, end)| first <= end && start <= last))
     })
 }
 

@@ -5,8 +5,10 @@
 //! Either the spec is wrong, or the document is; then an erratum says so, and the printed form stays with `fails`.
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::interpret::{Content, Decoded, Form, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, physical};
-use crate::model::{Encoding, Example, Failure, Kind, Meaning, Message, Protocol, Signal, ValueExample};
+use crate::interpret::{
+    Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
+};
+use crate::model::{Example, Failure, Kind, Meaning, Message, Protocol, Signal, ValueExample};
 
 /// How many examples hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,17 +57,11 @@ impl<'a> Checker<'a> {
     }
 
     fn frame(&self) -> Frame {
-        let length = self.example.message.map_or(8, |message| self.protocol.messages[message].length);
-        let data = self.example.data.clone().unwrap_or_else(|| vec![0; length.into()]);
-        Frame { id: self.example.id, extended: self.example.extended, data, form: Form::Data }
+        Frame::of(self.protocol, self.example)
     }
 
     fn frame_at(&self) -> At {
         self.example.doc.path.key(self.example.kind.name()).at_value()
-    }
-
-    fn wrong(&self, at: At, text: String) -> Box<Diagnostic> {
-        Box::new(Diagnostic::error("example", at, text))
     }
 
     fn unreadable(&self, problem: &Unrecognised) -> Box<Diagnostic> {
@@ -92,7 +88,8 @@ impl<'a> Checker<'a> {
         }
         let said = self.example.message.map_or("another message", |message| &self.protocol.messages[message].name);
         let (found, stated) = (decoded.kind.name(), self.example.kind.name());
-        Err(self.wrong(self.frame_at(), format!("this frame is a {found} of `{}`, not a {stated} of `{said}`", shown.name)))
+        let text = format!("this frame is a {found} of `{}`, not a {stated} of `{said}`", shown.name);
+        Err(wrong(self.frame_at(), text))
     }
 
     fn is_addressed(&self, decoded: &Decoded) -> Checked {
@@ -113,7 +110,7 @@ impl<'a> Checker<'a> {
                     format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text)
                 },
             );
-            return Err(self.wrong(meaning.path.at_value(), text));
+            return Err(wrong(meaning.path.at_value(), text));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {
@@ -122,7 +119,7 @@ impl<'a> Checker<'a> {
                 let signal = &message.signals[reading.signal];
                 let read = shown(self.protocol, signal, &reading.value, reading.bits);
                 let text = format!("`means` says nothing of `{}`, which is {read}", signal.name);
-                Err(self.wrong(self.example.doc.path.key("means").at_key(), text))
+                Err(wrong(self.example.doc.path.key("means").at_key(), text))
             }
         }
     }
@@ -165,16 +162,17 @@ impl<'a> Checker<'a> {
     }
 
     fn encodes_back(&self, decoded: &Decoded) -> Checked {
-        let content = content(self.protocol, decoded);
+        let content = Content::of(self.protocol, decoded);
         let frame = self.frame();
         match encode(self.protocol, &content) {
             Ok(encoded) if encoded == frame => Ok(()),
             Ok(encoded) => {
-                let text = format!("it encodes back to other bytes: {} instead of {}", hex(&encoded.data), hex(&frame.data));
-                Err(self.wrong(self.frame_at(), text))
+                let text =
+                    format!("it encodes back to other bytes: {} instead of {}", hex(&encoded.data), hex(&frame.data));
+                Err(wrong(self.frame_at(), text))
             }
             Err(_) if decoded.kind == Kind::Request && !self.example.notes.is_empty() => Ok(()),
-            Err(refusal) => Err(self.wrong(self.frame_at(), format!("it does not encode back: {refusal}"))),
+            Err(refusal) => Err(wrong(self.frame_at(), format!("it does not encode back: {refusal}"))),
         }
     }
 
@@ -223,44 +221,10 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Turns what was decoded into what encodes it.
-pub fn content(protocol: &Protocol, decoded: &Decoded) -> Content {
-    let message = &protocol.messages[decoded.message];
-    let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
-    let selectors = decoded.selectors.iter().map(|(index, value)| (protocol.selectors[*index].name.clone(), *value));
-    let signals = decoded.signals.iter().map(|reading| {
-        let signal = &message.signals[reading.signal];
-        (signal.name.clone(), input(protocol, signal, &reading.value, reading.bits))
-    });
-    Content {
-        message: message.name.clone(),
-        access: Some(protocol.accesses[decoded.access].name.clone()),
-        kind: Some(decoded.kind),
-        identifier: fields.map(|(field, value)| (field.name.clone(), u64::from(*value))).collect(),
-        selectors: selectors.collect(),
-        signals: signals.collect(),
-        reserved: decoded.reserved.iter().copied().take(decoded.length).collect(),
-    }
-}
-
-fn input(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Input {
-    match value {
-        Value::None => Input::Raw(bits.into()),
-        Value::Integer(value) => Input::Integer(*value),
-        Value::Number(value) => Input::Number(*value),
-        Value::Name(text) | Value::Text(text) => Input::Text(text.clone()),
-        Value::Status { set, unknown } => {
-            let Encoding::Status(index) = signal.encoding else { return Input::Raw(bits.into()) };
-            let names = protocol.status_words[index].bits.iter().filter(|bit| set.contains(&bit.bit));
-            Input::Status { set: names.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
-        }
-    }
-}
-
 /// Shows a value as a spec writes it.
 fn shown(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> String {
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
-    match input(protocol, signal, value, bits) {
+    match Input::of(protocol, signal, value, bits) {
         Input::Raw(raw) => format!("raw {raw:#X}"),
         Input::Integer(value) => format!("{value}{unit}"),
         Input::Number(value) => format!("{value}{unit}"),
@@ -270,8 +234,8 @@ fn shown(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Stri
     }
 }
 
-fn hex(data: &[u8]) -> String {
-    data.iter().map(|byte| format!("{byte:02X}")).collect()
+fn wrong(at: At, text: String) -> Box<Diagnostic> {
+    Box::new(Diagnostic::error("example", at, text))
 }
 
 /// Runs an example of a type: bytes alone, and what they mean.

@@ -16,7 +16,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let Encoding::Number { signed, scale, offset } = signal.encoding else { continue };
             if let Some(why) = fault(signal, signed, scale, offset) {
                 let text = format!("`{}.{}`: {why}", message.name, signal.name);
-                let help = "write a smaller scale, or none, and say the step in the note";
+                let help = "write another scale, or none, and say the step in the note";
                 let at = signal.doc.path.key("scale").at_value();
                 diagnostics.push(Diagnostic::error("grid", at, text).help(help));
             }

@@ -65,13 +65,14 @@ fn report(message: &Message, one: &Leaf, other: &Leaf, diagnostics: &mut Diagnos
 /// Names bits of the frame: byte, and bits of the byte.
 fn bits(mask: u64) -> String {
     let bytes = mask.to_be_bytes().into_iter().enumerate().filter(|(_, byte)| *byte != 0);
-    let texts = bytes.map(|(index, byte)| match byte {
-        0xFF => format!("byte {index}"),
-        _ => {
-            let set: Vec<_> = (0..8).rev().filter(|bit| byte >> bit & 1 == 1).map(|bit: u8| bit.to_string()).collect();
-            let what = if set.len() == 1 { "bit" } else { "bits" };
-            format!("{what} {} of byte {index}", set.join(", "))
-        }
-    });
-    texts.collect::<Vec<_>>().join(" and ")
+    bytes.map(|(index, byte)| bits_of_byte(index, byte)).collect::<Vec<_>>().join(" and ")
+}
+
+fn bits_of_byte(index: usize, byte: u8) -> String {
+    if byte == u8::MAX {
+        return format!("byte {index}");
+    }
+    let set: Vec<_> = (0..8).rev().filter(|bit| byte >> bit & 1 == 1).map(|bit: u8| bit.to_string()).collect();
+    let what = if set.len() == 1 { "bit" } else { "bits" };
+    format!("{what} {} of byte {index}", set.join(", "))
 }

@@ -12,21 +12,26 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let (Some(range), Some(holds)) = (signal.range, holds(signal)) else { continue };
             if range.minimum < holds.minimum || range.maximum > holds.maximum {
                 let text = format!(
-                    "the range {}..{} of `{}.{}` exceeds what its {} bits hold: {}..{}",
+                    "the range {}..{} of `{}.{}` exceeds the {}..{} of {}",
                     range.minimum,
                     range.maximum,
                     message.name,
                     signal.name,
-                    signal.place.width(),
                     holds.minimum,
-                    holds.maximum
+                    holds.maximum,
+                    number_of_bits(signal.place.width())
                 );
-                let help = "correct the limits, the scale or the place; numbers below 0 need `as: signed` or an `offset`";
+                let help =
+                    "correct the limits, the scale or the place; numbers below 0 need `as: signed` or an `offset`";
                 let at = signal.doc.path.key("range").at_value();
                 diagnostics.push(Diagnostic::error("range_width", at, text).help(help));
             }
         }
     }
+}
+
+fn number_of_bits(width: u8) -> String {
+    if width == 1 { "one bit".to_owned() } else { format!("{width} bits") }
 }
 
 /// Returns the physical limits of the raw value.

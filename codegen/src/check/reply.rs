@@ -4,7 +4,7 @@
 //! who answers at all. A frame that the document prints wrongly is marked with `fails`.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::interpret::{Decoded, Form, Frame, decode};
+use crate::interpret::{Decoded, Frame, decode};
 use crate::model::{AddressPattern, Example, Kind, Mode, Protocol, Who};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -27,14 +27,12 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Decodes an example that does not fail; one without data as if all bytes were 0.
+/// Decodes an example that does not fail.
 fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
     if example.fails.is_some() {
         return None;
     }
-    let length = protocol.messages[example.message?].length;
-    let data = example.data.clone().unwrap_or_else(|| vec![0; length.into()]);
-    decode(protocol, &Frame { id: example.id, extended: example.extended, data, form: Form::Data }).ok()
+    decode(protocol, &Frame::of(protocol, example)).ok()
 }
 
 /// Says why a reply does not answer a request.

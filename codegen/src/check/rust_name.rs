@@ -4,6 +4,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Protocol};
+use crate::syntax::tree::Path;
 
 /// Types that every generated module has.
 const TAKEN: [&str; 12] = [
@@ -11,14 +12,10 @@ const TAKEN: [&str; 12] = [
     "Route", "Target",
 ];
 
-/// Words that cannot name a field or a function.
-const RESERVED: [&str; 24] = [
-    "as", "box", "break", "const", "continue", "crate", "else", "enum", "fn", "for", "gen", "if", "impl", "in", "let",
-    "loop", "match", "mod", "move", "pub", "ref", "return", "self", "type",
-];
-
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     check_types(protocol, diagnostics);
+    let module = Doc { path: Path::default().key("protocol"), ..Doc::default() };
+    check_names("module", std::iter::once((protocol.name.clone(), protocol.name.as_str(), &module)), diagnostics);
     for message in &protocol.messages {
         let names = message.signals.iter().map(|signal| (signal.name.clone(), signal.name.as_str(), &signal.doc));
         check_names("signal", names, diagnostics);
@@ -50,7 +47,7 @@ fn check_names<'a>(
 ) {
     let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
     for (rust, name, doc) in names {
-        if RESERVED.contains(&rust.as_str()) {
+        if syn::parse_str::<syn::Ident>(&rust).is_err() {
             let text = format!("`{name}` is a word of Rust");
             diagnostics.push(Diagnostic::error("rust_name", doc.path.at_key(), text).help("choose another name"));
         }

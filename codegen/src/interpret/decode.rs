@@ -3,10 +3,8 @@
 use std::cmp::Reverse;
 
 use super::value::{extended, float, in_range, named, physical};
-use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hexadecimal, mode_name};
-use crate::model::{
-    AddressPattern, Direction, Encoding, Kind, Message, Protocol, SelectorPlace, Shape, Signal, Who,
-};
+use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal, mode_name};
+use crate::model::{AddressPattern, Direction, Encoding, Kind, Message, Protocol, SelectorPlace, Shape, Signal, Who};
 
 /// Decodes a frame.
 ///
@@ -61,8 +59,8 @@ impl<'a> Decoder<'a> {
         }
         let to_module = self.direction()?;
         let candidates = self.candidates(to_module);
-        let candidates = self.by_identifier(candidates)?;
-        let candidates = self.by_length(candidates)?;
+        let candidates = self.by_identifier(&candidates)?;
+        let candidates = self.by_length(&candidates)?;
         let (message, shape) = self.by_payload(&candidates)?;
         Ok(self.decoded(message, shape))
     }
@@ -129,7 +127,7 @@ impl<'a> Decoder<'a> {
         let wrong = (self.frame.id & identifier.mask) ^ identifier.value;
         let field = identifier.fields.iter().find(|field| field.mask() & wrong != 0);
         field.map_or_else(
-            || format!("fixed bit {}", 31 - wrong.leading_zeros()),
+            || format!("fixed bit {}", wrong.checked_ilog2().unwrap_or_default()),
             |field| format!("the constant field `{}`", field.name),
         )
     }
@@ -143,7 +141,7 @@ impl<'a> Decoder<'a> {
             .collect()
     }
 
-    fn by_identifier(&self, candidates: Vec<Candidate<'a>>) -> Result<Vec<Candidate<'a>>, Unrecognised> {
+    fn by_identifier(&self, candidates: &[Candidate<'a>]) -> Result<Vec<Candidate<'a>>, Unrecognised> {
         let fits = |constant: &&(usize, u64)| match self.protocol.selectors[constant.0].place {
             SelectorPlace::Identifier(field) => u64::from(self.field(field)) == constant.1,
             SelectorPlace::Payload(_) => true,
@@ -151,7 +149,7 @@ impl<'a> Decoder<'a> {
         let chosen = |(_, _, shape): &Candidate| shape.constants.iter().all(|constant| fits(&constant));
         let left: Vec<_> = candidates.iter().copied().filter(chosen).collect();
         if left.is_empty() {
-            let text = format!("no message has {}", self.identifier_selectors(&candidates));
+            let text = format!("no message has {}", self.identifier_selectors(candidates));
             return Err(self.unrecognised(Problem::UnknownMessage, text, true, &[]));
         }
         Ok(left)
@@ -159,7 +157,8 @@ impl<'a> Decoder<'a> {
 
     /// Shows the values of the identifier's selectors.
     fn identifier_selectors(&self, candidates: &[Candidate]) -> String {
-        let shows = |index: usize| candidates.iter().any(|(_, _, shape)| shape.constants.iter().any(|known| known.0 == index));
+        let shows =
+            |index: usize| candidates.iter().any(|(_, _, shape)| shape.constants.iter().any(|known| known.0 == index));
         let selectors = self.protocol.selectors.iter().enumerate().filter(|(index, _)| shows(*index));
         let texts = selectors.filter_map(|(_, selector)| match selector.place {
             SelectorPlace::Identifier(field) => Some(format!("{} {}", selector.name, hexadecimal(self.field(field)))),
@@ -168,14 +167,15 @@ impl<'a> Decoder<'a> {
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    fn by_length(&self, candidates: Vec<Candidate<'a>>) -> Result<Vec<Candidate<'a>>, Unrecognised> {
+    fn by_length(&self, candidates: &[Candidate<'a>]) -> Result<Vec<Candidate<'a>>, Unrecognised> {
         let length = self.frame.data.len();
         let left: Vec<_> =
             candidates.iter().copied().filter(|(_, message, _)| usize::from(message.length) == length).collect();
         if left.is_empty() {
             let wanted = candidates.iter().map(|(_, message, _)| message.length).max().unwrap_or(8);
-            let text = format!("{length} data bytes instead of {wanted}");
-            return Err(self.unrecognised(Problem::Length, text, true, &candidates));
+            let bytes = if length == 1 { "byte" } else { "bytes" };
+            let text = format!("{length} data {bytes} instead of {wanted}");
+            return Err(self.unrecognised(Problem::Length, text, true, candidates));
         }
         Ok(left)
     }
@@ -286,9 +286,10 @@ impl<'a> Decoder<'a> {
         let reserved = self.reserved(message, shape);
         let mut notes = self.error_notes(shape, &selectors);
         notes.extend(self.address_notes(message, shape, &addressing));
-        notes.extend(signals.iter().filter_map(|reading| self.signal_note(&message.signals[reading.signal], reading)));
+        notes.extend(signals.iter().filter_map(|reading| signal_note(&message.signals[reading.signal], reading)));
         if reserved != [0; 8] {
-            notes.push(Note { rule: "reserved_bit", text: "bits are set that the document reserves".to_owned() });
+            let bits = hex(&reserved[..self.frame.data.len()]);
+            notes.push(Note { rule: "reserved_bit", text: format!("bits are set that the document reserves: {bits}") });
         }
         Decoded {
             message: index,
@@ -353,25 +354,25 @@ impl<'a> Decoder<'a> {
         }
         notes
     }
+}
 
-    fn signal_note(&self, signal: &Signal, reading: &Reading) -> Option<Note> {
-        let name = &signal.name;
-        let note = |rule, text| Some(Note { rule, text });
-        match (&signal.encoding, &reading.value) {
-            (Encoding::Float, Value::None) => note("not_finite", format!("{name} is {}", float(reading.bits))),
-            (Encoding::Named(_), Value::None) => note("unknown_value", format!("{name} {:#X} has no name", reading.bits)),
-            (_, Value::None) => note("unknown_value", format!("{name} is not a text of the documented form")),
-            (_, Value::Status { unknown, .. }) if *unknown != 0 => {
-                note("unknown_bit", format!("{name} has bits {unknown:#X} set that have no name"))
-            }
-            (Encoding::Number { signed, .. }, Value::Integer(_)) => {
-                #[allow(clippy::cast_precision_loss, reason = "ranges of unscaled signals lie below 2^53")]
-                let value = extended(signal, reading.bits, *signed) as f64;
-                range_note(signal, value)
-            }
-            (_, Value::Number(value)) => range_note(signal, *value),
-            _ => None,
+fn signal_note(signal: &Signal, reading: &Reading) -> Option<Note> {
+    let name = &signal.name;
+    let note = |rule, text| Some(Note { rule, text });
+    match (&signal.encoding, &reading.value) {
+        (Encoding::Float, Value::None) => note("not_finite", format!("{name} is {}", float(reading.bits))),
+        (Encoding::Named(_), Value::None) => note("unknown_value", format!("{name} {:#X} has no name", reading.bits)),
+        (_, Value::None) => note("unknown_value", format!("{name} is not a text of the documented form")),
+        (_, Value::Status { unknown, .. }) if *unknown != 0 => {
+            note("unknown_bit", format!("{name} has bits {unknown:#X} set that have no name"))
         }
+        (Encoding::Number { signed, .. }, Value::Integer(_)) => {
+            #[allow(clippy::cast_precision_loss, reason = "ranges of unscaled signals lie below 2^53")]
+            let value = extended(signal, reading.bits, *signed) as f64;
+            range_note(signal, value)
+        }
+        (_, Value::Number(value)) => range_note(signal, *value),
+        _ => None,
     }
 }
 

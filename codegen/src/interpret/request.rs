@@ -11,6 +11,7 @@ use crate::number::Rational;
 pub struct Target {
     /// The addressing mode, or the address type that only one mode leaves open.
     pub name: String,
+    /// Number of the address, if the mode leaves one open.
     pub number: Option<i64>,
 }
 
@@ -24,7 +25,8 @@ impl Target {
         let Some((name, number)) = text.split_once(':') else {
             return Ok(Self { name: text.to_owned(), number: None });
         };
-        let whole = Rational::parse(number).and_then(Rational::to_integer).and_then(|number| i64::try_from(number).ok());
+        let whole =
+            Rational::parse(number).and_then(Rational::to_integer).and_then(|number| i64::try_from(number).ok());
         let number = whole.ok_or_else(|| Refusal(format!("`{number}` is not an address; write `{name}:3`")))?;
         Ok(Self { name: name.to_owned(), number: Some(number) })
     }
@@ -34,7 +36,7 @@ impl Target {
 ///
 /// # Errors
 ///
-/// Refuses what [`super::encode`] refuses in requests, and a signal that has neither a value nor a default.
+/// Refuses what [`super::encode()`] refuses in requests, and a signal that has neither a value nor a default.
 pub fn request(
     protocol: &Protocol,
     access: Option<&str>,
@@ -63,7 +65,8 @@ fn request_shape<'a>(protocol: &Protocol, message: &'a Message, access: Option<&
     let name = |shape: &Shape| protocol.accesses[message.accesses[shape.access].access].name.as_str();
     let requests: Vec<_> = message.shapes.iter().filter(|shape| shape.kind == Kind::Request).collect();
     let names: Vec<_> = requests.iter().map(|shape| format!("`{}`", name(shape))).collect();
-    let fitting: Vec<_> = requests.into_iter().filter(|shape| access.is_none_or(|access| name(shape) == access)).collect();
+    let fitting: Vec<_> =
+        requests.into_iter().filter(|shape| access.is_none_or(|access| name(shape) == access)).collect();
     match (fitting.as_slice(), access) {
         ([shape], _) => Ok(shape),
         ([], None) => Err(refuse(message, "nobody requests it")),
@@ -80,20 +83,15 @@ fn target_name<'a>(protocol: &'a Protocol, mode: &'a Mode) -> &'a str {
     mode.target.filter(alone).map_or(mode.name.as_str(), |index| protocol.address_types[index].name.as_str())
 }
 
-fn mode<'a>(
-    protocol: &'a Protocol,
-    message: &Message,
-    shape: &Shape,
-    target: &Target,
-) -> Result<&'a Mode, Refusal> {
+fn mode<'a>(protocol: &'a Protocol, message: &Message, shape: &Shape, target: &Target) -> Result<&'a Mode, Refusal> {
     let answers = &message.accesses[shape.access].answers;
     let allowed = || protocol.modes.iter().zip(answers).filter(|(_, answer)| answer.is_some()).map(|(mode, _)| mode);
-    let named = |mode: &&Mode| mode.name == target.name || target_name(protocol, mode) == target.name;
-    if let Some(mode) = allowed().find(named) {
+    let is_meant = |mode: &&Mode| mode.name == target.name || target_name(protocol, mode) == target.name;
+    if let Some(mode) = allowed().find(is_meant) {
         return Ok(mode);
     }
     let names: Vec<_> = allowed().map(|mode| format!("`{}`", written(protocol, mode))).collect();
-    let known = protocol.modes.iter().any(|mode| named(&mode));
+    let known = protocol.modes.iter().any(|mode| is_meant(&mode));
     let why = if known { "it is not addressed by" } else { "there is no address" };
     Err(refuse(message, &format!("{why} `{}`; write {}", target.name, names.join(", "))))
 }
@@ -115,7 +113,7 @@ fn identifier(
     let fields = &protocol.identifier.fields;
     let mut id = protocol.identifier.value;
     for field in fields {
-        id |= field.send.unwrap_or(0) << field.shift;
+        id |= field.send.or(field.normal).unwrap_or(0) << field.shift;
     }
     let Some(pattern) = &mode.request else { return Err(refuse(message, "this mode has no request")) };
     for (selector, value) in &shape.constants {
@@ -129,7 +127,8 @@ fn identifier(
     }
     for address in &pattern.addresses {
         let address_type = &protocol.address_types[address.address_type];
-        let number = if Some(address.address_type) == mode.target { target.number } else { source.or(address_type.send) };
+        let number =
+            if Some(address.address_type) == mode.target { target.number } else { source.or(address_type.send) };
         let raw = raw_address(message, address_type, number)?;
         id = replaced(id, &fields[address.field], raw);
     }
@@ -171,7 +170,9 @@ fn put_signals(
     for signal in carried {
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
             Some((_, text)) => parse_input(signal, text),
-            None => Input::Raw(signal.default.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?),
+            None => Input::Raw(
+                signal.default.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?,
+            ),
         };
         signal.place.put(data, raw_of(protocol, message, signal, &input, true)?);
     }

@@ -1,5 +1,7 @@
 //! One signal: raw bits to physical value and back.
 
+use std::cmp::Ordering;
+
 use canspec_runtime::{Scale, nearest};
 
 use super::{Input, Refusal, Value};
@@ -88,7 +90,9 @@ pub fn raw_of(
     input: &Input,
     request: bool,
 ) -> Result<u64, Refusal> {
-    Encoder { protocol, signal, request }.raw(input).map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
+    Encoder { protocol, signal, request }
+        .raw(input)
+        .map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
 }
 
 /// Encodes one signal.
@@ -140,13 +144,10 @@ impl Encoder<'_> {
             Input::Number(value) => *value,
             other => return Err(format!("{} is not a number", describe(other))),
         };
-        let raw = if self.signal.encoding.is_unscaled() {
-            nearest(value)
-        } else {
-            runtime_scale(scale, offset).raw(value)
-        };
+        let raw =
+            if self.signal.encoding.is_unscaled() { nearest(value) } else { runtime_scale(scale, offset).raw(value) };
         let special = |raw: &i64| self.signal.specials.iter().any(|special| special.raw == i128::from(*raw));
-        let exact = |raw: &i64| scaled(i128::from(*raw), scale, offset).total_cmp(&value).is_eq();
+        let exact = |raw: &i64| scaled(i128::from(*raw), scale, offset).partial_cmp(&value) == Some(Ordering::Equal);
         if !raw.as_ref().is_some_and(|raw| special(raw) && exact(raw)) {
             self.check_range(value)?;
         }
@@ -195,9 +196,8 @@ impl Encoder<'_> {
 
     /// Says what the bits can hold.
     fn misfit(&self, value: f64) -> String {
-        let (signed, scale, offset) = match self.signal.encoding {
-            Encoding::Number { signed, scale, offset } => (signed, scale, offset),
-            _ => return format!("{value}{} does not fit", self.unit()),
+        let Encoding::Number { signed, scale, offset } = self.signal.encoding else {
+            return format!("{value}{} does not fit", self.unit());
         };
         let width = u32::from(self.signal.place.width());
         let (first, last) =

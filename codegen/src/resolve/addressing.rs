@@ -1,6 +1,7 @@
 //! Addressing modes, address types, and how an identifier shows its direction.
 
 use super::Resolver;
+use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Address, AddressPattern, AddressType, Direction, FieldTest, Identifier, IdentifierField, Mode};
@@ -10,7 +11,7 @@ use crate::syntax::tree::Path;
 
 impl Resolver<'_> {
     /// Reads the types that addressing patterns name.
-    pub fn address_types(&mut self, identifier: &Identifier) -> Vec<AddressType> {
+    pub fn address_types(&mut self) -> Vec<AddressType> {
         let spec = self.spec;
         let used = |name: &str| patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
         let types = spec.types.iter().filter(|(name, _)| used(name));
@@ -19,6 +20,7 @@ impl Resolver<'_> {
 
     fn address_type(&mut self, name: &str, field: &ast::Field) -> Option<AddressType> {
         let path = Path::default().key("types").key(name);
+        self.check_own_keys(&path, field, Role::ADDRESS);
         let Some(text) = &field.range else {
             let help = "say which numbers the document names, for instance `range: 0..0x3B`";
             self.error_with_help("addressing", path.at_key(), format!("the address type `{name}` has no range"), help);
@@ -47,10 +49,11 @@ impl Resolver<'_> {
     /// Reads a range of whole numbers.
     fn whole_range(&mut self, path: &Path, text: &str) -> Option<(i64, i64)> {
         let range = self.range(path, text)?;
-        let whole = |end: Rational| i64::try_from(end.to_integer()?).ok();
+        let whole = |end: Rational| i32::try_from(end.to_integer()?).ok().map(i64::from);
         let ends = whole(range.minimum).zip(whole(range.maximum));
         if ends.is_none() {
-            self.error("addressing", path.at_value(), format!("the addresses `{text}` are not whole numbers"));
+            let message = format!("the addresses `{text}` are not whole numbers of at most 31 bits");
+            self.error("addressing", path.at_value(), message);
         }
         ends
     }
@@ -65,7 +68,8 @@ impl Resolver<'_> {
         let outside = numbers.map(|number| address_type.raw(number)).find(|raw| *raw < 0 || *raw >> field.width != 0);
         if let Some(raw) = outside {
             let (name, bits) = (&address_type.name, field.width);
-            let message = format!("an address of `{name}` is {raw} in the identifier, but `{}` has {bits} bits", field.name);
+            let message =
+                format!("an address of `{name}` is {raw} in the identifier, but `{}` has {bits} bits", field.name);
             let diagnostic = Diagnostic::error("addressing", at.at_value(), message);
             self.diagnostics.push(diagnostic.other(address_type.doc.path.key("range").at_value(), "the addresses"));
         }
@@ -168,7 +172,7 @@ impl Resolver<'_> {
 }
 
 /// Returns every addressing pattern and the key it stands under.
-fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Pattern)> {
+pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Pattern)> {
     spec.addressing.values().flat_map(|mode| {
         let keys = [("request", &mode.request), ("one", &mode.one), ("each", &mode.each)];
         let keys = keys.into_iter().chain([("coordinator", &mode.coordinator)]);

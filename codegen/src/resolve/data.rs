@@ -1,8 +1,10 @@
 //! What a spec says beside the codec: document, timing, procedures, models, errata.
 
 use super::Resolver;
+use super::keys::Role;
 use super::texts::remarks;
-use crate::model::{DeviceModel, Document, Erratum, Procedure, Quantity, Timing, TypeOfModel};
+use crate::number::Rational;
+use crate::model::{DeviceModel, Document, Erratum, Procedure, Quantity, Timing, TypeOfModel, Unit};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -38,12 +40,12 @@ impl Resolver<'_> {
         let rates = texts.iter().enumerate().map(|(index, text)| (path.index(index), text));
         rates
             .filter_map(|(path, text)| {
-                let Some(kilobits) = text.strip_suffix(" kbit/s") else {
+                let rate = bit_rate(text);
+                if rate.is_none() {
                     let message = format!("`{text}` is not a bit rate");
-                    self.error_with_help("number", path.at_value(), message, "write `125 kbit/s`");
-                    return None;
-                };
-                self.integer(&path, kilobits, 1, 8000).map(|rate: u32| rate * 1000)
+                    self.error_with_help("number", path.at_value(), message, "write `125 kbit/s` or `1 Mbit/s`");
+                }
+                rate
             })
             .collect()
     }
@@ -62,11 +64,29 @@ impl Resolver<'_> {
             self.error_with_help("unit", at.at_value(), message, "write `10 s` or `50..200 ms`");
             return None;
         };
-        let unit = self.unit(&at, symbol)?;
+        let unit = self.time_unit(&at, symbol)?;
         let ends = if numbers.contains("..") { numbers.to_owned() } else { format!("{numbers}..{numbers}") };
         let range = self.range(&at, &ends)?;
-        let minimum = timing.minimum.as_ref().and_then(|text| self.quantity(&path.key("minimum"), text));
+        let minimum = timing.minimum.as_ref().and_then(|text| self.minimum(&path.key("minimum"), text));
         Some(Timing { name: name.to_owned(), doc: remarks!(timing).doc(path, None), range, unit, minimum })
+    }
+
+    /// Reads a unit of time.
+    fn time_unit(&mut self, path: &Path, symbol: &str) -> Option<Unit> {
+        let unit = self.unit(path, symbol)?;
+        if matches!(unit.symbol, "s" | "ms" | "min" | "h") {
+            return Some(unit);
+        }
+        let message = format!("`{symbol}` is not a unit of time");
+        self.error_with_help("unit", path.at_value(), message, "the units of time are s ms min h");
+        None
+    }
+
+    /// Reads the shortest time.
+    fn minimum(&mut self, path: &Path, text: &str) -> Option<Quantity> {
+        let quantity = self.quantity(path, text)?;
+        self.time_unit(path, quantity.unit.map_or("", |unit| unit.symbol))?;
+        Some(quantity)
     }
 
     pub fn procedures(&mut self) -> Vec<Procedure> {
@@ -128,6 +148,7 @@ impl Resolver<'_> {
     ) -> Option<TypeOfModel> {
         let path = path.key("types").key(name);
         self.lookup(&path, "type", name, self.spec.types.keys().map(String::as_str))?;
+        self.check_own_keys(&path, field, Role::OF_MODEL);
         let range = field.range.as_ref().and_then(|text| self.range(&path.key("range"), text));
         let default = field.default.as_ref().and_then(|text| self.number(&path.key("default"), text));
         Some(TypeOfModel { name: name.to_owned(), range, default, doc: remarks!(field).doc(&path, Some(outer)) })
@@ -144,4 +165,16 @@ impl Resolver<'_> {
         let ast::Erratum { kind, prints, uses, because, section } = erratum.clone();
         Erratum { name: name.to_owned(), kind, section, prints, uses, because, path: path.clone() }
     }
+}
+
+/// Reads a bit rate in bit/s, at most that of CAN.
+fn bit_rate(text: &str) -> Option<u32> {
+    let (number, unit) = text.split_once(' ')?;
+    let factor = match unit {
+        "kbit/s" => 1_000,
+        "Mbit/s" => 1_000_000,
+        _ => return None,
+    };
+    let rate = Rational::parse(number)?.times(Rational::integer(factor))?.to_integer()?;
+    u32::try_from(rate).ok().filter(|rate| (1..=1_000_000).contains(rate))
 }

@@ -5,6 +5,7 @@ use canspec_runtime::Place;
 use super::Resolver;
 use super::signals::first_byte;
 use super::texts::remarks;
+use crate::interpret::NOTES;
 use crate::model::{Doc, Encoding, Example, Failure, Identifier, Kind, Meaning, Message, Signal, ValueExample};
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;
@@ -25,6 +26,10 @@ impl Resolver<'_> {
             let path = root.key("messages").key(name).key("examples");
             for (position, example) in message.examples.iter().enumerate() {
                 let at = path.index(position);
+                if example.message.is_some() {
+                    let text = "the message of this example is the one it stands in".to_owned();
+                    self.error("misplaced_key", at.key("message").at_key(), text);
+                }
                 examples.extend(self.example(&at, position, example, Some(index), &messages[index].doc, messages));
             }
         }
@@ -84,7 +89,7 @@ impl Resolver<'_> {
             data: printed.data,
             message,
             means: means.unwrap_or_default(),
-            notes: example.notes.clone(),
+            notes: self.notes(&path.key("notes"), &example.notes),
             fails: example.fails.as_ref().and_then(|word| self.failure(&path.key("fails"), word)),
             ours: self.is_ours(path, example.origin.as_deref()),
             position,
@@ -93,6 +98,13 @@ impl Resolver<'_> {
 
     fn is_ours(&mut self, path: &Path, origin: Option<&str>) -> bool {
         origin.is_some_and(|word| self.lookup(&path.key("origin"), "origin", word, ["ours"].into_iter()).is_some())
+    }
+
+    /// Reads the rules of notes that decoding must report.
+    fn notes(&mut self, path: &Path, names: &[String]) -> Vec<String> {
+        let places = names.iter().enumerate();
+        let known = places.filter(|(index, name)| self.lookup(&path.index(*index), "note", name, NOTES.into_iter()).is_some());
+        known.map(|(_, name)| name.clone()).collect()
     }
 
     fn failure(&mut self, path: &Path, word: &str) -> Option<Failure> {
@@ -235,12 +247,7 @@ impl Resolver<'_> {
 }
 
 fn example_remarks(example: &ast::Example) -> super::texts::Remarks<'_> {
-    super::texts::Remarks {
-        title: &None,
-        note: &example.note,
-        section: &example.section,
-        erratum: &example.erratum,
-    }
+    super::texts::Remarks { title: &None, note: &example.note, section: &example.section, erratum: &example.erratum }
 }
 
 fn remarks_of_value(example: &ast::ValueExample) -> super::texts::Remarks<'_> {
@@ -249,7 +256,7 @@ fn remarks_of_value(example: &ast::ValueExample) -> super::texts::Remarks<'_> {
 
 /// Reads pairs of hexadecimal digits.
 fn hex_bytes(text: &str) -> Option<Vec<u8>> {
-    let even = text.len() % 2 == 0 && text.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let even = text.len().is_multiple_of(2) && text.bytes().all(|digit| digit.is_ascii_hexdigit());
     let pairs = (0..text.len()).step_by(2).map(|at| u8::from_str_radix(text.get(at..at + 2)?, 16).ok());
     even.then(|| pairs.collect()).flatten()
 }

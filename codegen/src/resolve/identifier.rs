@@ -1,10 +1,11 @@
 //! The identifier's fields, which together fill 11 or 29 bits.
 
 use super::Resolver;
+use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Identifier, IdentifierField};
-use crate::syntax::ast::IdentifierEntry;
+use crate::syntax::ast::{Field, IdentifierEntry};
 use crate::syntax::tree::Path;
 
 /// The widest identifier.
@@ -23,31 +24,36 @@ impl Resolver<'_> {
     pub fn identifier(&mut self) -> Option<Identifier> {
         let root = Path::default().key("identifier");
         let spec = self.spec;
-        let (mut fields, mut runs, mut mask, mut value) = (Vec::new(), Vec::new(), 0, 0);
-        for (name, entry) in &spec.identifier {
-            let path = root.key(name);
-            match entry {
-                IdentifierEntry::Place(text) => {
-                    let (high, low) = self.bits(&path, text, EXTENDED)?;
-                    let ones = bits_mask(high, low);
-                    mask |= ones;
-                    value |= if self.are_ones(&path, name)? { ones } else { 0 };
-                    runs.push(Run { high, low, path });
+        let mut identifier = Identifier { extended: false, fields: Vec::new(), mask: 0, value: 0 };
+        let entries = spec.identifier.iter();
+        let runs: Vec<_> =
+            entries.map(|(name, entry)| self.entry(&root.key(name), name, entry, &mut identifier)).collect();
+        let runs: Vec<_> = runs.into_iter().collect::<Option<_>>()?;
+        identifier.fields.sort_by_key(|field| std::cmp::Reverse(field.shift));
+        identifier.extended = self.check_layout(&root, runs);
+        Some(identifier)
+    }
+
+    /// Adds an entry to the identifier.
+    fn entry(&mut self, path: &Path, name: &str, entry: &IdentifierEntry, identifier: &mut Identifier) -> Option<Run> {
+        match entry {
+            IdentifierEntry::Place(text) => {
+                let ones = self.are_ones(path, name);
+                let (high, low) = self.bits(path, text, EXTENDED)?;
+                identifier.mask |= bits_mask(high, low);
+                identifier.value |= if ones? { bits_mask(high, low) } else { 0 };
+                Some(Run { high, low, path: path.clone() })
+            }
+            IdentifierEntry::Field(field) => {
+                let (field, run) = self.identifier_field(path, name, field)?;
+                if let Some(constant) = field.constant {
+                    identifier.mask |= field.mask();
+                    identifier.value |= constant << field.shift;
                 }
-                IdentifierEntry::Field(_) => {
-                    let (field, run) = self.identifier_field(&path, name, entry)?;
-                    if let Some(constant) = field.constant {
-                        mask |= field.mask();
-                        value |= constant << field.shift;
-                    }
-                    fields.push(field);
-                    runs.push(run);
-                }
+                identifier.fields.push(field);
+                Some(run)
             }
         }
-        fields.sort_by_key(|field| std::cmp::Reverse(field.shift));
-        let width = self.check_layout(&root, runs)?;
-        Some(Identifier { extended: width == EXTENDED, fields, mask, value })
     }
 
     /// Tells `ones` from `zeros`.
@@ -55,15 +61,10 @@ impl Resolver<'_> {
         self.lookup(path, "fill", name, ["ones", "zeros"].into_iter()).map(|index| index == 0)
     }
 
-    fn identifier_field(
-        &mut self,
-        path: &Path,
-        name: &str,
-        entry: &IdentifierEntry,
-    ) -> Option<(IdentifierField, Run)> {
-        let IdentifierEntry::Field(field) = entry else { return None };
+    fn identifier_field(&mut self, path: &Path, name: &str, field: &Field) -> Option<(IdentifierField, Run)> {
         self.check_name(path, name);
         let merged = self.merged(path, field)?;
+        self.check_keys(&merged, Role::IDENTIFIER);
         let Some(text) = &merged.field.bits else {
             let help = "say which bits, for instance `bits: 28..26`";
             self.error_with_help("place", path.at_key(), format!("the field `{name}` has no place"), help);
@@ -85,23 +86,22 @@ impl Resolver<'_> {
         Some((IdentifierField { name, doc, shift: low, width, constant, send, normal, enumeration }, run))
     }
 
-    /// Tests that the entries leave no gap and share no bit; returns the identifier's width.
-    fn check_layout(&mut self, root: &Path, mut runs: Vec<Run>) -> Option<u8> {
+    /// Tests that the entries leave no gap and share no bit; tells whether the identifier is the widest one.
+    fn check_layout(&mut self, root: &Path, mut runs: Vec<Run>) -> bool {
         runs.sort_by_key(|run| run.low);
         let mut next = 0;
         for (index, run) in runs.iter().enumerate() {
             if run.low != next {
                 self.report_layout(run, index.checked_sub(1).map(|below| &runs[below]), next);
-                return None;
+                return run.high >= STANDARD;
             }
             next = run.high + 1;
         }
         if next != STANDARD && next != EXTENDED {
             let message = format!("the identifier's fields take {next} bits");
             self.error_with_help("identifier_layout", root.at_key(), message, "an identifier has 11 or 29 bits");
-            return None;
         }
-        Some(next)
+        next == EXTENDED
     }
 
     /// Reports a run that does not start at bit `next`, where the one below it ends.

@@ -80,10 +80,19 @@ impl Resolver<'_> {
         message: &ast::Message,
         surroundings: &Surroundings,
     ) -> Vec<MessageAccess> {
-        let mut accesses = Vec::new();
+        let mut accesses: Vec<MessageAccess> = Vec::new();
+        if message.access.is_empty() {
+            let text = "the message has no access, so it has no frames".to_owned();
+            self.error_with_help("access", path.key("access").at_key(), text, "name at least one access");
+        }
         for (index, name) in message.access.iter().enumerate() {
             let names = surroundings.accesses.iter().map(|access| access.name.as_str());
             let Some(access) = self.lookup(&path.key("access").index(index), "access", name, names) else { continue };
+            if accesses.iter().any(|earlier| earlier.access == access) {
+                let text = format!("the access `{name}` is named twice");
+                self.error("access", path.key("access").index(index).at_value(), text);
+                continue;
+            }
             let known = &surroundings.accesses[access];
             let answers = if message.answers.is_empty() {
                 known.answers.clone()
@@ -146,9 +155,10 @@ impl Resolver<'_> {
             let twice = constants[..index].iter().find(|(known, other)| known == selector && other != value);
             if let Some((_, other)) = twice {
                 let name = &self.tables.selectors[*selector].name;
+                let kind = kind.name();
                 let message =
-                    format!("in a {} by `{access}`, `{name}` would have to be both {other:#X} and {value:#X}", kind.name());
-                let pattern = Path::default().key("access").key(access).key(kind.name()).key(name);
+                    format!("in a {kind} by `{access}`, `{name}` would have to be both {other:#X} and {value:#X}");
+                let pattern = Path::default().key("access").key(access).key(kind).key(name);
                 let diagnostic = Diagnostic::error("match", path.key("match").key(name).at_value(), message);
                 self.diagnostics.push(diagnostic.other(pattern.at_value(), "the access"));
             }

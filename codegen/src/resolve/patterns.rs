@@ -111,7 +111,12 @@ impl Resolver<'_> {
         let width = field.map_or(if identifier.extended { 29 } else { 11 }, |field| identifier.fields[field].width);
         let (first, last) = text.split_once("..").unwrap_or((text, text));
         let greatest = u32::MAX >> (32 - width);
-        Some((field, self.integer(path, first, 0, greatest)?, self.integer(path, last, 0, greatest)?))
+        let (start, end) = (self.integer(path, first, 0, greatest)?, self.integer(path, last, 0, greatest)?);
+        if start > end {
+            let message = format!("the range `{text}` ends below its start");
+            self.error_with_help("range", path.at_value(), message, format!("write `{last}..{first}`"));
+        }
+        Some((field, start, end))
     }
 }
 

@@ -3,13 +3,14 @@
 use canspec_runtime::Place;
 
 use super::Resolver;
+use super::keys::Role;
 use super::texts::remarks;
 use super::types::Merged;
 use crate::model::{Doc, Encoding, Kind, Piece, Signal};
 use crate::number::Rational;
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
-use crate::texts::{Texts, raw_of_text};
+use crate::texts::raw_of_text;
 
 /// What the fields of a message come to.
 #[derive(Default)]
@@ -42,7 +43,7 @@ impl Resolver<'_> {
         let mut leaves = Leaves::default();
         self.leaves(path, fields, Outer { word, doc, owner }, &mut leaves);
         for (constant, _) in &leaves.constants {
-            let message = format!("`{}` cannot be constant in {owner}", constant.name);
+            let message = format!("`{}` cannot be constant here", constant.name);
             let help = "write constants of the header in `match` or in the access; parts of a text have none";
             self.error_with_help("type", constant.doc.path.key("const").at_key(), message, help);
         }
@@ -77,17 +78,22 @@ impl Resolver<'_> {
         let doc = remarks!(field).doc(path, Some(outer.doc));
         let doc = Doc { title: merged.field.title.clone(), ..doc };
         if merged.field.format.is_some() {
+            self.check_keys(&merged, Role::PACKED);
             leaves.signals.push(self.packed(name, &merged, doc, outer)?);
             return Some(());
         }
         let place = self.place(path, name, &merged, outer.word)?;
         if !merged.field.fields.is_empty() {
+            self.check_keys(&merged, Role::WORD);
+            self.tables.words.push(doc.clone());
             let inside = Outer { word: Some(place), doc: &doc, ..outer };
             let fields = merged.path(self.diagnostics, "fields");
             self.leaves(&fields, &merged.field.fields.clone(), inside, leaves);
             return Some(());
         }
         let signal = self.signal(name, &merged, place, doc, outer.owner)?;
+        let constant = merged.field.constant.is_some();
+        self.check_keys(&merged, if constant { Role::CONSTANT } else { Role::of_signal(&signal.encoding) });
         match &merged.field.constant {
             None => leaves.signals.push(signal),
             Some(text) => {
@@ -135,8 +141,7 @@ impl Resolver<'_> {
         let signed = matches!(encoding, Encoding::Number { signed: true, .. });
         let values = merged.path(self.diagnostics, "values");
         let named = matches!(encoding, Encoding::Named(_));
-        let specials =
-            if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
+        let specials = if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
         let unit = field.unit.as_ref().and_then(|text| self.unit(&merged.path(self.diagnostics, "unit"), text));
         let range = field.range.as_ref().and_then(|text| self.range(&merged.path(self.diagnostics, "range"), text));
         let kinds = self.kinds(&merged.path(self.diagnostics, "in"), &field.kinds);
@@ -168,8 +173,7 @@ impl Resolver<'_> {
 
     /// Reads a physical value as written in a spec; `None` where it is not on the signal's grid, which is reported.
     pub fn raw_text(&mut self, path: &Path, signal: &Signal, text: &str, unit: bool) -> Option<u64> {
-        let tables = Texts { enumerations: &self.tables.enumerations, status_words: &self.tables.status_words };
-        match raw_of_text(&tables, signal, text, unit) {
+        match raw_of_text(&self.tables.enumerations, signal, text, unit) {
             Ok(bits) => Some(bits),
             Err(why) => {
                 self.error("value", path.at_value(), why);
@@ -224,7 +228,7 @@ impl Resolver<'_> {
     }
 
     fn text(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
-        if place.width() % 8 != 0 {
+        if !place.width().is_multiple_of(8) {
             let message = format!("a text has whole bytes, the place of `{name}` has {} bits", place.width());
             self.error("type", merged.sources[0].key("as").at_value(), message);
             return None;
@@ -239,6 +243,7 @@ impl Resolver<'_> {
         let format = merged.field.format.clone()?;
         let at = merged.path(self.diagnostics, "format");
         let pieces = self.pieces(&at, &format, &parts)?;
+        self.check_pieces(&at, &pieces, &parts);
         let place = self.packed_place(&at, &parts)?;
         let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, "in"), &merged.field.kinds);
         Some(Signal {
@@ -281,6 +286,19 @@ impl Resolver<'_> {
             pieces.push(Piece::Literal(rest.to_owned()));
         }
         Some(pieces)
+    }
+
+    /// Tests that a text shows every part once.
+    fn check_pieces(&mut self, path: &Path, pieces: &[Piece], parts: &[Signal]) {
+        for (index, part) in parts.iter().enumerate() {
+            let shows = |piece: &&Piece| matches!(piece, Piece::Part { part, .. } if *part == index);
+            let times = pieces.iter().filter(shows).count();
+            if times != 1 {
+                let message = format!("the format shows the part `{}` {times} times", part.name);
+                let help = "show every part once, or the text cannot be read back";
+                self.error_with_help("format", path.at_value(), message, help);
+            }
+        }
     }
 
     /// Returns the run of bytes that the parts fill.

@@ -190,11 +190,9 @@ impl Resolver<'_> {
 fn suggestion<'n>(what: &str, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
     let near = names.clone().map(|known| (strsim::jaro_winkler(known, name), known));
     let best = near.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
-    match best {
-        Some((_, best)) => format!("did you mean `{best}`?"),
-        None => {
-            let known: Vec<_> = names.map(|known| format!("`{known}`")).collect();
-            if known.is_empty() { format!("there is no {what} yet") } else { format!("there is {}", known.join(", ")) }
-        }
+    if let Some((_, best)) = best {
+        return format!("did you mean `{best}`?");
     }
+    let known: Vec<_> = names.map(|known| format!("`{known}`")).collect();
+    if known.is_empty() { format!("there is no {what} yet") } else { format!("there is {}", known.join(", ")) }
 }

@@ -19,7 +19,11 @@ pub struct Merged {
 impl Merged {
     /// Returns where `key` is written.
     pub fn path(&self, diagnostics: &Diagnostics, key: &str) -> Path {
-        let written = self.sources.iter().map(|source| source.key(key)).find(|path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some()));
+        let written = self
+            .sources
+            .iter()
+            .map(|source| source.key(key))
+            .find(|path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some()));
         written.unwrap_or_else(|| self.sources[0].clone())
     }
 }
@@ -37,6 +41,32 @@ impl Resolver<'_> {
     pub fn type_docs(&self) -> Vec<Doc> {
         let root = Path::default().key("types");
         self.spec.types.iter().map(|(name, field)| remarks!(field).doc(&root.key(name), None)).collect()
+    }
+
+    /// Tests the names of types, and that each is used.
+    pub fn check_types_used(&mut self) {
+        let root = Path::default().key("types");
+        let spec = self.spec;
+        for (name, field) in &spec.types {
+            self.check_type_name(&root.key(name), name);
+            let is_address = super::addressing::patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
+            if is_address || self.tables.used_types.contains(name) {
+                continue;
+            }
+            if field.examples.is_empty() {
+                let diagnostic = Diagnostic::warning("unused_type", root.key(name).at_key(), format!("nothing uses the type `{name}`"));
+                self.diagnostics.push(diagnostic.help("name it in a field or in an addressing mode, or take it out"));
+            }
+        }
+    }
+
+    /// Tests the name of a type, which may have capitals as documents have them.
+    fn check_type_name(&mut self, path: &Path, name: &str) {
+        let plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !plain || !name.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
+            let help = "names of types are letters, digits and `_`, and start with a letter";
+            self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
+        }
     }
 
     /// Adds the keys of a field's types to its own, which win.
@@ -62,6 +92,7 @@ impl Resolver<'_> {
             let source = Path::default().key("types").key(name);
             merged.sources.push(source.clone());
             merged.types.push(name.clone());
+            self.tables.used_types.push(name.clone());
             let field = &mut merged.field;
             take!(field, other, bytes bits format_of_number scale offset unit range format constant send normal default outside title;
                 values fields status kinds);
@@ -89,13 +120,7 @@ impl Resolver<'_> {
     }
 
     /// Finds or makes the named values of a field, if it has any.
-    pub fn enumeration(
-        &mut self,
-        merged: &Merged,
-        otherwise: &str,
-        width: u8,
-        doc: &Doc,
-    ) -> Option<usize> {
+    pub fn enumeration(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> Option<usize> {
         if merged.field.values.is_empty() {
             return None;
         }
@@ -123,8 +148,12 @@ impl Resolver<'_> {
             let Some(number) = self.raw_key(&at, raw, first, last) else { continue };
             let repeats = |earlier: &NamedValue| earlier.raw == number || earlier.name == *name;
             if let Some(index) = named.iter().position(repeats) {
-                let what = if named[index].raw == number { "has two names" } else { "is one of two with this name" };
-                let diagnostic = Diagnostic::error("named_value", at.at_key(), format!("the raw value {number} {what}"));
+                let message = if named[index].raw == number {
+                    format!("the raw value {number} has two names")
+                } else {
+                    format!("`{name}` is the name of two raw values")
+                };
+                let diagnostic = Diagnostic::error("named_value", at.at_key(), message);
                 self.diagnostics.push(diagnostic.other(Path::at_key(&places[index]), "the other one"));
                 continue;
             }

@@ -17,33 +17,62 @@ pub type Pattern = Map<String>;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spec {
+    /// Version of the spec language: `1`.
     pub canspec: String,
+    /// Name of the protocol, of its Rust module and of `--protocol`, in lower-case letters, digits and `_`: `charger`.
     pub protocol: String,
+    /// What the devices are, in a few words without a full stop: `Charging modules`.
     pub title: String,
+    /// The vendor document that the spec follows: `{title: Charging module CAN protocol, version: V1.0}`.
     pub document: Document,
+    /// Data bytes of each frame, 0 to 8, unless a message says otherwise: `8`.
     pub length: String,
+    /// Speeds of the bus in whole kbit/s, a list: `[125 kbit/s, 250 kbit/s]`; none if absent.
     #[serde(default)]
     pub bit_rates: Vec<String>,
+    /// Fields of the identifier by name, together with `ones` and `zeros` all of its 11 or 29 bits:
+    /// `{command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}`.
     pub identifier: Map<IdentifierEntry>,
+    /// Fields by name of the data bytes that choose the message: `{register: {bytes: 2..3}}`; none if absent. A frame
+    /// has them if its message or its access names one of them.
     #[serde(default)]
     pub header: Map<Field>,
+    /// Fields by name whose keys other fields take with `type`, and the address types that `addressing` names:
+    /// `{real: {as: float}, module: {range: 0x00..0x3B}}`; none if absent.
     #[serde(default)]
     pub types: Map<Field>,
+    /// Addressing modes by name, which say how the identifier shows to whom a request goes and who answers:
+    /// `{single: {request: {target: module}, one: {source: module}}}`; none if absent.
     #[serde(default)]
     pub addressing: Map<Mode>,
+    /// Accesses by name: which kinds of frames there are, and what tells them apart:
+    /// `{read: {request: {}, reply: {}, in: [reply], answers: {single: one}}}`.
     pub access: Map<Access>,
+    /// Identifiers of somebody else on the bus, by name, never sent and refused on receipt:
+    /// `{others: {match: {identifier: 0x100..0x1FF}}}`; none if absent.
     #[serde(default)]
     pub foreign: Map<Foreign>,
+    /// Messages by name, a register being one too:
+    /// `{fan_speed: {match: {command: 0x03}, access: [read], value: {bytes: 0..1, unit: rpm}}}`; none if absent.
     #[serde(default)]
     pub messages: Map<Message>,
+    /// Device models by name, and what differs with them:
+    /// `{SM75030: {max_parallel: 60, types: {volts: {range: 50..750}}}}`; none if absent.
     #[serde(default)]
     pub models: Map<DeviceModel>,
+    /// Times that the document states, by name: `{watchdog: {time: 10 s}}`; none if absent.
     #[serde(default)]
     pub timing: Map<Timing>,
+    /// Procedures by name, each a list of steps: `{switch_on: {steps: [Apply the input power, Close the relay]}}`; none
+    /// if absent.
     #[serde(default)]
     pub procedures: Map<Procedure>,
+    /// Sequences of example frames by name, where the document shows several messages in a row:
+    /// `{start: {frames: [{request: 000302F0#0000, message: output}]}}`; none if absent.
     #[serde(default)]
     pub examples: Map<Sequence>,
+    /// Departures from the document by name:
+    /// `{E1: {kind: ocr, prints: 13 38, uses: 13 88, because: the text says 500 V}}`; none if absent.
     #[serde(default)]
     pub errata: Map<Erratum>,
 }
@@ -52,16 +81,22 @@ pub struct Spec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Document {
+    /// Title as printed: `Charging module CAN protocol`.
     pub title: String,
+    /// Version as printed: `V1.0`.
     pub version: String,
+    /// Date of that version: `2020-10-18`; not stated if absent.
     pub date: Option<String>,
+    /// Name of the file that was read: `charger.pdf`; not stated if absent.
     pub file: Option<String>,
 }
 
 /// One entry of `identifier`: a named field, or the place of unnamed `ones` or `zeros`.
 #[derive(Clone, Debug)]
 pub enum IdentifierEntry {
+    /// Bits that must be 1 after `ones`, or 0 after `zeros`, from the most to the least significant: `6..1` or `25`.
     Place(String),
+    /// A field with its `bits`: `{bits: 28..16}`.
     Field(Box<Field>),
 }
 
@@ -69,36 +104,74 @@ pub enum IdentifierEntry {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Field {
+    /// Bytes of the frame, 0 to 7, from the most to the least significant: `0..3` is big-endian, `7..4` little-endian,
+    /// `2` a single byte. A field has either `bytes` or `bits`.
     pub bytes: Option<String>,
+    /// Bits of the identifier or of the word around the field, from the most to the least significant, which is 0:
+    /// `31..16`, or `7` for a single bit.
     pub bits: Option<String>,
+    /// Entry of `types`, or a list of them, from which the field takes the keys that it does not have itself: `real` or
+    /// `[real, volts]`, where the last one wins; none if absent.
     #[serde(rename = "type", default)]
     pub types: Names,
+    /// Number format: `unsigned`, `signed` (two's complement), `float` (IEEE 754 in 32 bits) or `text` (ASCII in whole
+    /// bytes); `unsigned` if absent.
     #[serde(rename = "as")]
     pub format_of_number: Option<String>,
+    /// Step of the raw value in the field's unit, exact: `1/10` or `0.02`; 1 if absent. The physical value is raw x
+    /// scale + offset; an address has a scale of 1 or -1.
     pub scale: Option<String>,
+    /// Physical value of raw 0 in the field's unit, exact: `-40` or `0xFD`; 0 if absent.
     pub offset: Option<String>,
+    /// Unit of the physical value: `V`, `A`, `W`, `Hz`, `°C`, `%`, `s`, `ms`, `min`, `h`, `rpm` or `m`; none if absent.
     pub unit: Option<String>,
+    /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`; all that the bits hold if
+    /// absent. An address type must have it, with the addresses that the document names: `0x00..0x3B`.
     pub range: Option<String>,
+    /// Names of raw values, before scale and offset: `{0: standby, 1: running}`; none if absent. Beside `unit`,
+    /// `scale`, `offset` or `range` they are special values, which lie outside the range.
     #[serde(default)]
     pub values: Map<String>,
+    /// Fields by name that are the parts of a word, or of a text with a `format`:
+    /// `{mode: {bits: 7..4}, stage: {bits: 3..0}}`; none if absent.
     #[serde(default)]
     pub fields: Map<Field>,
+    /// Bits of a status word by name, in place of `fields`: `{fan_fault: {bit: 3, severity: fault}}`; none if absent.
     #[serde(default)]
     pub status: Map<StatusBit>,
+    /// Form of a text that the parts in `fields` make up, a number with at least so many digits:
+    /// `"{letter}-{number:4}"`; none if absent.
     pub format: Option<String>,
+    /// Raw value that is always sent and required: `0x1205`; none if absent. Another value in the identifier is another
+    /// protocol, in a message it is another message.
     #[serde(rename = "const")]
     pub constant: Option<String>,
+    /// Raw value of a field of the identifier, or number of an address type, that is sent unless the caller chooses
+    /// another: `0xF0`. If absent, the field is 0 and the address the caller's to choose.
     pub send: Option<String>,
+    /// Raw value of a reply that is no error reply, in a field of the identifier or the header: `0`; none if absent.
+    /// Any other value gets the note `error_code`.
     pub normal: Option<String>,
+    /// Physical value without its unit, or name, that the device starts with and that stands for a signal left out:
+    /// `60` or `automatic`; none if absent.
     pub default: Option<String>,
+    /// What a number outside the `range` of an address type is: with `refused` something else than such an address. If
+    /// absent, it is accepted with the note `address`.
     pub outside: Option<String>,
+    /// The only kinds of frames that have the field, of `request`, `reply` and `report`: `[request]`; if absent, those
+    /// that the access says.
     #[serde(rename = "in", default)]
     pub kinds: Vec<String>,
+    /// Bytes and what they mean, in an entry of `types` only: `[{bytes: 43FA0000, means: 500}]`; none if absent.
     #[serde(default)]
     pub examples: Vec<ValueExample>,
+    /// What it is, in a few words without a full stop: `Output voltage`; if absent, what its type says.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `0 until a group has been set`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -107,15 +180,26 @@ pub struct Field {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StatusBit {
+    /// Number of the bit in its word, 0 being the least significant: `3`.
     pub bit: String,
+    /// How grave the set bit is: `state` (a condition), `alarm` (the device recovers) or `fault` (a defect); not stated
+    /// if absent.
     pub severity: Option<String>,
+    /// Condition that sets the bit, as a text: `no command for 10 s`; not stated if absent.
     pub set_when: Option<String>,
+    /// Condition that clears the bit, as a text: `a command arrives`; not stated if absent.
     pub clear_when: Option<String>,
+    /// What the device does while the bit is set, as a text: `module switches off`; not stated if absent.
     pub effect: Option<String>,
+    /// What the device's LED shows while the bit is set, as a text: `red`; not stated if absent.
     pub led: Option<String>,
+    /// What it is, in a few words without a full stop: `Fan fault`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `valid on three-phase modules only`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -124,9 +208,13 @@ pub struct StatusBit {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ValueExample {
+    /// Bytes of the type alone in hexadecimal, 1 to 8, the first byte first: `43FA0000`.
     pub bytes: String,
+    /// Physical value of these bytes, with the unit if the type has one, a name or a text: `500 V`.
     pub means: String,
+    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -135,13 +223,24 @@ pub struct ValueExample {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mode {
+    /// What the identifier of a request shows, a number or an address type for each field:
+    /// `{target: module, source: controller}`. If absent, nobody is asked in this mode.
     pub request: Option<Pattern>,
+    /// What the identifier shows if the one module addressed answers or reports:
+    /// `{target: controller, source: module}`; none if absent.
     pub one: Option<Pattern>,
+    /// What the identifier shows if each module addressed answers for itself: `{target: controller, source: module}`;
+    /// none if absent.
     pub each: Option<Pattern>,
+    /// What the identifier shows if one module answers for all: `{target: controller, source: group}`; none if absent.
     pub coordinator: Option<Pattern>,
+    /// What it is, in a few words without a full stop: `All modules of one group`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `the group must have been set before`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -150,17 +249,32 @@ pub struct Mode {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Access {
+    /// Raw values that fields of the identifier and the header have in a request, which goes to a module:
+    /// `{function: 3}`, or `{}` if none are fixed. If absent, there is no request.
     pub request: Option<Pattern>,
+    /// Raw values that fields of the identifier and the header have in a reply: `{function: 3}`, or `{}` if none are
+    /// fixed. If absent, there is no reply.
     pub reply: Option<Pattern>,
+    /// Raw values that fields of the identifier and the header have in a report, which is sent unasked:
+    /// `{function: 5}`, or `{}` if none are fixed. If absent, there is no report.
     pub report: Option<Pattern>,
+    /// Kinds of frames that carry the message's fields, of `request`, `reply` and `report`: `[reply]`; all that the
+    /// access has if absent.
     #[serde(rename = "in", default)]
     pub kinds: Vec<String>,
+    /// Who answers in the addressing modes that may be used, `one`, `each`, `coordinator` or `nobody`:
+    /// `{single: one, broadcast: nobody}`; no mode may be used if absent.
     #[serde(default)]
     pub answers: Map<String>,
+    /// Entry of `timing` that says how often a report comes: `cycle`; not stated if absent.
     pub every: Option<String>,
+    /// What it is, in a few words without a full stop: `Read from modules`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `the reply carries the values now in effect`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -169,11 +283,17 @@ pub struct Access {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Foreign {
+    /// Number or range for fields of the identifier, all of which must hold; `identifier` is the whole of it:
+    /// `{identifier: 0x100..0x1FF}` or `{command: 0x21}`.
     #[serde(rename = "match")]
     pub pattern: Pattern,
+    /// What it is, in a few words without a full stop: `Traffic between modules`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `a controller may ignore it`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -182,21 +302,37 @@ pub struct Foreign {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Message {
+    /// Raw values that fields of the identifier and the header have in every frame of the message: `{command: 0x03}`;
+    /// none if absent.
     #[serde(rename = "match", default)]
     pub pattern: Pattern,
+    /// Accesses by which the message travels, a list: `[read, set]`.
     pub access: Vec<String>,
+    /// Who answers in the addressing modes that may be used, in place of what the accesses say: `{single: one}`; as
+    /// they say if absent.
     #[serde(default)]
     pub answers: Map<String>,
+    /// Data bytes of its frames, 0 to 8, which never choose the message: `4`; the protocol's `length` if absent.
     pub length: Option<String>,
+    /// Entry of `timing` that says how often its report comes: `cycle`; as its access says if absent.
     pub every: Option<String>,
+    /// Fields by name that the message carries: `{voltage: {bytes: 0..1, scale: 1/10, unit: V}}`; none if absent.
     #[serde(default)]
     pub fields: Map<Field>,
+    /// The only field of the message, which is then called `value`, in place of `fields`:
+    /// `{bytes: 4..7, as: float, unit: V}`; none if absent.
     pub value: Option<Field>,
+    /// Frames of the document in its order, in which a reply answers the request before it:
+    /// `[{request: 000302F0#0000000000000000}]`; none if absent.
     #[serde(default)]
     pub examples: Vec<Example>,
+    /// What it is, in a few words without a full stop: `Output voltage and current of one module`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `a module that is switched off answers with zeros`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -205,17 +341,32 @@ pub struct Message {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Example {
+    /// A frame towards a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` where the document prints
+    /// no data. An example has one of `request`, `reply` and `report`.
     pub request: Option<String>,
+    /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` where the document prints no data.
     pub reply: Option<String>,
+    /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` where the document prints no data.
     pub report: Option<String>,
+    /// Message that the frame belongs to, in a sequence only: `output`; if absent, the frame fails as `identifier`,
+    /// `foreign` or `unknown_message`.
     pub message: Option<String>,
+    /// Value of every signal in the frame with its unit: `{voltage: 500 V, alarms: [fan_fault]}`, or `500 V` if there
+    /// is only one. Absent where there are no signals or no data.
     pub means: Option<Means>,
+    /// Rules of all notes that decoding gives, a list: `[reserved_bit]`; no note if absent.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// How the printed frame fails: `identifier`, `foreign`, `length`, `unknown_message`, `message` (it is another
+    /// one), `addressing` or `values`. If absent, it decodes and encodes back.
     pub fails: Option<String>,
+    /// `ours` for a frame that the document does not print; if absent, it does.
     pub origin: Option<String>,
+    /// What else a reader must know, in one sentence: `the data bytes are not legible`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -223,8 +374,11 @@ pub struct Example {
 /// What an example means: one value, the set bits of a status word, or a value for each signal.
 #[derive(Clone, Debug)]
 pub enum Means {
+    /// A number with its unit, a name or a text: `500 V`.
     Value(String),
+    /// Names of the set bits of a status word: `[fan_fault]`, or `[]` if none is set.
     Bits(Vec<String>),
+    /// A value for each signal: `{voltage: 500 V, alarms: []}`.
     Signals(Map<Means>),
 }
 
@@ -232,18 +386,28 @@ pub enum Means {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceModel {
+    /// What it is, in a few words without a full stop: `Module for up to 750 V`.
     pub title: Option<String>,
+    /// Item numbers of the model, a list of texts: `[SM-750-30]`; none if absent.
     #[serde(default)]
     pub items: Vec<String>,
+    /// Most devices that can work together, 1 to 65535: `60`; not stated if absent.
     pub max_parallel: Option<String>,
+    /// Speeds of this model in whole kbit/s, a list: `[125 kbit/s]`; not stated if absent.
     #[serde(default)]
     pub bit_rates: Vec<String>,
+    /// Ratings by name that no message carries, numbers with their units: `{rated_current: 20 A}`; none if absent.
     #[serde(default)]
     pub facts: Map<String>,
+    /// The `range` and `default` of this model for entries of `types`, without units:
+    /// `{volts: {range: 50..750, default: 100}}`; none if absent.
     #[serde(default)]
     pub types: Map<Field>,
+    /// What else a reader must know, in one sentence: `answers to broadcasts from software 1.20 on`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -252,11 +416,17 @@ pub struct DeviceModel {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Timing {
+    /// The time or its range, with its unit: `10 s` or `50..200 ms`.
     pub time: String,
+    /// Lower limit that holds beside a recommended time, with its unit: `20 ms`; not stated if absent.
     pub minimum: Option<String>,
+    /// What it is, in a few words without a full stop: `Silence until the module switches off`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `any command counts`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -265,10 +435,15 @@ pub struct Timing {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Procedure {
+    /// Steps in order, a sentence each; a name in backquotes must be a message: ``[Wait 10 s, Read `output`]``.
     pub steps: Vec<String>,
+    /// What it is, in a few words without a full stop: `Switching on`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `repeat it when a module has been replaced`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -277,10 +452,16 @@ pub struct Procedure {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sequence {
+    /// Frames in the document's order, each with its `message`:
+    /// `[{request: 000302F0#0000000000000000, message: output}]`.
     pub frames: Vec<Example>,
+    /// What it is, in a few words without a full stop: `Two modules are read`.
     pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `the last reply is not legible`.
     pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
     pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]
     pub erratum: Names,
 }
@@ -289,10 +470,16 @@ pub struct Sequence {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Erratum {
+    /// What is wrong: `vendor` (a mistake in the original), `translation`, `ocr` (of a scan), `unclear` (it can be read
+    /// in two ways), `gap` (something is missing) or `note` (an oddity that is used as printed).
     pub kind: String,
+    /// What the document prints: `13 38`.
     pub prints: String,
+    /// What the spec uses: `13 88`.
     pub uses: String,
+    /// Why the spec departs from the document: `the text beside it says 500 V`.
     pub because: String,
+    /// Section that prints it, in quotes: `"2.4"`; not stated if absent.
     pub section: Option<String>,
 }
 

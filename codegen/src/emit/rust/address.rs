@@ -26,7 +26,7 @@ pub fn addressing(protocol: &Protocol) -> TokenStream {
 fn address_type(protocol: &Protocol, address: &AddressType) -> TokenStream {
     let AddressType { name, first, last, offset, .. } = address;
     let constant = address_name(name);
-    let title = address.doc.title.as_ref().map_or_else(|| format!("Numbers of `{name}`"), |title| doc::plain(title));
+    let title = doc::title(&address.doc, name);
     let comment = doc::item(protocol, &address.doc, &doc::sentence_of(&format!("{title}: {}", range(address))), None);
     let (first, last) = (number(*first), number(*last));
     let offset = (*offset != 0).then(|| {
@@ -85,9 +85,7 @@ pub fn answers_list(answers: &[Option<Who>]) -> TokenStream {
 
 fn mode(protocol: &Protocol, mode: &Mode) -> TokenStream {
     let (name, constant) = (&mode.name, mode_name(&mode.name));
-    let title =
-        mode.doc.title.as_ref().map_or_else(|| format!("The addressing mode `{name}`"), |title| doc::plain(title));
-    let comment = doc::item(protocol, &mode.doc, &doc::sentence_of(&title), None);
+    let comment = doc::item(protocol, &mode.doc, &doc::sentence_of(&doc::title(&mode.doc, name)), None);
     let target = option(mode.target.map(|index| {
         let name = address_name(&protocol.address_types[index].name);
         quote!(&#name)
@@ -173,8 +171,7 @@ pub fn target(protocol: &Protocol, names: &Names) -> Option<TokenStream> {
 
 fn definition(variant: &Variant) -> TokenStream {
     let name = variant.name;
-    let title = variant.mode.doc.title.as_ref();
-    let title = title.map_or_else(|| format!("The addressing mode `{}`", variant.mode.name), |title| doc::plain(title));
+    let title = doc::title(&variant.mode.doc, &variant.mode.name);
     let numbers = variant.address.map_or_else(String::new, |address| format!(": {}", range(address)));
     let comment = doc::line(doc::sentence_of(&format!("{title}{numbers}")));
     let number = variant.address.map(|address| {

@@ -35,10 +35,8 @@ pub fn item(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>)
 pub fn paragraphs(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> Vec<String> {
     let section =
         doc.section.as_ref().filter(|section| outer.is_none_or(|outer| outer.section.as_ref() != Some(section)));
-    let mut first = sentence.to_owned();
-    if let Some(section) = section {
-        first.push_str(&format!(" {}", sentence_of(&reference(section))));
-    }
+    let section = section.map(|section| sentence_of(&reference(section)));
+    let first = std::iter::once(sentence.to_owned()).chain(section).collect::<Vec<_>>().join(" ");
     let note = doc.note.iter().map(|note| sentence_of(&plain(note)));
     let errata = doc.errata.iter().filter_map(|name| erratum(protocol, name));
     std::iter::once(first).chain(note).chain(errata).collect()
@@ -59,6 +57,11 @@ fn erratum(protocol: &Protocol, name: &str) -> Option<String> {
     Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\"")))
 }
 
+/// Returns what an item is called, for people.
+pub fn title(doc: &Doc, name: &str) -> String {
+    doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| plain(title))
+}
+
 /// Begins with a capital and ends with a full stop.
 pub fn sentence_of(text: &str) -> String {
     let mut letters = text.chars();
@@ -69,6 +72,8 @@ pub fn sentence_of(text: &str) -> String {
 
 /// Writes a text so that Markdown shows it as it is: names that look like code are marked as code.
 pub fn plain(text: &str) -> String {
+    let is_paired = text.matches('`').count().is_multiple_of(2);
+    let text = if is_paired { text.to_owned() } else { text.replace('`', "'") };
     let mut in_code = false;
     let words = text.split_whitespace().map(|word| {
         let ticks = word.matches('`').count();
@@ -76,8 +81,7 @@ pub fn plain(text: &str) -> String {
         in_code ^= ticks % 2 == 1;
         shown
     });
-    let shown = words.collect::<Vec<_>>().join(" ");
-    if in_code { shown.replace('`', "'") } else { shown }
+    words.collect::<Vec<_>>().join(" ")
 }
 
 fn escaped(word: &str) -> String {
@@ -123,4 +127,28 @@ fn begins_list(word: &str) -> bool {
     let numbered = word.trim_end_matches(['.', ')']);
     word.starts_with(['-', '+', '*', '#', '>', '|', '=', '~'])
         || (numbered.len() < word.len() && numbered.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_code_and_markdown_is_shown_as_it_is() {
+        assert_eq!(plain("see set_group, or [1] in CamelCase"), "see `set_group`, or \\[1\\] in `CamelCase`");
+        assert_eq!(plain("wait after `set group now` once"), "wait after `set group now` once");
+        assert_eq!(plain("a stray ` of set_group"), "a stray ' of `set_group`");
+    }
+
+    #[test]
+    fn no_line_begins_a_list() {
+        let lines = wrapped(&format!("{} - and 12. so", "x".repeat(WIDTH)));
+        assert_eq!(lines, [format!("{} -", "x".repeat(WIDTH)), "and 12. so".to_owned()]);
+    }
+
+    #[test]
+    fn sentences_begin_with_a_capital_and_end_with_a_stop() {
+        assert_eq!(sentence_of("output voltage"), "Output voltage.");
+        assert_eq!(sentence_of("Done?"), "Done?");
+    }
 }

@@ -27,7 +27,7 @@ pub fn identifier(protocol: &Protocol, names: &Names) -> TokenStream {
 
 fn member(protocol: &Protocol, names: &Names, field: &IdentifierField) -> TokenStream {
     let (name, width) = (ident(&field.name), field.width);
-    let title = field.doc.title.as_ref().map_or_else(|| field.name.replace('_', " "), |title| doc::plain(title));
+    let title = doc::title(&field.doc, &field.name);
     let sentence = doc::sentence_of(&format!("{title}: {}", bits(field)));
     let comment = doc::item(protocol, &field.doc, &sentence, None);
     let integer = integer(width, false);
@@ -59,6 +59,11 @@ fn decimal(number: u8) -> TokenStream {
 fn splitting(protocol: &Protocol) -> TokenStream {
     let fields: Vec<_> = protocol.identifier.fields.iter().map(|field| ident(&field.name)).collect();
     let places: Vec<_> = protocol.identifier.fields.iter().map(|field| screaming(&field.name)).collect();
+    let (_, ones) = unnamed(&protocol.identifier);
+    let ones = (ones != 0).then(|| {
+        let ones = hexadecimal(ones, 32);
+        quote!(#ones |)
+    });
     let foreign = foreign(protocol);
     let to_module = test("is_to_module", any(protocol, &protocol.to_module));
     let to_controller = test("is_to_controller", any(protocol, &protocol.to_controller));
@@ -69,7 +74,7 @@ fn splitting(protocol: &Protocol) -> TokenStream {
             }
 
             fn to_raw(self) -> u32 {
-                #(Self::#places.write(self.#fields))|*
+                #ones #(Self::#places.write(self.#fields))|*
             }
 
             #foreign
@@ -79,13 +84,18 @@ fn splitting(protocol: &Protocol) -> TokenStream {
     }
 }
 
+/// Returns mask and value of the fixed bits that are no field.
+pub fn unnamed(identifier: &Identifier) -> (u32, u32) {
+    let constants = identifier.fields.iter().filter(|field| field.constant.is_some());
+    let mask = constants.fold(identifier.mask, |mask, field| mask & !field.mask());
+    (mask, identifier.value & mask)
+}
+
 /// Emits a test of an identifier, or of none if it always comes out the same.
 fn test(name: &str, condition: Option<TokenStream>) -> TokenStream {
     let name = ident(name);
-    match condition {
-        Some(condition) => quote!(fn #name(id: u32) -> bool { #condition }),
-        None => quote!(fn #name(_: u32) -> bool { false }),
-    }
+    let never = quote!(fn #name(_: u32) -> bool { false });
+    condition.map_or(never, |condition| quote!(fn #name(id: u32) -> bool { #condition }))
 }
 
 fn foreign(protocol: &Protocol) -> TokenStream {
@@ -97,7 +107,7 @@ fn foreign_test(protocol: &Protocol, foreign: &Foreign) -> TokenStream {
     let ranges = foreign.ranges.iter().map(|(field, first, last)| {
         let value = field.map_or_else(|| quote!(id), |field| value_of(protocol, field));
         let width = field.map_or(29, |field| protocol.identifier.fields[field].width);
-        inside(&value, &[(*first, *last)], width)
+        inside(&value, (*first, *last), width)
     });
     quote!(#(#ranges)&&*)
 }
@@ -119,11 +129,18 @@ fn disjunction(mut conditions: Vec<TokenStream>) -> Option<TokenStream> {
 
 fn field_test(protocol: &Protocol, test: &FieldTest) -> TokenStream {
     let value = value_of(protocol, test.field);
-    let inside = inside(&value, &test.ranges, protocol.identifier.fields[test.field].width);
-    match (test.inside, test.ranges.as_slice()) {
-        (true, _) => inside,
-        (false, [(first, last)]) if first != last => quote!(!#inside),
-        (false, _) => quote!(!(#inside)),
+    let width = protocol.identifier.fields[test.field].width;
+    let ranges = test.ranges.iter();
+    match (test.inside, test.ranges.len()) {
+        (false, _) => {
+            let tests = ranges.map(|range| outside(&value, *range, width));
+            quote!(#(#tests)&&*)
+        }
+        (true, 1) => ranges.map(|range| inside(&value, *range, width)).collect(),
+        (true, _) => {
+            let tests = ranges.map(|range| inside(&value, *range, width));
+            quote!((#(#tests)||*))
+        }
     }
 }
 
@@ -132,16 +149,16 @@ fn value_of(protocol: &Protocol, field: usize) -> TokenStream {
     quote!(Self::#place.of(id))
 }
 
-/// Tests whether a value lies in one of the ranges.
-fn inside(value: &TokenStream, ranges: &[(u32, u32)], width: u8) -> TokenStream {
-    let tests: Vec<_> = ranges
-        .iter()
-        .map(|(first, last)| {
-            let (start, end) = (hexadecimal(*first, width), hexadecimal(*last, width));
-            if first == last { quote!(#value == #start) } else { quote!((#start..=#end).contains(&#value)) }
-        })
-        .collect();
-    if tests.len() == 1 { quote!(#(#tests)*) } else { quote!((#(#tests)||*)) }
+/// Tests whether a value lies in a range.
+fn inside(value: &TokenStream, (first, last): (u32, u32), width: u8) -> TokenStream {
+    let (start, end) = (hexadecimal(first, width), hexadecimal(last, width));
+    if first == last { quote!(#value == #start) } else { quote!((#start..=#end).contains(&#value)) }
+}
+
+/// Tests whether a value lies outside a range.
+fn outside(value: &TokenStream, (first, last): (u32, u32), width: u8) -> TokenStream {
+    let (start, end) = (hexadecimal(first, width), hexadecimal(last, width));
+    if first == last { quote!(#value != #start) } else { quote!(!(#start..=#end).contains(&#value)) }
 }
 
 /// Returns the path of a field's place.

@@ -71,3 +71,31 @@ fn from_the_left(digits: &str) -> String {
     let size = if digits.len() < 6 { digits.len() } else { 3 };
     digits.as_bytes().chunks(size).map(String::from_utf8_lossy).collect::<Vec<_>>().join("_")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_stand_in_groups() {
+        assert_eq!(hexadecimal(0x0757_F800_u32, 29).to_string(), "0x0757_F800");
+        assert_eq!(hexadecimal(0xA_u32, 4).to_string(), "0xA");
+        assert_eq!(hexadecimal(1_u32, 13).to_string(), "0x0001");
+        assert_eq!(decimal(999_999_999_999_u64).to_string(), "999_999_999_999");
+        assert_eq!(decimal(9999).to_string(), "9999");
+    }
+
+    #[test]
+    fn a_sign_is_an_operator_of_its_own() {
+        assert_eq!(decimal(-12_345).to_string(), "- 12_345");
+    }
+
+    #[test]
+    fn a_double_has_a_point() {
+        let float = |text| float(Rational::parse(text).unwrap_or(Rational::ZERO)).to_string();
+        assert_eq!(float("750"), "750.0");
+        assert_eq!(float("25.7"), "25.7");
+        assert_eq!(float("1/3"), "0.333_333_333_333_333_3");
+        assert_eq!(float("100000"), "100_000.0");
+    }
+}

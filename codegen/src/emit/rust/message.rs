@@ -39,22 +39,17 @@ impl Emitter<'_> {
 
     fn sentence(&self) -> String {
         let Message { name, doc, .. } = self.message;
-        doc::sentence_of(&doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| doc::plain(title)))
+        doc::sentence_of(&doc::title(doc, name))
     }
 
     fn definition(&self, known: &Struct) -> TokenStream {
         let comment = doc::item(self.protocol, &self.message.doc, &self.sentence(), None);
         let name = &known.name;
         let members = known.signals.iter().map(|index| self.member(*index));
-        let exact = known.signals.iter().all(|index| self.is_exact(&self.message.signals[*index]));
+        let exact = known.signals.iter().all(|index| is_exact(&self.message.signals[*index]));
         let eq = exact.then(|| quote!(, Eq, Hash));
         let body = if known.signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
         quote!(#comment #[derive(Clone, Copy, Debug, PartialEq #eq)] pub struct #name #body)
-    }
-
-    /// Tests whether equality of a field is exact.
-    fn is_exact(&self, signal: &Signal) -> bool {
-        !matches!(signal.encoding, Encoding::Float) && !is_scaled(signal)
     }
 
     fn member(&self, index: usize) -> TokenStream {
@@ -67,7 +62,7 @@ impl Emitter<'_> {
     }
 
     fn member_sentence(&self, signal: &Signal) -> String {
-        let title = signal.doc.title.as_ref().map_or_else(|| signal.name.replace('_', " "), |title| doc::plain(title));
+        let title = doc::title(&signal.doc, &signal.name);
         let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
         let facts = [Some(Written::new(signal.place).text()), step(signal), range(signal), specials(signal)];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
@@ -295,6 +290,11 @@ pub fn selector_name(protocol: &Protocol, index: usize) -> Ident {
     let earlier = protocol.selectors[..index].iter().filter(|known| known.name == *name).count();
     let suffix = if earlier == 0 { String::new() } else { format!("_{}", earlier + 1) };
     super::names::ident(&format!("{}_SELECTOR{suffix}", name.to_ascii_uppercase()))
+}
+
+/// Tests whether equality of physical values is exact.
+pub fn is_exact(signal: &Signal) -> bool {
+    !matches!(signal.encoding, Encoding::Float) && !is_scaled(signal)
 }
 
 fn is_scaled(signal: &Signal) -> bool {

@@ -116,6 +116,13 @@ pub fn camel(name: &str) -> String {
     name.split('_').map(capital).collect()
 }
 
+/// Names the variants of an enum, and the one that keeps values without a name.
+pub fn variants<'a>(names: impl Iterator<Item = &'a str>) -> (Vec<Ident>, Ident) {
+    let mut pool = Pool::default();
+    let variants = names.map(|name| pool.take(camel(name), "_")).collect();
+    (variants, pool.take("Unknown".to_owned(), "Value"))
+}
+
 /// Converts `set_module_output` to `SET_MODULE_OUTPUT`.
 pub fn screaming(name: &str) -> Ident {
     ident(&name.to_ascii_uppercase())

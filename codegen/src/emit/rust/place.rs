@@ -26,7 +26,7 @@ impl Written {
     }
 
     /// Counts the bytes from another first byte.
-    pub fn from_byte(self, byte: u8) -> Self {
+    pub fn counted_from(self, byte: u8) -> Self {
         Self { first: self.first.saturating_sub(byte), last: self.last.saturating_sub(byte), ..self }
     }
 
@@ -51,5 +51,36 @@ impl Written {
             Some((high, low)) if high == low => format!("{bytes}, bit {high}"),
             Some((high, low)) => format!("{bytes}, bits {high}..{low}"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(place: Place) -> (String, String) {
+        let written = Written::new(place);
+        (written.expression().to_string().replace(' ', ""), written.text())
+    }
+
+    #[test]
+    fn places_are_written_as_in_the_document() {
+        let cases = [
+            (Place::bytes(0, 3), "Place::bytes(0,3)", "bytes 0..3"),
+            (Place::bytes(7, 4), "Place::bytes(7,4)", "bytes 7..4"),
+            (Place::byte(2), "Place::byte(2)", "byte 2"),
+            (Place::bytes(7, 0).bits(23, 12), "Place::bytes(2,1).bits(15,4)", "bytes 2..1, bits 15..4"),
+            (Place::bytes(0, 1).bits(11, 0), "Place::bytes(0,1).bits(11,0)", "bytes 0..1, bits 11..0"),
+            (Place::bytes(7, 0).bit(48), "Place::byte(6).bit(0)", "byte 6, bit 0"),
+        ];
+        for (place, expression, text) in cases {
+            assert_eq!(written(place), (expression.to_owned(), text.to_owned()));
+        }
+    }
+
+    #[test]
+    fn the_expression_is_the_same_place() {
+        let place = Place::bytes(7, 0).bits(23, 12);
+        assert_eq!(Place::bytes(2, 1).bits(15, 4), place);
     }
 }

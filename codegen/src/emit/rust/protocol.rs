@@ -5,20 +5,20 @@ use quote::quote;
 
 use super::address;
 use super::doc;
+use super::identifier::unnamed;
 use super::literal::hexadecimal;
-use super::message::selector_name;
+use super::message::{is_exact, selector_name};
 use super::names::{MessageNames, Names, ident, screaming};
 use super::place::Written;
-use crate::model::{Encoding, Message, Protocol, SelectorPlace, Shape};
+use crate::model::{Message, Protocol, SelectorPlace, Shape};
 
 /// Emits what every frame shows, and the selectors in the data.
 pub fn frame(protocol: &Protocol) -> TokenStream {
     let width = if protocol.identifier.extended { quote!(EXTENDED) } else { quote!(STANDARD) };
     let fields = &protocol.identifier.fields;
-    let named = fields.iter().filter(|field| field.constant.is_some()).fold(0, |mask, field| mask | field.mask());
-    let unnamed = protocol.identifier.mask & !named;
-    let fixed = (unnamed != 0).then(|| {
-        let (mask, value) = (hexadecimal(unnamed, 32), hexadecimal(protocol.identifier.value & unnamed, 32));
+    let (mask, value) = unnamed(&protocol.identifier);
+    let fixed = (mask != 0).then(|| {
+        let (mask, value) = (hexadecimal(mask, 32), hexadecimal(value, 32));
         quote!(.id_bits(#mask, #value))
     });
     let constants = fields.iter().filter_map(|field| {
@@ -49,7 +49,7 @@ fn selector(protocol: &Protocol, index: usize) -> Option<TokenStream> {
     let SelectorPlace::Payload(place) = known.place else { return None };
     let (constant, name) = (selector_name(protocol, index), &known.name);
     let written = Written::new(place);
-    let title = known.doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| doc::plain(title));
+    let title = doc::title(&known.doc, name);
     let comment = doc::item(protocol, &known.doc, &doc::sentence_of(&format!("{title}: {}", written.text())), None);
     let place_of = written.expression();
     let normal = known.normal.map(|normal| {
@@ -106,11 +106,7 @@ impl<'a> Variants<'a> {
             }
         }
         let mut signals = protocol.messages.iter().flat_map(|message| &message.signals);
-        let is_exact = signals.all(|signal| match signal.encoding {
-            Encoding::Number { .. } => signal.encoding.is_unscaled(),
-            Encoding::Float => false,
-            _ => true,
-        });
+        let is_exact = signals.all(is_exact);
         Self { list, is_exact }
     }
 
@@ -144,9 +140,7 @@ impl<'a> Variants<'a> {
 fn comment(protocol: &Protocol, message: &Message, names: &MessageNames, shape: &Shape) -> String {
     let access = &protocol.accesses[message.accesses[shape.access].access].name;
     match names.carried(shape) {
-        Some(_) => doc::sentence_of(
-            &message.doc.title.as_ref().map_or_else(|| message.name.replace('_', " "), |title| doc::plain(title)),
-        ),
+        Some(_) => doc::sentence_of(&doc::title(&message.doc, &message.name)),
         None => format!("The {} of `{}` by `{access}`.", shape.kind.name(), message.name),
     }
 }
@@ -178,8 +172,7 @@ fn implementation(protocol: &Protocol, names: &Names, variants: &Variants) -> To
 fn row(names: &MessageNames, shape: &Shape, variant: &Ident) -> TokenStream {
     let (home, exchange) = (&names.structs[0].name, &names.exchanges[shape.access]);
     let kind = ident(shape.kind.name());
-    match names.carried(shape) {
-        Some(_) => quote!(Shape::#kind(&#home::#exchange, |data| Self::#variant(Layout::decode(data)))),
-        None => quote!(Shape::#kind(&#home::#exchange, |_| Self::#variant)),
-    }
+    let carries = names.carried(shape).is_some();
+    let decode = if carries { quote!(|data| Self::#variant(Layout::decode(data))) } else { quote!(|_| Self::#variant) };
+    quote!(Shape::#kind(&#home::#exchange, #decode))
 }

@@ -1,15 +1,13 @@
 //! Named values, status words and packed values.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::doc;
 use super::literal::{decimal, hexadecimal};
-use super::names::{camel, ident, screaming};
+use super::names::{ident, screaming, variants};
 use super::place::Written;
-use crate::model::{
-    Encoding, Enumeration, Message, NamedValue, Piece, Protocol, Severity, Signal, StatusBit, StatusWord,
-};
+use crate::model::{Encoding, Enumeration, Message, Piece, Protocol, Severity, Signal, StatusBit, StatusWord};
 
 /// Returns the smallest integer type of so many bits.
 pub fn integer(width: u8, signed: bool) -> TokenStream {
@@ -20,13 +18,12 @@ pub fn integer(width: u8, signed: bool) -> TokenStream {
 
 /// Emits an enum with a variant a name, and one for all other values.
 pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration) -> TokenStream {
-    let sentence = title(&enumeration.doc.title, &enumeration.name);
+    let sentence = doc::sentence_of(&doc::title(&enumeration.doc, &enumeration.name));
     let comment = doc::item(protocol, &enumeration.doc, &sentence, None);
-    let variants: Vec<_> = enumeration.values.iter().map(variant).collect();
+    let (variants, unknown) = variants(enumeration.values.iter().map(|value| value.name.as_str()));
     let raws: Vec<_> = enumeration.values.iter().map(|value| decimal(value.raw)).collect();
     let texts: Vec<_> = enumeration.values.iter().map(|value| &value.name).collect();
     let comments = enumeration.values.iter().map(|value| doc::line(format!("{}: `{}`.", value.raw, value.name)));
-    let unknown = unknown(&variants);
     let raw = integer(enumeration.width, false);
     quote! {
         #comment
@@ -54,24 +51,9 @@ pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration)
     }
 }
 
-/// Returns the title as a sentence, or the name if there is none.
-fn title(title: &Option<String>, name: &str) -> String {
-    doc::sentence_of(&title.as_ref().map_or_else(|| name.replace('_', " "), |title| doc::plain(title)))
-}
-
-fn variant(value: &NamedValue) -> Ident {
-    ident(&camel(&value.name))
-}
-
-/// Names the variant of values without a name, so that it is none of the others.
-fn unknown(variants: &[Ident]) -> Ident {
-    let taken = variants.iter().any(|variant| variant == "Unknown");
-    if taken { format_ident!("Other") } else { format_ident!("Unknown") }
-}
-
 /// Emits a newtype with a constant a bit.
 pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord) -> TokenStream {
-    let comment = doc::item(protocol, &word.doc, &title(&word.doc.title, &word.name), None);
+    let comment = doc::item(protocol, &word.doc, &doc::sentence_of(&doc::title(&word.doc, &word.name)), None);
     let raw = integer(word.width, false);
     let constants = word.bits.iter().map(|bit| constant(protocol, word, bit));
     let rows = word.bits.iter().map(row);
@@ -111,15 +93,13 @@ fn constant(protocol: &Protocol, word: &StatusWord, bit: &StatusBit) -> TokenStr
     let name = screaming(&bit.name);
     let mask = hexadecimal(1_u64 << bit.bit, word.width.next_power_of_two().max(8));
     let severity = bit.severity.map_or_else(String::new, |severity| format!(", {}", severity_name(severity)));
-    let title = doc::plain(bit.doc.title.as_ref().unwrap_or(&bit.name.replace('_', " ")));
-    let mut sentence = doc::sentence_of(&format!("{title}: bit {}{severity}", bit.bit));
+    let title = doc::title(&bit.doc, &bit.name);
     let remarks =
         [("Set when", &bit.set_when), ("Cleared when", &bit.clear_when), ("Effect:", &bit.effect), ("LED:", &bit.led)];
-    for (word, remark) in remarks {
-        if let Some(remark) = remark {
-            sentence.push_str(&format!(" {}", doc::sentence_of(&format!("{word} {}", doc::plain(remark)))));
-        }
-    }
+    let remarks =
+        remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", doc::plain(remark.as_ref()?))));
+    let sentences = std::iter::once(format!("{title}: bit {}{severity}", bit.bit)).chain(remarks);
+    let sentence = sentences.map(|text| doc::sentence_of(&text)).collect::<Vec<_>>().join(" ");
     let comment = doc::item(protocol, &bit.doc, &sentence, Some(&word.doc));
     quote!(#comment pub const #name: Self = Self(#mask);)
 }
@@ -134,7 +114,7 @@ fn severity_name(severity: Severity) -> &'static str {
 
 fn row(bit: &StatusBit) -> TokenStream {
     let constructor = bit.severity.map_or_else(|| format_ident!("new"), |severity| ident(severity_name(severity)));
-    let (number, name) = (proc_macro2::Literal::u8_unsuffixed(bit.bit), &bit.name);
+    let (number, name) = (Literal::u8_unsuffixed(bit.bit), &bit.name);
     let title = bit.doc.title.clone().unwrap_or_else(|| bit.name.replace('_', " "));
     quote!(StatusBit::#constructor(#number, #name, #title))
 }
@@ -142,22 +122,39 @@ fn row(bit: &StatusBit) -> TokenStream {
 /// Emits a struct of the parts of a packed value, with their text.
 pub fn packed(protocol: &Protocol, name: &Ident, message: &Message, signal: &Signal) -> Option<TokenStream> {
     let Encoding::Packed { pieces, parts } = &signal.encoding else { return None };
-    let sentence = title(signal.doc.title.as_ref().map_or(&message.doc.title, |_| &signal.doc.title), &signal.name);
-    let text = doc::line(format!("{sentence} Written as `{}`.", format(pieces, parts)));
-    let first = first_byte(signal);
-    let bytes = proc_macro2::Literal::u8_unsuffixed(signal.place.width() / 8);
-    let fields: Vec<_> = parts.iter().map(|part| ident(&part.name)).collect();
-    let constants: Vec<_> = parts.iter().map(|part| screaming(&part.name)).collect();
-    let places = parts.iter().map(|part| Written::new(part.place).from_byte(first).expression());
+    let titled = if signal.doc.title.is_some() { &signal.doc } else { &message.doc };
+    let sentence = doc::sentence_of(&doc::title(titled, &signal.name));
+    let comment = doc::line(format!("{sentence} Written as `{}`.", format(pieces, parts)));
     let members = parts.iter().map(|part| member(protocol, part, signal));
-    let pieces = pieces.iter().map(|known| piece(known, parts));
+    let constants = parts.iter().map(|part| screaming(&part.name));
+    let first = first_byte(signal);
+    let places = parts.iter().map(|part| Written::new(part.place).counted_from(first).expression());
+    let word = packed_word(name, signal, pieces, parts);
     Some(quote! {
-        #text
+        #comment
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct #name { #(#members),* }
 
         impl #name { #(const #constants: Place = #places;)* }
 
+        #word
+
+        impl Packed for #name {}
+
+        impl Display for #name {
+            fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+                self.write(formatter)
+            }
+        }
+    })
+}
+
+fn packed_word(name: &Ident, signal: &Signal, pieces: &[Piece], parts: &[Signal]) -> TokenStream {
+    let bytes = Literal::u8_unsuffixed(signal.place.width() / 8);
+    let fields: Vec<_> = parts.iter().map(|part| ident(&part.name)).collect();
+    let constants: Vec<_> = parts.iter().map(|part| screaming(&part.name)).collect();
+    let pieces = pieces.iter().map(|known| piece(known, parts));
+    quote! {
         impl Word for #name {
             type Raw = u64;
             const LEGEND: Legend<Self> = Legend::Text(#bytes, &[#(#pieces),*]);
@@ -173,15 +170,7 @@ pub fn packed(protocol: &Protocol, name: &Ident, message: &Message, signal: &Sig
                 right_aligned(data, #bytes)
             }
         }
-
-        impl Packed for #name {}
-
-        impl Display for #name {
-            fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-                self.write(formatter)
-            }
-        }
-    })
+    }
 }
 
 fn first_byte(signal: &Signal) -> u8 {
@@ -201,7 +190,7 @@ fn format(pieces: &[Piece], parts: &[Signal]) -> String {
 fn member(protocol: &Protocol, part: &Signal, signal: &Signal) -> TokenStream {
     let (name, width) = (ident(&part.name), part.place.width());
     let is_text = matches!(part.encoding, Encoding::Text);
-    let title = doc::plain(part.doc.title.as_ref().unwrap_or(&part.name.replace('_', " ")));
+    let title = doc::title(&part.doc, &part.name);
     let range = part.range.map_or_else(String::new, |range| format!(", `{}..={}`", range.minimum, range.maximum));
     let sentence = doc::sentence_of(&format!("{title}: {}{range}", Written::new(part.place).text()));
     let comment = doc::item(protocol, &part.doc, &sentence, Some(&signal.doc));
@@ -211,7 +200,7 @@ fn member(protocol: &Protocol, part: &Signal, signal: &Signal) -> TokenStream {
 
 /// Returns the type of a text of so many bits.
 pub fn text_type(width: u8) -> TokenStream {
-    let bytes = proc_macro2::Literal::u8_unsuffixed(width / 8);
+    let bytes = Literal::u8_unsuffixed(width / 8);
     quote!(Text<#bytes>)
 }
 
@@ -231,7 +220,7 @@ fn piece(piece: &Piece, parts: &[Signal]) -> TokenStream {
     match digits {
         None => quote!(Piece::number(Self::#place) #limits),
         Some(digits) => {
-            let digits = proc_macro2::Literal::usize_unsuffixed(*digits);
+            let digits = Literal::usize_unsuffixed(*digits);
             quote!(Piece::digits(Self::#place, #digits) #limits)
         }
     }

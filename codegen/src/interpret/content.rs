@@ -1,0 +1,68 @@
+//! What was decoded, as what encodes it.
+
+use super::{Content, Decoded, Form, Frame, Input, Value};
+use crate::model::{Encoding, Example, Message, Protocol, SelectorPlace, Signal};
+
+impl Frame {
+    /// Returns the frame of an example; one printed without data has those bytes alone that choose its message.
+    pub fn of(protocol: &Protocol, example: &Example) -> Self {
+        let message = example.message.map(|index| &protocol.messages[index]);
+        let data = example.data.clone().unwrap_or_else(|| {
+            let length = message.map_or(8, |message| message.length);
+            let constants = message.map_or([0; 8], |message| constants(protocol, message, example));
+            constants.into_iter().take(length.into()).collect()
+        });
+        Self { id: example.id, extended: example.extended, data, form: Form::Data }
+    }
+}
+
+/// Returns the data bytes that choose a kind of frame of a message.
+fn constants(protocol: &Protocol, message: &Message, example: &Example) -> [u8; 8] {
+    let mut data = [0; 8];
+    let shape = message.shapes.iter().find(|shape| shape.kind == example.kind);
+    for (selector, value) in shape.iter().flat_map(|shape| &shape.constants) {
+        if let SelectorPlace::Payload(place) = protocol.selectors[*selector].place {
+            place.put(&mut data, *value);
+        }
+    }
+    data
+}
+
+impl Content {
+    /// Takes over what a frame was decoded to, so that encoding gives the same frame.
+    pub fn of(protocol: &Protocol, decoded: &Decoded) -> Self {
+        let message = &protocol.messages[decoded.message];
+        let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
+        let selectors = decoded.selectors.iter().map(|(index, value)| (protocol.selectors[*index].name.clone(), *value));
+        let signals = decoded.signals.iter().map(|reading| {
+            let signal = &message.signals[reading.signal];
+            (signal.name.clone(), Input::of(protocol, signal, &reading.value, reading.bits))
+        });
+        Self {
+            message: message.name.clone(),
+            access: Some(protocol.accesses[decoded.access].name.clone()),
+            kind: Some(decoded.kind),
+            identifier: fields.map(|(field, value)| (field.name.clone(), u64::from(*value))).collect(),
+            selectors: selectors.collect(),
+            signals: signals.collect(),
+            reserved: decoded.reserved.iter().copied().take(decoded.length).collect(),
+        }
+    }
+}
+
+impl Input {
+    /// Takes over a value; one without a physical value stands for its bits.
+    pub fn of(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Self {
+        match value {
+            Value::None => Self::Raw(bits.into()),
+            Value::Integer(value) => Self::Integer(*value),
+            Value::Number(value) => Self::Number(*value),
+            Value::Name(text) | Value::Text(text) => Self::Text(text.clone()),
+            Value::Status { set, unknown } => {
+                let Encoding::Status(index) = signal.encoding else { return Self::Raw(bits.into()) };
+                let names = protocol.status_words[index].bits.iter().filter(|bit| set.contains(&bit.bit));
+                Self::Status { set: names.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
+            }
+        }
+    }
+}

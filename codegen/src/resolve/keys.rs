@@ -1,0 +1,102 @@
+//! Keys that mean nothing where they stand are refused, rather than passed over.
+
+use super::Resolver;
+use super::types::Merged;
+use crate::model::Encoding;
+use crate::syntax::ast::Field;
+use crate::syntax::tree::Path;
+
+/// What a field is used as, with the keys that it reads beside title, note, section, erratum and `type`.
+#[derive(Clone, Copy)]
+pub struct Role {
+    /// The role in a sentence: "`scale` means nothing for ...".
+    name: &'static str,
+    keys: &'static [&'static str],
+}
+
+impl Role {
+    pub const IDENTIFIER: Self =
+        Self { name: "a field of the identifier", keys: &["bits", "const", "send", "normal", "values"] };
+    pub const ADDRESS: Self =
+        Self { name: "an address type", keys: &["range", "scale", "offset", "outside", "send", "examples"] };
+    pub const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields"] };
+    pub const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in"] };
+    pub const CONSTANT: Self =
+        Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
+    pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
+
+    /// Returns the role of a signal.
+    pub fn of_signal(encoding: &Encoding) -> Self {
+        match encoding {
+            Encoding::Number { .. } => Self {
+                name: "a number",
+                keys: &["bytes", "bits", "as", "scale", "offset", "unit", "range", "values", "default", "in", "normal"],
+            },
+            Encoding::Float => {
+                Self { name: "a float", keys: &["bytes", "bits", "as", "unit", "range", "default", "in"] }
+            }
+            Encoding::Named(_) => Self {
+                name: "a signal of named values",
+                keys: &["bytes", "bits", "as", "values", "default", "in", "normal"],
+            },
+            Encoding::Status(_) => Self { name: "a status word", keys: &["bytes", "bits", "status", "in"] },
+            Encoding::Text => Self { name: "a text", keys: &["bytes", "bits", "as", "default", "in"] },
+            Encoding::Packed { .. } => Self::PACKED,
+        }
+    }
+}
+
+impl Resolver<'_> {
+    /// Refuses the keys of a field, and of its types, that its role does not read.
+    pub fn check_keys(&mut self, merged: &Merged, role: Role) {
+        for key in written(&merged.field).filter(|key| !role.keys.contains(key)) {
+            let path = merged.path(self.diagnostics, key);
+            self.misplaced(&path, key, role);
+        }
+        let field = &merged.sources[0];
+        if !merged.field.examples.is_empty() && !field.ancestors().any(|outer| *outer == Path::default().key("types")) {
+            self.misplaced(&field.key("examples"), "examples", role);
+        }
+        let in_header = field.ancestors().any(|outer| *outer == Path::default().key("header"));
+        if merged.field.normal.is_some() && !in_header && role.keys.contains(&"in") {
+            self.misplaced(&merged.path(self.diagnostics, "normal"), "normal", role);
+        }
+    }
+
+    /// Refuses keys of a field that takes none from types.
+    pub fn check_own_keys(&mut self, path: &Path, field: &Field, role: Role) {
+        for key in written(field).filter(|key| !role.keys.contains(key)) {
+            self.misplaced(&path.key(key), key, role);
+        }
+    }
+
+    fn misplaced(&mut self, path: &Path, key: &str, role: Role) {
+        let message = format!("`{key}` means nothing for {}", role.name);
+        let help = format!("take it out; {} reads `{}`", role.name, role.keys.join("`, `"));
+        self.error_with_help("misplaced_key", path.at_key(), message, help);
+    }
+}
+
+/// Returns the keys that a field writes, without `examples` and what every field may say.
+fn written(field: &Field) -> impl Iterator<Item = &'static str> + use<> {
+    let keys = [
+        ("bytes", field.bytes.is_some()),
+        ("bits", field.bits.is_some()),
+        ("as", field.format_of_number.is_some()),
+        ("scale", field.scale.is_some()),
+        ("offset", field.offset.is_some()),
+        ("unit", field.unit.is_some()),
+        ("range", field.range.is_some()),
+        ("values", !field.values.is_empty()),
+        ("fields", !field.fields.is_empty()),
+        ("status", !field.status.is_empty()),
+        ("format", field.format.is_some()),
+        ("const", field.constant.is_some()),
+        ("send", field.send.is_some()),
+        ("normal", field.normal.is_some()),
+        ("default", field.default.is_some()),
+        ("outside", field.outside.is_some()),
+        ("in", !field.kinds.is_empty()),
+    ];
+    keys.into_iter().filter(|(_, is_written)| *is_written).map(|(key, _)| key)
+}

@@ -1,0 +1,283 @@
+//! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
+
+use std::string::ToString;
+
+use crate::{
+    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Kind,
+    Layout, Mode, Pattern, Payload, Place, Problem, Protocol, Received, Replies, Request, Route, Selector, Shape,
+    Signal, Who,
+};
+
+const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
+const ERROR: Bits = Bits::new(28, 26);
+const COMMAND: Bits = Bits::new(23, 16);
+const TARGET: Bits = Bits::new(15, 8);
+const SOURCE: Bits = Bits::new(7, 0);
+
+const CONTROLLER: AddressType = AddressType::new("controller", 0xF0, 0xF1).strict().default_number(0xF0);
+const HEATER: AddressType = AddressType::new("heater", 1, 9);
+const GROUP: AddressType = AddressType::new("group", 0, 15).offset(0x5F).descending();
+
+const OTHERS: &[(u32, u32)] = &[(0x3F, 0x3F), (0x50, 0x5F), (0xF0, 0xF1)];
+const TO_CONTROLLER: Address = Address::new(TARGET, &CONTROLLER);
+const FROM_CONTROLLER: Address = Address::new(SOURCE, &CONTROLLER);
+
+const fn mode(name: &'static str, target: Option<&'static AddressType>, request: Pattern) -> Mode {
+    Mode { name, target, request: Some(request), one: None, each: None, coordinator: None }
+}
+
+const FROM_HEATER: Pattern =
+    Pattern { constants: &[], addresses: &[TO_CONTROLLER, Address::new(SOURCE, &HEATER).excluding(OTHERS)] };
+
+const SINGLE: Mode = Mode {
+    one: Some(FROM_HEATER),
+    ..mode(
+        "single",
+        Some(&HEATER),
+        Pattern { constants: &[], addresses: &[Address::new(TARGET, &HEATER).excluding(OTHERS), FROM_CONTROLLER] },
+    )
+};
+
+const GROUPED: Mode = Mode {
+    each: Some(FROM_HEATER),
+    coordinator: Some(Pattern { constants: &[], addresses: &[TO_CONTROLLER, Address::new(SOURCE, &GROUP)] }),
+    ..mode(
+        "grouped",
+        Some(&GROUP),
+        Pattern {
+            constants: &[],
+            addresses: &[Address::new(TARGET, &GROUP).excluding(&[(0, 0x4F), (0x60, 0xFF)]), FROM_CONTROLLER],
+        },
+    )
+};
+
+const ALL: Mode = mode("all", None, Pattern { constants: &[(TARGET, 0x3F)], addresses: &[FROM_CONTROLLER] });
+
+#[derive(Clone, Copy)]
+enum To {
+    Heater(u8),
+    Group(u8),
+    All,
+}
+
+impl Destination for To {
+    type Protocol = Message;
+
+    fn mode(self) -> usize {
+        match self {
+            Self::Heater(_) => 0,
+            Self::Group(_) => 1,
+            Self::All => 2,
+        }
+    }
+
+    fn number(self) -> Option<i32> {
+        match self {
+            Self::Heater(number) | Self::Group(number) => Some(number.into()),
+            Self::All => None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Identifier(u32);
+
+impl IdentifierFields for Identifier {
+    fn from_raw(id: u32) -> Self {
+        Self(id)
+    }
+
+    fn to_raw(self) -> u32 {
+        self.0
+    }
+
+    fn is_foreign(id: u32) -> bool {
+        id == 0x0100_0000
+    }
+
+    fn is_to_module(id: u32) -> bool {
+        SOURCE.of(id) >= 0xF0 && TARGET.of(id) < 0xF0
+    }
+
+    fn is_to_controller(id: u32) -> bool {
+        TARGET.of(id) >= 0xF0 && SOURCE.of(id) < 0xF0
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Heat {
+    power_w: f64,
+}
+
+const FUNCTION: Selector = Selector::new("function", Place::byte(0));
+const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
+
+impl Heat {
+    const POWER: Signal<u16> = Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
+    const SET: Exchange = Exchange::new("heat", "set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
+        .length(4)
+        .request(FRAME.id(COMMAND, 7).selectors(&[FUNCTION]).data(FUNCTION.place, 1))
+        .reply(FRAME.id(COMMAND, 7).selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2));
+    const READ: Exchange = Exchange::new("heat", "read", &[None, Some(Who::Coordinator), None])
+        .length(4)
+        .request(FRAME.id(COMMAND, 8))
+        .reply(FRAME.id(COMMAND, 8));
+
+    fn set(self, route: impl Into<Route<To>>) -> Result<Request<Self>, Error> {
+        Self::SET.request_to(route, &self)
+    }
+}
+
+impl Layout for Heat {
+    fn decode(data: &Data) -> Self {
+        Self { power_w: Self::POWER.decode(data) }
+    }
+
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+        Self::POWER.encode(self.power_w, payload)
+    }
+
+    fn signals(&self) -> &'static [&'static dyn AnySignal] {
+        &[&Self::POWER]
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Message {
+    Heat(Heat),
+    ReadHeat,
+}
+
+impl Protocol for Message {
+    type Identifier = Identifier;
+    const FRAME: Filter = FRAME;
+    const NORMAL: Filter = FRAME.id(ERROR, 0);
+    const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];
+    const SHAPES: &'static [Shape<Self>] = &[
+        Shape::request(&Heat::SET, |data| Self::Heat(Layout::decode(data))),
+        Shape::reply(&Heat::SET, |data| Self::Heat(Layout::decode(data))),
+        Shape::request(&Heat::READ, |_| Self::ReadHeat),
+        Shape::reply(&Heat::READ, |data| Self::Heat(Layout::decode(data))),
+    ];
+
+    fn layout(&self) -> &dyn Layout {
+        match self {
+            Self::Heat(message) => message,
+            Self::ReadHeat => &(),
+        }
+    }
+}
+
+const HEAT: Heat = Heat { power_w: 1500.0 };
+
+fn frame(id: u32, data: [u8; 4]) -> Frame {
+    let [a, b, c, d] = data;
+    Frame::new_raw(id, true, [a, b, c, d, 0, 0, 0, 0], 4)
+}
+
+fn decode(frame: &Frame) -> Result<Received<Message>, Problem> {
+    Received::decode(frame)
+}
+
+fn mode_of(id: u32, data: [u8; 4]) -> Option<(&'static str, bool, bool)> {
+    let addressing = decode(&frame(id, data)).expect("a known frame").addressing()?;
+    Some((addressing.mode().name, addressing.is_offered(), addressing.is_documented()))
+}
+
+#[test]
+fn a_request_shows_addresses_constants_and_values() {
+    let request = |route: Route<To>| HEAT.set(route).expect("a legal request").frame().to_string();
+    assert_eq!(request(To::Heater(3).into()), "010703F0#01000096");
+    assert_eq!(request(Route::new(To::Heater(3), 0xF1)), "010703F1#01000096");
+    assert_eq!(request(To::Group(2).into()), "01075DF0#01000096");
+    assert_eq!(request(To::All.into()), "01073FF0#01000096");
+}
+
+#[test]
+fn a_request_refuses_addresses_modes_and_values_that_are_not_documented() {
+    let refusal = |result: Result<Request<Heat>, Error>| result.expect_err("a refusal").to_string();
+    assert_eq!(refusal(HEAT.set(To::Heater(10))), "`heater` is 10, but its limits are 1 and 9");
+    assert_eq!(refusal(HEAT.set(Route::new(To::All, 0xF2))), "`controller` is 242, but its limits are 240 and 241");
+    let read = Heat::READ.request_to(To::All, &());
+    assert_eq!(refusal(read), "`heat` has no `read` with the addressing mode `all`");
+    let hot = Heat { power_w: 2000.1 }.set(To::All);
+    assert_eq!(refusal(hot), "`power` of `heat` is 2000.1 W, but its limits are 0 and 2000 W");
+}
+
+#[test]
+fn replies_come_from_whom_the_request_addressed() {
+    let request = HEAT.set(To::Heater(3)).expect("a legal request");
+    assert!(matches!(request.replies(), Replies::One(filter) if filter.id_mask() == 0x03FF_FFFF));
+    assert_eq!(request.reply(&frame(0x0107_F003, [2, 0xF0, 0, 0x64])), Some(Heat { power_w: 1000.0 }));
+    for other in [0x0107_F004, 0x0107_F103, 0x0108_F003, 0x0107_03F0] {
+        assert!(!request.is_reply(&frame(other, [2, 0xF0, 0, 0x64])), "{other:X}");
+    }
+    assert!(!request.is_reply(&frame(0x0107_F003, [1, 0xF0, 0, 0x64])));
+}
+
+#[test]
+fn each_heater_of_a_group_may_answer_and_nobody_answers_all() {
+    let request = HEAT.set(To::Group(2)).expect("a legal request");
+    assert!(matches!(request.replies(), Replies::Each(filter) if filter.id_mask() == 0x03FF_FF00));
+    assert!(request.is_reply(&frame(0x0107_F009, [2, 0xF0, 0, 0])));
+    let coordinator: Request<Heat> = Heat::READ.request_to(To::Group(2), &()).expect("a legal request");
+    assert!(matches!(coordinator.replies(), Replies::Coordinator(filter) if filter.id_value() == 0x0108_F05D));
+    assert_eq!(HEAT.set(To::All).expect("a legal request").replies(), &Replies::Nobody);
+}
+
+#[test]
+fn an_error_reply_is_a_reply_without_values() {
+    let request = HEAT.set(To::Heater(3)).expect("a legal request");
+    for error in [frame(0x0907_F003, [2, 0xF0, 0, 0]), frame(0x0107_F003, [2, 0xF2, 0, 0])] {
+        assert!(request.is_reply(&error) && request.is_error_reply(&error));
+        assert_eq!(request.reply(&error), None);
+        assert!(decode(&error).expect("a known frame").is_error_reply());
+    }
+}
+
+#[test]
+fn problems_are_tested_in_order() {
+    let problem = |frame: Frame| decode(&frame).map(|received| received.kind()).expect_err("a problem");
+    assert_eq!(problem(Frame::new_raw(0x0100_0000, true, [0; 8], 1)), Problem::Foreign);
+    assert_eq!(problem(Frame::new_raw(0x107, false, [0; 8], 4)), Problem::Identifier);
+    assert_eq!(problem(frame(0x0307_03F0, [1, 0, 0, 0])), Problem::Identifier);
+    assert_eq!(problem(frame(0x0107_F0F0, [1, 0, 0, 0])), Problem::Identifier);
+    assert_eq!(problem(Frame::new_raw(0x0109_03F0, true, [0; 8], 1)), Problem::UnknownMessage);
+    assert_eq!(problem(Frame::new_raw(0x0107_03F0, true, [9; 8], 3)), Problem::Length);
+    assert_eq!(problem(frame(0x0107_03F0, [9, 0, 0, 0])), Problem::UnknownMessage);
+}
+
+#[test]
+fn the_addressing_mode_is_the_one_that_fits_best() {
+    assert_eq!(mode_of(0x0107_03F0, [1, 0, 0, 0]), Some(("single", true, true)));
+    assert_eq!(mode_of(0x0107_30F0, [1, 0, 0, 0]), Some(("single", true, false)));
+    assert_eq!(mode_of(0x0107_3FF0, [1, 0, 0, 0]), Some(("all", true, true)));
+    assert_eq!(mode_of(0x0107_5DF0, [1, 0, 0, 0]), Some(("grouped", true, true)));
+    assert_eq!(mode_of(0x0108_3FF0, [0; 4]), Some(("all", false, true)));
+    assert_eq!(mode_of(0x0107_F25D, [2, 0xF0, 0, 0]), None);
+}
+
+#[test]
+fn a_frame_is_taken_apart_and_built_anew() {
+    let received = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
+    assert_eq!((received.kind(), received.message), (Kind::Reply, Message::Heat(HEAT)));
+    let selectors: std::vec::Vec<_> = received.selectors().map(|(selector, raw)| (selector.name, raw)).collect();
+    assert_eq!(selectors, [("function", 2), ("result", 0xF0)]);
+    assert_eq!(received.reserved(), [0; 8]);
+    assert_eq!(received.encode(), Ok(*received.frame()));
+    let request = decode(&frame(0x0107_03F0, [1, 0x80, 0x00, 0x96])).expect("a known frame");
+    assert_eq!(request.reserved(), [0, 0x80, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(request.encode(), Ok(*request.frame()));
+}
+
+#[test]
+fn a_message_is_not_built_under_the_identifier_of_another() {
+    let mut received = decode(&frame(0x0107_03F0, [1, 0, 0x00, 0x96])).expect("a known frame");
+    for (id, expected) in [(0x0108_03F0, "0x10803F0"), (0x0107_F003, "0x107F003"), (0x0100_0000, "0x1000000")] {
+        received.identifier = Identifier(id);
+        let text = received.encode().expect_err("a refusal").to_string();
+        assert_eq!(text, std::format!("the identifier {expected} is none of `heat`"));
+    }
+    received.identifier = Identifier(0x0107_30F0);
+    assert_eq!(received.encode().expect_err("a refusal").to_string(), "`heater` is 48, but its limits are 1 and 9");
+}

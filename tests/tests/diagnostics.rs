@@ -1,0 +1,146 @@
+//! Every rule of the compiler has a spec that breaks it, what is said about that, and the spec mended.
+
+use std::collections::BTreeSet;
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use canspec_codegen::compile;
+use canspec_codegen::diagnostic::Diagnostics;
+use canspec_codegen::rules::RULES;
+use canspec_codegen::source::Source;
+
+/// Rules that no YAML file can break, which the compiler tests itself.
+const WITHOUT_FIXTURE: [&str; 1] = ["file"];
+
+type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
+
+#[test]
+fn a_spec_that_breaks_a_rule_gets_exactly_the_expected_text() -> Result {
+    let mut wrong = Vec::new();
+    for spec in fixtures("bad")? {
+        let diagnostics = diagnose(&spec)?;
+        let rendered = format!("{}\n", diagnostics.render(false));
+        let expected = spec.with_extension("stderr");
+        if std::env::var_os("CANSPEC_BLESS").is_some() {
+            fs::write(&expected, &rendered)?;
+        } else if fs::read_to_string(&expected).ok().as_deref() != Some(&rendered) {
+            wrong.push(format!("{}:\n{rendered}", spec.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "run with CANSPEC_BLESS=1 if this is right:\n{}", wrong.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn a_spec_that_breaks_a_rule_names_that_rule() -> Result {
+    for spec in fixtures("bad")? {
+        let rule = folder_name(&spec);
+        assert!(diagnose(&spec)?.located().any(|found| found.rule == rule), "{}", spec.display());
+    }
+    Ok(())
+}
+
+#[test]
+fn a_mended_spec_gets_no_diagnostic() -> Result {
+    for spec in fixtures("good")? {
+        let diagnostics = diagnose(&spec)?;
+        assert!(diagnostics.is_empty(), "{}\n{}", spec.display(), diagnostics.render(false));
+    }
+    Ok(())
+}
+
+#[test]
+fn every_rule_has_a_folder_with_both_specs() -> Result {
+    let listed: BTreeSet<_> = RULES.iter().map(|rule| rule.name.to_owned()).collect();
+    let expected: BTreeSet<_> =
+        listed.iter().filter(|rule| !WITHOUT_FIXTURE.contains(&rule.as_str())).cloned().collect();
+    assert_eq!(expected, files(&rules_folder())?.iter().map(|path| file_name(path)).collect());
+    for rule in expected {
+        for file in ["bad.yaml", "bad.stderr", "good.yaml"] {
+            assert!(rules_folder().join(&rule).join(file).exists(), "{rule}/{file}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn every_rule_that_the_compiler_reports_is_listed() -> Result {
+    let mut reported = BTreeSet::new();
+    for file in rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../codegen/src"))? {
+        reported.extend(reported_rules(&fs::read_to_string(file)?));
+    }
+    assert_eq!(reported, RULES.iter().map(|rule| rule.name.to_owned()).collect());
+    Ok(())
+}
+
+#[test]
+fn all_errors_of_one_stage_come_in_one_run_in_the_order_of_the_file() -> Result {
+    let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs/stages");
+    for (stage, expected) in [
+        ("syntax", &[(3, "unknown_key"), (8, "duplicate_key"), (17, "plain_word"), (23, "wrong_kind")][..]),
+        ("resolve", &[(8, "number"), (12, "unit"), (16, "name"), (26, "place"), (29, "value"), (29, "name")]),
+        ("check", &[(19, "section"), (25, "outside_frame"), (26, "overlap"), (28, "special_value"), (31, "erratum")]),
+    ] {
+        let diagnostics = diagnose(&specs.join(stage).with_extension("yaml"))?;
+        let found: Vec<_> =
+            diagnostics.located().map(|found| (found.place.map_or(0, |place| place.line), found.rule)).collect();
+        assert_eq!(found, expected, "{stage}");
+    }
+    Ok(())
+}
+
+fn diagnose(spec: &Path) -> Result<Diagnostics> {
+    let source = Source::new(file_name(spec), fs::read(spec)?)?;
+    Ok(compile(source).diagnostics)
+}
+
+/// Returns the specs of all rules of which the name starts with `prefix`.
+fn fixtures(prefix: &str) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for folder in files(&rules_folder())? {
+        let specs = files(&folder)?.into_iter().filter(|path| path.extension().is_some_and(|kind| kind == "yaml"));
+        found.extend(specs.filter(|path| file_name(path).starts_with(prefix)));
+    }
+    assert!(!found.is_empty());
+    Ok(found)
+}
+
+fn rules_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("specs/rules")
+}
+
+fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for path in files(folder)? {
+        if path.is_dir() {
+            found.extend(rust_files(&path)?);
+        } else if path.extension().is_some_and(|kind| kind == "rs") {
+            found.push(path);
+        }
+    }
+    Ok(found)
+}
+
+fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut paths: Vec<_> = entries.collect::<Result<_>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
+/// Returns the first arguments of the calls that report something.
+fn reported_rules(source: &str) -> Vec<String> {
+    let calls = ["Diagnostic::error(", "Diagnostic::warning(", ".error(", ".error_with_help(", "stopped("];
+    let arguments = calls.iter().flat_map(|call| source.split(call).skip(1));
+    let literals = arguments.filter_map(|argument| argument.trim_start().strip_prefix('"')?.split_once('"'));
+    literals.map(|(rule, _)| rule.to_owned()).collect()
+}
+
+fn folder_name(path: &Path) -> String {
+    path.parent().map(file_name).unwrap_or_default()
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
