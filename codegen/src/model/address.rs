@@ -1,0 +1,126 @@
+//! Addresses, addressing modes, and how an identifier shows its direction.
+
+use crate::model::{Doc, Who};
+
+/// A kind of address: a range of numbers in a field of the identifier.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct AddressType {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// First number that the document names.
+    pub first: i64,
+    /// Last number that the document names.
+    pub last: i64,
+    /// Number of raw 0.
+    pub offset: i64,
+    /// Step of the number from one raw value to the next, 1 or -1: raw = (number - offset) * sign.
+    pub sign: i64,
+    /// A number outside the range is something else, rather than an undocumented address.
+    pub strict: bool,
+    /// Number sent unless the caller says otherwise.
+    pub send: Option<i64>,
+}
+
+impl AddressType {
+    /// Returns the raw value of an address number.
+    pub fn raw(&self, number: i64) -> i64 {
+        (number - self.offset) * self.sign
+    }
+
+    /// Returns the address number of a raw value.
+    pub fn number(&self, raw: u32) -> i64 {
+        i64::from(raw) * self.sign + self.offset
+    }
+
+    /// Returns the documented raw values as an inclusive range.
+    pub fn raw_range(&self) -> (u32, u32) {
+        let ends = [self.raw(self.first), self.raw(self.last)].map(|end| u32::try_from(end).unwrap_or(0));
+        (ends[0].min(ends[1]), ends[0].max(ends[1]))
+    }
+
+    /// Tests whether the document names this raw value.
+    pub fn documents(&self, raw: u32) -> bool {
+        (self.first..=self.last).contains(&self.number(raw))
+    }
+}
+
+/// An addressing mode.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Mode {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// What the identifier of a request shows.
+    pub request: Option<AddressPattern>,
+    /// What the identifier of a reply or report shows if the one module addressed sends it.
+    pub one: Option<AddressPattern>,
+    /// What the identifier of a reply or report shows if each module addressed sends one.
+    pub each: Option<AddressPattern>,
+    /// What the identifier of a reply or report shows if one module sends it for all.
+    pub coordinator: Option<AddressPattern>,
+    /// The address type that the caller chooses in a request: index into [`Protocol::address_types`](crate::model::Protocol::address_types).
+    pub target: Option<usize>,
+}
+
+impl Mode {
+    /// Returns the pattern of the replies when `who` answers.
+    pub fn reply(&self, who: Who) -> Option<&AddressPattern> {
+        match who {
+            Who::One => self.one.as_ref(),
+            Who::Each => self.each.as_ref(),
+            Who::Coordinator => self.coordinator.as_ref(),
+            Who::Nobody => None,
+        }
+    }
+}
+
+/// Constants and addresses that an identifier must show.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct AddressPattern {
+    /// Bits of the identifier that are constant.
+    pub mask: u32,
+    /// Values of these bits.
+    pub value: u32,
+    /// How many fields the constants cover.
+    pub constants: usize,
+    /// Fields that hold addresses.
+    pub addresses: Vec<Address>,
+}
+
+/// A field of the identifier that holds an address.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Address {
+    /// Index into [`Identifier::fields`](crate::model::Identifier::fields).
+    pub field: usize,
+    /// Index into [`Protocol::address_types`](crate::model::Protocol::address_types).
+    pub address_type: usize,
+    /// Raw ranges that belong to somebody else; the other undocumented ones are tolerated, unless the type is strict.
+    pub excluded: Vec<(u32, u32)>,
+}
+
+/// How an identifier shows its direction: one of these lists of tests holds.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct Direction {
+    /// Lists of tests; a direction is shown if all tests of one list hold.
+    pub any: Vec<Vec<FieldTest>>,
+}
+
+/// A test of one identifier field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FieldTest {
+    /// Index into [`Identifier::fields`](crate::model::Identifier::fields).
+    pub field: usize,
+    /// Inclusive raw ranges.
+    pub ranges: Vec<(u32, u32)>,
+    /// The value lies in one of the ranges, rather than in none.
+    pub inside: bool,
+}

@@ -1,0 +1,117 @@
+//! What a spec says beside the codec.
+
+use crate::model::{Quantity, Range, Unit};
+use crate::number::Rational;
+use crate::syntax::tree::Path;
+
+/// The vendor document.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Document {
+    /// Title as printed.
+    pub title: String,
+    /// Version as printed.
+    pub version: String,
+    /// Date of that version, if the spec states it.
+    pub date: Option<String>,
+    /// Name of the file that was read, if the spec states it.
+    pub file: Option<String>,
+}
+
+/// What a spec says about an item beside its meaning for the codec.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct Doc {
+    /// What the item is, in a few words without a full stop.
+    pub title: Option<String>,
+    /// What else a reader must know.
+    pub note: Option<String>,
+    /// The item's own section, or that of what it stands in.
+    pub section: Option<String>,
+    /// Errata by name.
+    pub errata: Vec<String>,
+    /// Place in the spec.
+    pub path: Path,
+}
+
+/// A device model.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct DeviceModel {
+    /// Name in the spec, as the vendor spells it.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Item numbers.
+    pub items: Vec<String>,
+    /// Most devices that can work together, if the document says so.
+    pub max_parallel: Option<u32>,
+    /// Bit rates of this model in bit/s; empty if the document says nothing of it.
+    pub bit_rates: Vec<u32>,
+    /// Ratings that no message carries, by name.
+    pub facts: Vec<(String, Quantity)>,
+    /// What this model changes of a type, by the type's name.
+    pub types: Vec<TypeOfModel>,
+}
+
+/// What a device model changes of a type.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct TypeOfModel {
+    /// Name of the type.
+    pub name: String,
+    /// Physical limits of this model, if it has its own.
+    pub range: Option<Range>,
+    /// Physical value that the device starts with.
+    pub default: Option<Rational>,
+    /// What the spec says beside it.
+    pub doc: Doc,
+}
+
+/// A time that the document states; both ends are equal where it names one value.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Timing {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// The shortest and the longest time.
+    pub range: Range,
+    /// Unit of the range.
+    pub unit: Unit,
+    /// Lower limit that holds beside a recommended time.
+    pub minimum: Option<Quantity>,
+}
+
+/// Steps in order.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Procedure {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// One sentence each; names of messages stand in backquotes.
+    pub steps: Vec<String>,
+}
+
+/// A departure from the document.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Erratum {
+    /// Name in the spec.
+    pub name: String,
+    /// What is wrong: `vendor`, `translation`, `ocr`, `unclear`, `gap` or `note`.
+    pub kind: String,
+    /// Section of the document that prints it.
+    pub section: Option<String>,
+    /// What the document prints.
+    pub prints: String,
+    /// What the spec uses.
+    pub uses: String,
+    /// Why the spec departs from the document.
+    pub because: String,
+    /// Place in the spec.
+    pub path: Path,
+}

@@ -1,0 +1,98 @@
+//! The document's frames and what they mean.
+
+use crate::model::{Doc, Kind, Signal};
+use crate::syntax::tree::Path;
+
+/// A frame of the document and what it means.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Example {
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// What the spec says the frame is for.
+    pub kind: Kind,
+    /// Identifier.
+    pub id: u32,
+    /// 29-bit identifier rather than 11-bit.
+    pub extended: bool,
+    /// `None` where the document prints an identifier alone.
+    pub data: Option<Vec<u8>>,
+    /// Index into [`Protocol::messages`](crate::model::Protocol::messages); `None` for a frame that is none of them.
+    pub message: Option<usize>,
+    /// Raw values of the message's signals (indices into [`Message::signals`](crate::model::Message::signals)), and the text that says so.
+    pub means: Vec<Meaning>,
+    /// Rules of the notes that decoding must report.
+    pub notes: Vec<String>,
+    /// How the frame fails, if it has to.
+    pub fails: Option<Failure>,
+    /// The document does not print it.
+    pub ours: bool,
+    /// The place in the list it stands in: a reply answers the request before it.
+    pub position: usize,
+}
+
+/// What an example says of one signal.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Meaning {
+    /// Index into [`Message::signals`](crate::model::Message::signals).
+    pub signal: usize,
+    /// As written in the spec.
+    pub text: String,
+    /// The raw bits, if the value lies on the signal's grid.
+    pub raw: Option<u64>,
+    /// Place in the spec.
+    pub path: Path,
+}
+
+/// How a printed frame fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// Its identifier has the wrong width or a wrong fixed bit, or does not show its direction.
+    Identifier,
+    /// Its identifier belongs to somebody else.
+    Foreign,
+    /// It has another number of data bytes.
+    Length,
+    /// No message has its constants.
+    UnknownMessage,
+    /// It decodes as another message.
+    Message,
+    /// It decodes to other values.
+    Values,
+    /// It shows an addressing mode that the message does not have, or none.
+    Addressing,
+}
+
+impl Failure {
+    /// Every failure with its word of the spec language.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::Identifier, "identifier"),
+        (Self::Foreign, "foreign"),
+        (Self::Length, "length"),
+        (Self::UnknownMessage, "unknown_message"),
+        (Self::Message, "message"),
+        (Self::Values, "values"),
+        (Self::Addressing, "addressing"),
+    ];
+
+    /// Returns the word of the spec language.
+    pub fn name(self) -> &'static str {
+        Self::ALL.into_iter().find(|(failure, _)| *failure == self).map_or("", |(_, name)| name)
+    }
+}
+
+/// Bytes of a type alone, and the value they mean.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ValueExample {
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// The type as a signal at the first byte.
+    pub signal: Signal,
+    /// The bytes, followed by zeros.
+    pub data: [u8; 8],
+    /// The value they mean.
+    pub meaning: Meaning,
+}

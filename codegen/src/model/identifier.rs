@@ -1,0 +1,92 @@
+//! The identifier's fields, the fields that choose messages, and identifiers of somebody else.
+
+use canspec_runtime::Place;
+
+use crate::model::Doc;
+
+/// The identifier's layout.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Identifier {
+    /// 29 bits rather than 11.
+    pub extended: bool,
+    /// Fields from the most to the least significant bit.
+    pub fields: Vec<IdentifierField>,
+    /// Bits with a fixed value: constant fields, `ones` and `zeros`.
+    pub mask: u32,
+    /// Values of these bits.
+    pub value: u32,
+}
+
+/// A named bit field of the identifier.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct IdentifierField {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Least significant bit.
+    pub shift: u8,
+    /// Number of bits, `1..=29`.
+    pub width: u8,
+    /// The only value of this protocol, if there is one.
+    pub constant: Option<u32>,
+    /// Sent unless the caller says otherwise.
+    pub send: Option<u32>,
+    /// The value of a reply that is no error reply.
+    pub normal: Option<u32>,
+    /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
+    pub enumeration: Option<usize>,
+}
+
+impl IdentifierField {
+    /// Returns the field's bits in the identifier.
+    pub fn mask(&self) -> u32 {
+        let ones = u32::MAX >> (32 - self.width);
+        ones << self.shift
+    }
+
+    /// Returns the field's value in an identifier.
+    pub fn get(&self, identifier: u32) -> u32 {
+        (identifier & self.mask()) >> self.shift
+    }
+}
+
+/// A field whose constants choose a message, or which says whether a request was accepted.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Selector {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Where it stands.
+    pub place: SelectorPlace,
+    /// The value of a reply that is no error reply.
+    pub normal: Option<u64>,
+    /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
+    pub enumeration: Option<usize>,
+}
+
+/// Where a selector stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SelectorPlace {
+    /// Index into [`Identifier::fields`].
+    Identifier(usize),
+    /// In the data bytes.
+    Payload(Place),
+}
+
+/// Identifiers of somebody else on the bus.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Foreign {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Inclusive ranges of raw values, all of which must hold: `None` is the identifier as a whole, else an index into [`Identifier::fields`].
+    pub ranges: Vec<(Option<usize>, u32, u32)>,
+}

@@ -1,0 +1,227 @@
+//! Signals and what their bits mean.
+
+use canspec_runtime::Place;
+
+use crate::model::{Doc, Kind};
+use crate::number::Rational;
+
+/// Named values of a signal.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Enumeration {
+    /// Name of the type, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Width of the raw value in bits.
+    pub width: u8,
+    /// Named values in the order of the spec.
+    pub values: Vec<NamedValue>,
+}
+
+/// A raw value with a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct NamedValue {
+    /// Raw value, sign-extended where the signal is signed.
+    pub raw: i128,
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+}
+
+/// A word of which each named bit is a condition.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct StatusWord {
+    /// Name of the type, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Number of bits, `1..=64`.
+    pub width: u8,
+    /// Bits by number, the lowest first.
+    pub bits: Vec<StatusBit>,
+}
+
+impl StatusWord {
+    /// Returns the bits that have a name.
+    pub fn known(&self) -> u64 {
+        self.bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit)
+    }
+}
+
+/// One bit of a status word.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct StatusBit {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// Number of the bit, 0 = least significant.
+    pub bit: u8,
+    /// How grave the set bit is, if the document says so.
+    pub severity: Option<Severity>,
+    /// Condition that sets the bit.
+    pub set_when: Option<String>,
+    /// Condition that clears the bit.
+    pub clear_when: Option<String>,
+    /// What the device does while the bit is set.
+    pub effect: Option<String>,
+    /// What the device's LED shows while the bit is set.
+    pub led: Option<String>,
+}
+
+/// How grave a status bit is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Severity {
+    /// Describes a condition.
+    State,
+    /// A warning from which the device recovers.
+    Alarm,
+    /// A defect.
+    Fault,
+}
+
+/// A named value in the data bytes.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Signal {
+    /// Name in the spec, in `snake_case`.
+    pub name: String,
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// The entries of `types` it takes keys from, the last first.
+    pub types: Vec<String>,
+    /// Bits of the data bytes.
+    pub place: Place,
+    /// What these bits mean.
+    pub encoding: Encoding,
+    /// Unit of the physical value.
+    pub unit: Option<Unit>,
+    /// Physical limits.
+    pub range: Option<Range>,
+    /// Named raw values that are legal outside the range.
+    pub specials: Vec<NamedValue>,
+    /// Raw value that the device starts with.
+    pub default: Option<i128>,
+    /// The only kinds of frames that have it; empty if the access decides.
+    pub kinds: Vec<Kind>,
+}
+
+/// What a signal's bits mean.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Encoding {
+    /// physical = raw * scale + offset.
+    Number {
+        /// Two's complement.
+        signed: bool,
+        /// Physical value of one step.
+        scale: Rational,
+        /// Physical value of raw 0.
+        offset: Rational,
+    },
+    /// IEEE 754 single precision.
+    Float,
+    /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
+    Named(usize),
+    /// Index into [`Protocol::status_words`](crate::model::Protocol::status_words).
+    Status(usize),
+    /// ASCII, the first character at the most significant byte of the place.
+    Text,
+    /// One text made of several parts.
+    Packed {
+        /// What the text consists of, in order.
+        pieces: Vec<Piece>,
+        /// Bits of the payload that the pieces name.
+        parts: Vec<Signal>,
+    },
+}
+
+impl Encoding {
+    /// Tests whether the physical value is a raw integer.
+    pub fn is_unscaled(&self) -> bool {
+        matches!(self, Self::Number { scale, offset, .. } if *scale == Rational::ONE && *offset == Rational::ZERO)
+    }
+}
+
+/// A piece of a packed value's text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Piece {
+    /// A text that stands as it is.
+    Literal(String),
+    /// The text or the number of a part.
+    Part {
+        /// Index into the parts of the packed value.
+        part: usize,
+        /// To how many digits a number is filled with zeros.
+        digits: Option<usize>,
+    },
+}
+
+/// Physical limits, both legal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Range {
+    /// Lowest value.
+    pub minimum: Rational,
+    /// Highest value.
+    pub maximum: Rational,
+}
+
+/// A unit of the spec language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Unit {
+    /// The symbol in specs, logs and documentation.
+    pub symbol: &'static str,
+    /// The ending of a Rust field name.
+    pub suffix: &'static str,
+}
+
+impl Unit {
+    /// Every unit of the language.
+    pub const ALL: [Self; 12] = [
+        Self { symbol: "V", suffix: "v" },
+        Self { symbol: "A", suffix: "a" },
+        Self { symbol: "W", suffix: "w" },
+        Self { symbol: "Hz", suffix: "hz" },
+        Self { symbol: "°C", suffix: "c" },
+        Self { symbol: "%", suffix: "percent" },
+        Self { symbol: "s", suffix: "s" },
+        Self { symbol: "ms", suffix: "ms" },
+        Self { symbol: "min", suffix: "min" },
+        Self { symbol: "h", suffix: "h" },
+        Self { symbol: "rpm", suffix: "rpm" },
+        Self { symbol: "m", suffix: "m" },
+    ];
+
+    /// Finds a unit by its symbol.
+    pub fn find(symbol: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.symbol == symbol)
+    }
+}
+
+/// A number with a unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Quantity {
+    /// The number.
+    pub value: Rational,
+    /// Its unit, if it has one.
+    pub unit: Option<Unit>,
+}
+
+impl Signal {
+    /// Returns the remarks of the signal and of its parts.
+    pub(super) fn docs(&self) -> Vec<&Doc> {
+        let parts = match &self.encoding {
+            Encoding::Packed { parts, .. } => parts.as_slice(),
+            _ => &[],
+        };
+        std::iter::once(&self.doc).chain(parts.iter().map(|part| &part.doc)).collect()
+    }
+}
