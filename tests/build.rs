@@ -30,7 +30,9 @@ fn specs(folder: &Path) -> Vec<(String, PathBuf)> {
         .map(|path| (path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default(), path))
         .collect();
     specs.sort();
-    specs.iter().for_each(|(_, path)| println!("cargo::rerun-if-changed={}", path.display()));
+    for (_, path) in &specs {
+        println!("cargo::rerun-if-changed={}", path.display());
+    }
     specs
 }
 
@@ -64,7 +66,7 @@ impl Protocols {
     }
 
     fn visit(&mut self, module: &str, path: &Path) {
-        let _ = writeln!(self.visits, "    visitor.visit::<{module}::Message>({path:?});");
+        let _ = writeln!(self.visits, "    visitor.visit::<{module}::Message>(\"{}\");", path.display());
     }
 
     fn finish(self) -> String {

@@ -124,12 +124,16 @@ fn content(summary: &Object) -> String {
     let Object { messages, signals, status_bits, examples, frames, identifiers, expected_failures, errata, .. } =
         summary;
     let contents = [count(*messages, "message"), count(*signals, "signal"), count(*status_bits, "status bit")];
+    let values = examples.saturating_sub(frames + identifiers + expected_failures);
     let outcomes = [
         format!("{} both ways", count(*frames, "frame")),
         count(*identifiers, "identifier"),
+        count(values, "value"),
         count(*expected_failures, "expected failure"),
     ];
-    format!("{}; {}: {}; {errata} errata", contents.join(", "), count(*examples, "example"), outcomes.join(", "))
+    let examples = count(*examples, "example");
+    let errata = if *errata == 1 { "1 erratum".to_owned() } else { format!("{errata} errata") };
+    format!("{}; {examples}: {}; {errata}", contents.join(", "), outcomes.join(", "))
 }
 
 fn count(number: usize, noun: &str) -> String {

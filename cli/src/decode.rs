@@ -54,6 +54,7 @@ impl Decode {
                 Ok(None) => {}
                 Ok(Some(entry)) => printer.frame(&mut out, &protocols, line.number, &entry)?,
                 Err(why) => {
+                    out.flush()?;
                     input.complain(&why);
                     finish = Finish::Errors;
                 }

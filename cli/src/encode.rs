@@ -105,6 +105,7 @@ fn lines(protocol: &Protocol, file: Option<&Path>) -> Result<Finish, Failure> {
                 log::write(&mut out, time, content.channel.as_deref(), &frame)?;
             }
             Err(why) => {
+                out.flush()?;
                 input.complain(&why);
                 finish = Finish::Errors;
             }
@@ -137,12 +138,14 @@ fn check_protocol(protocol: &Protocol, content: &Content) -> Result<(), String> 
 fn check_units(protocol: &Protocol, content: &Content) -> Result<(), String> {
     let message = protocol.messages.iter().find(|message| message.name == content.frame.message);
     let signals = message.map_or(&[][..], |message| &message.signals);
-    for (name, unit) in &content.units {
-        let signal = signals.iter().find(|signal| signal.name == *name);
-        let expected = signal.map(|signal| signal.unit.map_or("none", |unit| unit.symbol));
-        if let Some(expected) = expected.filter(|expected| expected != unit) {
-            return Err(format!("signal `{name}`: the unit is {expected}, not {unit:?}"));
-        }
+    for (name, stated) in &content.units {
+        let Some(signal) = signals.iter().find(|signal| signal.name == *name) else { continue };
+        let wanted = match signal.unit {
+            Some(unit) if unit.symbol == stated => continue,
+            Some(unit) => format!("the unit is {}", unit.symbol),
+            None => "there is no unit".to_owned(),
+        };
+        return Err(format!("{}.{name}: {wanted}, not {stated:?}", content.frame.message));
     }
     Ok(())
 }

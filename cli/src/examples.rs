@@ -67,15 +67,8 @@ struct Object<'a> {
     data: Option<String>,
     section: Option<&'a str>,
     expect: &'static str,
-    erratum: Option<Erratum<'a>>,
-}
-
-/// As in the spec language: a name, or a list of names.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Erratum<'a> {
-    One(&'a str),
-    Several(&'a [String]),
+    /// Errata by name, one behind the other.
+    erratum: Option<String>,
 }
 
 impl<'a> Object<'a> {
@@ -85,11 +78,7 @@ impl<'a> Object<'a> {
             data: example.data.as_deref().map(log::hexadecimal),
             section: example.doc.section.as_deref(),
             expect: example.fails.map_or("ok", canspec_codegen::model::Failure::name),
-            erratum: match example.doc.errata.as_slice() {
-                [] => None,
-                [name] => Some(Erratum::One(name)),
-                names => Some(Erratum::Several(names)),
-            },
+            erratum: (!example.doc.errata.is_empty()).then(|| example.doc.errata.join(", ")),
         }
     }
 

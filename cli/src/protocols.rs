@@ -91,11 +91,11 @@ fn unknown(name: &str, specs: &[Spec]) -> String {
     let nearest = nearest.min_by_key(|known| strsim::osa_distance(name, known));
     let help = match nearest {
         Some(known) => format!("did you mean `{known}`?"),
-        None => "a file is named with --spec FILE".to_owned(),
+        None => "a spec of your own is named by its file".to_owned(),
     };
     match names.as_slice() {
         [] => format!("unknown protocol `{name}`; none is built in; {help}"),
-        names => format!("unknown protocol `{name}`; built in are {}; {help}", names.join(", ")),
+        names => format!("unknown protocol `{name}`; built in: {}; {help}", names.join(", ")),
     }
 }
 
@@ -108,13 +108,13 @@ mod tests {
 
     #[test]
     fn an_unknown_protocol_gets_the_nearest_name() {
-        assert_eq!(unknown("amce", SPECS), "unknown protocol `amce`; built in are acme, zeta; did you mean `acme`?");
+        assert_eq!(unknown("amce", SPECS), "unknown protocol `amce`; built in: acme, zeta; did you mean `acme`?");
     }
 
     #[test]
     fn a_name_like_no_other_gets_the_way_to_a_file() {
-        let help = "a file is named with --spec FILE";
-        assert_eq!(unknown("x.yaml", SPECS), format!("unknown protocol `x.yaml`; built in are acme, zeta; {help}"));
+        let help = "a spec of your own is named by its file";
+        assert_eq!(unknown("x.yaml", SPECS), format!("unknown protocol `x.yaml`; built in: acme, zeta; {help}"));
         assert_eq!(unknown("x", &[]), format!("unknown protocol `x`; none is built in; {help}"));
     }
 }

@@ -6,7 +6,7 @@ use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressPattern, Encoding, Kind, Mode, Protocol, Signal, Who};
 
 use crate::columns::{Columns, wrap};
-use crate::line::{Origin, bit_names, reserved};
+use crate::line::{Origin, bit_names};
 use crate::log;
 
 const HEADINGS: [&str; 6] = ["TIME", "CHANNEL", "IDENTIFIER", "ADDRESS", "ACCESS", "MESSAGE"];
@@ -134,8 +134,7 @@ fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usi
     match decoded {
         Ok(decoded) => {
             let signals = decoded.signals.iter().map(|reading| signal(origin.protocol, decoded, reading));
-            let reserved = reserved(decoded).map(|digits| format!("reserved {digits}"));
-            let texts: Vec<String> = signals.chain(reserved).map(|text| text + GAP).collect();
+            let texts: Vec<String> = signals.map(|text| text + GAP).collect();
             let pieces = texts.iter().flat_map(|text| text.split_inclusive(", "));
             let mut lines = wrap(pieces, "", room + 1);
             lines.extend(decoded.notes.iter().flat_map(|Note { rule, text }| remark(rule, text, room)));

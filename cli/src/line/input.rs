@@ -45,10 +45,8 @@ impl Content {
 fn without_line(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
-    match text.strip_suffix(&place) {
-        Some(what) => format!("{what} (column {})", error.column()),
-        None => text,
-    }
+    let text = text.strip_suffix(&place).map_or(text.clone(), |what| format!("{what} (column {})", error.column()));
+    if error.is_data() { text } else { format!("the line is no JSON object: {text}") }
 }
 
 #[derive(Deserialize)]
@@ -330,7 +328,7 @@ mod tests {
     #[test]
     fn a_line_that_is_not_complete_or_not_known_says_why() {
         let reasons = [
-            ("{".to_owned(), "EOF while parsing an object (column 1)"),
+            ("{".to_owned(), "the line is no JSON object: EOF while parsing an object (column 1)"),
             ("[]".to_owned(), "invalid type: sequence, expected an object (column 0)"),
             (line(r#","signals":{"s":[1,2]}"#), "invalid type: sequence, expected an object (column 71)"),
             ("{}".to_owned(), "missing field `message` (column 2)"),

@@ -215,7 +215,7 @@ fn signals<'a>(
 }
 
 /// Returns the set reserved bits in as many digits as the data, if there are any.
-pub fn reserved(decoded: &Decoded) -> Option<String> {
+fn reserved(decoded: &Decoded) -> Option<String> {
     let bytes = decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
     bytes.iter().any(|byte| *byte != 0).then(|| log::hexadecimal(bytes))
 }

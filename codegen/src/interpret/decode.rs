@@ -95,13 +95,13 @@ impl<'a> Decoder<'a> {
     fn direction(&self) -> Result<bool, Unrecognised> {
         let identifier = &self.protocol.identifier;
         if self.frame.extended != identifier.extended {
-            let bits = if identifier.extended { 29 } else { 11 };
-            let text = format!("identifiers of `{}` have {bits} bits", self.protocol.name);
+            let [found, wanted] =
+                [self.frame.extended, identifier.extended].map(|extended| if extended { 29 } else { 11 });
+            let text = format!("the identifier has {found} bits instead of {wanted}");
             return Err(self.unrecognised(Problem::Identifier, text, false, &[]));
         }
         if self.frame.id & identifier.mask != identifier.value {
-            let text = format!("{} of the identifier has another value", self.wrong_bits());
-            return Err(self.unrecognised(Problem::Identifier, text, true, &[]));
+            return Err(self.unrecognised(Problem::Identifier, self.wrong_bits(), true, &[]));
         }
         let holds = |direction: &Direction| {
             direction.any.iter().any(|tests| {
@@ -121,15 +121,18 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    /// Names what is wrong with the fixed bits.
+    /// Says what is wrong with the fixed bits.
     fn wrong_bits(&self) -> String {
         let identifier = &self.protocol.identifier;
+        let ids = [self.frame.id, identifier.value];
         let wrong = (self.frame.id & identifier.mask) ^ identifier.value;
-        let field = identifier.fields.iter().find(|field| field.mask() & wrong != 0);
-        field.map_or_else(
-            || format!("fixed bit {}", wrong.checked_ilog2().unwrap_or_default()),
-            |field| format!("the constant field `{}`", field.name),
-        )
+        let Some(field) = identifier.fields.iter().find(|field| field.mask() & wrong != 0) else {
+            let bit = wrong.checked_ilog2().unwrap_or_default();
+            let [found, wanted] = ids.map(|id| id >> bit & 1);
+            return format!("bit {bit} of the identifier is {found} instead of {wanted}");
+        };
+        let [found, wanted] = ids.map(|id| hexadecimal(field.get(id)));
+        format!("the identifier's {} is {found} instead of {wanted}", field.name)
     }
 
     /// Returns every frame of this direction.
@@ -157,9 +160,7 @@ impl<'a> Decoder<'a> {
 
     /// Shows the values of the identifier's selectors.
     fn identifier_selectors(&self, candidates: &[Candidate]) -> String {
-        let shows =
-            |index: usize| candidates.iter().any(|(_, _, shape)| shape.constants.iter().any(|known| known.0 == index));
-        let selectors = self.protocol.selectors.iter().enumerate().filter(|(index, _)| shows(*index));
+        let selectors = self.protocol.selectors.iter().enumerate().filter(|(index, _)| chooses(candidates, *index));
         let texts = selectors.filter_map(|(_, selector)| match selector.place {
             SelectorPlace::Identifier(field) => Some(format!("{} {}", selector.name, hexadecimal(self.field(field)))),
             SelectorPlace::Payload(_) => None,
@@ -192,7 +193,9 @@ impl<'a> Decoder<'a> {
             (addressing.fit, Reverse(addressing.constants))
         });
         best.map(|(index, _, shape)| (*index, *shape)).ok_or_else(|| {
-            let shown: Vec<_> = self.selectors(candidates).iter().map(|known| self.selector_text(*known)).collect();
+            let mut selectors = self.selectors(candidates);
+            selectors.retain(|(index, _)| chooses(candidates, *index));
+            let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
             let text = format!("no message has {}", shown.join(", "));
             self.unrecognised(Problem::UnknownMessage, text, true, candidates)
         })
@@ -325,8 +328,11 @@ impl<'a> Decoder<'a> {
         wrong
             .map(|(name, value, _, enumeration)| {
                 let named = enumeration.and_then(|index| named(&self.protocol.enumerations[index], value));
-                let meaning = named.map_or("which the document does not name", |value| value.name.as_str());
-                Note { rule: "error_code", text: format!("{name} {value}: {meaning}") }
+                let text = match named {
+                    Some(meaning) => format!("{name} {value}: {}", meaning.name),
+                    None => format!("{name} {value}, which the document does not name"),
+                };
+                Note { rule: "error_code", text }
             })
             .collect()
     }
@@ -381,6 +387,11 @@ fn range_note(signal: &Signal, value: f64) -> Option<Note> {
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let text = format!("{} {value}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
     Some(Note { rule: "out_of_range", text })
+}
+
+/// Tests whether a selector takes part in the choice among these frames.
+fn chooses(candidates: &[Candidate], index: usize) -> bool {
+    candidates.iter().any(|(_, _, shape)| shape.constants.iter().any(|known| known.0 == index))
 }
 
 /// Tests whether all bits of a mask lie in the first bytes.

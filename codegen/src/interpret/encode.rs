@@ -26,9 +26,9 @@ pub fn encode(protocol: &Protocol, content: &Content) -> Result<Frame, Refusal> 
 /// Finds a message by name.
 pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<&'a Message, Refusal> {
     protocol.messages.iter().find(|message| message.name == name).ok_or_else(|| {
-        let names = protocol.messages.iter().map(|message| message.name.as_str());
-        let near = names.max_by(|one, other| strsim::jaro_winkler(one, name).total_cmp(&strsim::jaro_winkler(other, name)));
-        let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        let names = protocol.messages.iter().map(|message| (strsim::jaro_winkler(&message.name, name), &message.name));
+        let near = names.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
+        let hint = near.map_or_else(String::new, |(_, near)| format!("; did you mean `{near}`?"));
         Refusal(format!("`{}` has no message `{name}`{hint}", protocol.name))
     })
 }
@@ -47,14 +47,14 @@ pub fn frame(protocol: &Protocol, message: &Message, id: u32, data: [u8; 8]) -> 
 /// Builds the identifier of its named fields.
 fn identifier(protocol: &Protocol, content: &Content) -> Result<u32, Refusal> {
     let fields = &protocol.identifier.fields;
-    if let Some((name, _)) = content.identifier.iter().find(|(name, _)| fields.iter().all(|field| field.name != *name)) {
+    if let Some((name, _)) = content.identifier.iter().find(|(name, _)| fields.iter().all(|field| field.name != *name))
+    {
         return Err(Refusal(format!("{}: the identifier has no field `{name}`", content.message)));
     }
     fields.iter().try_fold(protocol.identifier.value, |id, field| {
         let given = content.identifier.iter().find(|(name, _)| *name == field.name);
-        let (_, value) = given.ok_or_else(|| {
-            Refusal(format!("{}: the identifier lacks its field `{}`", content.message, field.name))
-        })?;
+        let (_, value) = given
+            .ok_or_else(|| Refusal(format!("{}: the identifier lacks its field `{}`", content.message, field.name)))?;
         let greatest = field.mask() >> field.shift;
         let fits = u32::try_from(*value).ok().filter(|value| *value <= greatest);
         let fits = fits.filter(|value| field.constant.is_none_or(|constant| constant == *value));
@@ -67,12 +67,7 @@ fn identifier(protocol: &Protocol, content: &Content) -> Result<u32, Refusal> {
 }
 
 /// Finds the frame whose constants the identifier and the selectors show.
-fn shape<'a>(
-    protocol: &Protocol,
-    message: &'a Message,
-    content: &Content,
-    id: u32,
-) -> Result<&'a Shape, Refusal> {
+fn shape<'a>(protocol: &Protocol, message: &'a Message, content: &Content, id: u32) -> Result<&'a Shape, Refusal> {
     let access = |shape: &Shape| &protocol.accesses[message.accesses[shape.access].access].name;
     let named = |shape: &&Shape| {
         content.access.as_ref().is_none_or(|name| access(shape) == name)
@@ -88,11 +83,17 @@ fn shape<'a>(
         })
     };
     let mut fitting = message.shapes.iter().filter(named).filter(shows);
-    let first = fitting.next().ok_or_else(|| refuse(message, "identifier and selectors show another message"))?;
+    let first = fitting.next().ok_or_else(|| {
+        let known = |name: &&String| message.shapes.iter().any(|shape| access(shape) == *name);
+        let unknown = content.access.as_ref().filter(|name| !known(name));
+        let other = || "the identifier and the selectors are not those of this message".to_owned();
+        refuse(message, &unknown.map_or_else(other, |name| format!("it has no access `{name}`")))
+    })?;
     if content.kind.is_some() {
         return Ok(first);
     }
-    let bare = Frame { id, extended: protocol.identifier.extended, data: vec![0; message.length.into()], form: Form::Data };
+    let bare =
+        Frame { id, extended: protocol.identifier.extended, data: vec![0; message.length.into()], form: Form::Data };
     let kind = decode(protocol, &bare).map(|decoded| decoded.kind);
     let all = std::iter::once(first).chain(fitting).collect::<Vec<_>>();
     Ok(all.iter().find(|shape| Ok(shape.kind) == kind).copied().unwrap_or(first))
@@ -121,9 +122,11 @@ fn put_selectors(
         let selector = &protocol.selectors[*index];
         let SelectorPlace::Payload(place) = selector.place else { continue };
         let given = content.selectors.iter().find(|(name, _)| *name == selector.name);
-        let (_, value) = given.ok_or_else(|| refuse(message, &format!("the selector `{}` is missing", selector.name)))?;
+        let (_, value) =
+            given.ok_or_else(|| refuse(message, &format!("the selector `{}` is missing", selector.name)))?;
         if *value > place.max() {
-            return Err(refuse(message, &format!("the selector {} {value} does not fit", selector.name)));
+            let text = format!("the selector {} is {value}, not 0..{}", selector.name, place.max());
+            return Err(refuse(message, &text));
         }
         place.put(data, *value);
     }
@@ -177,8 +180,12 @@ fn put_reserved(
 /// Tests that the frame decodes to what was asked for, and that a request keeps to the documented addresses.
 fn confirm(protocol: &Protocol, message: &Message, shape: &Shape, decoded: &Decoded) -> Result<(), Refusal> {
     let shown = &protocol.messages[decoded.message];
-    if shown.name != message.name || decoded.kind != shape.kind || decoded.access != message.accesses[shape.access].access {
-        let text = format!("identifier and selectors show a {} of `{}`", decoded.kind.name(), shown.name);
+    if shown.name != message.name
+        || decoded.kind != shape.kind
+        || decoded.access != message.accesses[shape.access].access
+    {
+        let (found, wanted) = (decoded.kind.name(), shape.kind.name());
+        let text = format!("the identifier and the selectors show a {found} of `{}`, not this {wanted}", shown.name);
         return Err(refuse(message, &text));
     }
     let forbidden = decoded.notes.iter().find(|note| matches!(note.rule, "address" | "addressing" | "access"));

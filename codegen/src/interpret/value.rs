@@ -116,14 +116,22 @@ impl Encoder<'_> {
             (_, Input::Raw(raw)) => self.bits(*raw, false),
             (Encoding::Named(index), Input::Text(name)) => self.name(&self.protocol.enumerations[*index], name),
             (Encoding::Status(index), Input::Status { set, unknown }) => {
-                let named = raw_of_bits(&self.protocol.status_words[*index], set)?;
+                let word = &self.protocol.status_words[*index];
+                let named = raw_of_bits(word, set)?;
+                if unknown & word.known() != 0 {
+                    return Err(format!("`unknown` has bits {:#X} that have a name", unknown & word.known()));
+                }
                 self.bits((named | unknown).into(), false)
             }
             (Encoding::Text, Input::Text(text)) => text_bits(self.signal, text),
             (Encoding::Packed { pieces, parts }, Input::Text(text)) => parse_packed(pieces, parts, self.signal, text)
                 .ok_or_else(|| format!("`{text}` is not of the documented form")),
-            (encoding, _) => Err(format!("{} is not {}", describe(input), wanted(encoding))),
+            _ => Err(self.unwanted(input)),
         }
+    }
+
+    fn unwanted(&self, input: &Input) -> String {
+        format!("{} is not {}", describe(input), wanted(self.signal))
     }
 
     fn name(&self, enumeration: &Enumeration, name: &str) -> Result<u64, String> {
@@ -136,17 +144,17 @@ impl Encoder<'_> {
         let value = match input {
             Input::Text(name) => {
                 let special = self.signal.specials.iter().find(|special| special.name == *name);
-                let special = special.ok_or_else(|| format!("`{name}` is not a number"))?;
+                let special = special.ok_or_else(|| self.unwanted(input))?;
                 return self.bits(special.raw, signed);
             }
-            Input::Integer(value) if self.signal.encoding.is_unscaled() => return self.raw_number(*value, signed),
+            Input::Integer(value) if self.signal.encoding.is_unscaled() => return self.whole(*value, signed),
             Input::Integer(value) => as_double(*value),
             Input::Number(value) => *value,
-            other => return Err(format!("{} is not a number", describe(other))),
+            other => return Err(self.unwanted(other)),
         };
         let raw =
             if self.signal.encoding.is_unscaled() { nearest(value) } else { runtime_scale(scale, offset).raw(value) };
-        let special = |raw: &i64| self.signal.specials.iter().any(|special| special.raw == i128::from(*raw));
+        let special = |raw: &i64| self.is_special(i128::from(*raw));
         let exact = |raw: &i64| scaled(i128::from(*raw), scale, offset).partial_cmp(&value) == Some(Ordering::Equal);
         if !raw.as_ref().is_some_and(|raw| special(raw) && exact(raw)) {
             self.check_range(value)?;
@@ -155,11 +163,23 @@ impl Encoder<'_> {
         self.bits(raw.into(), signed).map_err(|_| self.misfit(value))
     }
 
+    /// Encodes an unscaled number.
+    fn whole(&self, value: i128, signed: bool) -> Result<u64, String> {
+        if !self.is_special(value) {
+            self.check_range(as_double(value))?;
+        }
+        self.bits(value, signed).map_err(|_| self.misfit(as_double(value)))
+    }
+
+    fn is_special(&self, raw: i128) -> bool {
+        self.signal.specials.iter().any(|special| special.raw == raw)
+    }
+
     /// Encodes a raw number, which in a request must lie in the range too.
     fn raw_number(&self, raw: i128, signed: bool) -> Result<u64, String> {
         let Encoding::Number { scale, offset, .. } = self.signal.encoding else { return self.bits(raw, signed) };
         let bits = self.bits(raw, signed)?;
-        if !self.signal.specials.iter().any(|special| special.raw == raw) {
+        if !self.is_special(raw) {
             self.check_range(scaled(raw, scale, offset))?;
         }
         Ok(bits)
@@ -197,7 +217,7 @@ impl Encoder<'_> {
     /// Says what the bits can hold.
     fn misfit(&self, value: f64) -> String {
         let Encoding::Number { signed, scale, offset } = self.signal.encoding else {
-            return format!("{value}{} does not fit", self.unit());
+            return format!("{value}{} does not fit a floating-point number of 32 bits", self.unit());
         };
         let width = u32::from(self.signal.place.width());
         let (first, last) =
@@ -232,16 +252,21 @@ fn describe(input: &Input) -> String {
         Input::Raw(raw) => format!("raw {raw}"),
         Input::Integer(value) => value.to_string(),
         Input::Number(value) => value.to_string(),
-        Input::Text(text) => format!("`{text}`"),
+        Input::Text(text) => format!("the text `{text}`"),
         Input::Status { .. } => "a set of bits".to_owned(),
     }
 }
 
-fn wanted(encoding: &Encoding) -> &'static str {
-    match encoding {
-        Encoding::Number { .. } | Encoding::Float => "a number",
-        Encoding::Named(_) => "the name of a value",
-        Encoding::Status(_) => "a set of bits",
-        Encoding::Text | Encoding::Packed { .. } => "a text",
+/// Names what a signal takes.
+fn wanted(signal: &Signal) -> String {
+    match signal.encoding {
+        Encoding::Number { .. } | Encoding::Float => {
+            let unit = signal.unit.map_or_else(|| " without a unit".to_owned(), |unit| format!(" in {}", unit.symbol));
+            let specials = signal.specials.iter().map(|special| format!(" or `{}`", special.name));
+            format!("a number{unit}{}", specials.collect::<String>())
+        }
+        Encoding::Named(_) => "the name of a value".to_owned(),
+        Encoding::Status(_) => "a set of bits".to_owned(),
+        Encoding::Text | Encoding::Packed { .. } => "a text".to_owned(),
     }
 }
