@@ -85,7 +85,8 @@ impl fmt::Display for Error {
                 write!(formatter, "the identifier shows no addressing mode for `{access}` of `{message}`")
             }
             Self::Address { address, number, first, last } => {
-                write!(formatter, "`{address}` is {number}, but its limits are {first} and {last}")
+                let [number, first, last] = [number, first, last].map(Hexadecimal);
+                write!(formatter, "`{address}` is {number}, but its limits are {first}..={last}")
             }
             Self::Identifier { message, id } => write!(formatter, "the identifier 0x{id:X} is none of `{message}`"),
         }
@@ -93,3 +94,13 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+/// An address as documents print it: `0x0A`.
+struct Hexadecimal(i32);
+
+impl fmt::Display for Hexadecimal {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.0 < 0 { "-" } else { "" };
+        write!(formatter, "{sign}0x{:02X}", self.0.unsigned_abs())
+    }
+}

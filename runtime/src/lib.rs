@@ -36,7 +36,7 @@ pub use number::Number;
 pub use packed::{Packed, PackedText, Piece, left_aligned, right_aligned};
 pub use payload::Payload;
 pub use place::{Bits, ByteOrder, Data, Place};
-pub use protocol::{IdentifierFields, Problem, Protocol, Received, Shape};
+pub use protocol::{IdentifierFields, Problem, Protocol, Received, Recognised};
 pub use raw::{Integer, Meaning, Raw};
 pub use request::{Destination, Exchange, Replies, Request, Route};
 pub use scale::{Scale, nearest};

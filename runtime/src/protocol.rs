@@ -4,6 +4,7 @@ use core::fmt::{self, Debug};
 
 use embedded_can::Frame as _;
 
+use crate::address::Rank;
 use crate::frame::{padded, raw_id};
 use crate::{Addressing, Data, Error, Exchange, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading, Selector};
 
@@ -17,8 +18,26 @@ pub trait Protocol: Copy + Debug + 'static {
     const NORMAL: Filter;
     /// All addressing modes.
     const MODES: &'static [Mode];
-    /// Every frame of every message.
-    const SHAPES: &'static [Shape<Self>];
+
+    /// Recognises a frame towards a module by its selectors, whatever its length.
+    fn request(_: &Frame) -> Option<Recognised<Self>> {
+        None
+    }
+
+    /// Recognises a frame towards the controller by its selectors, whatever its length.
+    fn reply(_: &Frame) -> Option<Recognised<Self>> {
+        None
+    }
+
+    /// Returns how many data bytes the requests have whose selectors an identifier shows.
+    fn request_lengths(_: u32) -> &'static [u8] {
+        &[]
+    }
+
+    /// Returns how many data bytes the replies and reports have whose selectors an identifier shows.
+    fn reply_lengths(_: u32) -> &'static [u8] {
+        &[]
+    }
 
     /// Returns what the message carries.
     fn layout(&self) -> &dyn Layout;
@@ -42,36 +61,43 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
     fn is_to_controller(id: u32) -> bool;
 }
 
-/// One kind of frame of one message.
+/// A message out of a frame, and what sort of frame that is.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape<M> {
+pub struct Recognised<M> {
     exchange: &'static Exchange,
     kind: Kind,
-    decode: fn(&Data) -> M,
+    message: M,
 }
 
-impl<M> Shape<M> {
-    /// Returns the requests of an exchange.
-    pub const fn request(exchange: &'static Exchange, decode: fn(&Data) -> M) -> Self {
-        Self { exchange, kind: Kind::Request, decode }
+impl<M: Protocol> Recognised<M> {
+    /// Returns the message of a request.
+    pub const fn request(exchange: &'static Exchange, message: M) -> Self {
+        Self { exchange, kind: Kind::Request, message }
     }
 
-    /// Returns the replies of an exchange.
-    pub const fn reply(exchange: &'static Exchange, decode: fn(&Data) -> M) -> Self {
-        Self { exchange, kind: Kind::Reply, decode }
+    /// Returns the message of a reply.
+    pub const fn reply(exchange: &'static Exchange, message: M) -> Self {
+        Self { exchange, kind: Kind::Reply, message }
     }
 
-    /// Returns the reports of an exchange.
-    pub const fn report(exchange: &'static Exchange, decode: fn(&Data) -> M) -> Self {
-        Self { exchange, kind: Kind::Report, decode }
+    /// Returns the message of a report.
+    pub const fn report(exchange: &'static Exchange, message: M) -> Self {
+        Self { exchange, kind: Kind::Report, message }
     }
 
-    fn filter(&self) -> Option<Filter> {
-        self.exchange.filter(self.kind)
+    /// Returns the other one if the frame's length and then its addresses fit that one better.
+    #[must_use]
+    pub fn or(self, other: Self, frame: &Frame) -> Self {
+        if other.rank(frame) > self.rank(frame) { other } else { self }
     }
 
-    fn shows(&self, test: impl FnOnce(&Filter) -> bool) -> bool {
-        self.filter().is_some_and(|filter| test(&filter))
+    fn rank(&self, frame: &Frame) -> (bool, Option<Rank>) {
+        let addressing = self.exchange.addressing(M::MODES, self.kind, frame.raw_id());
+        (self.has_length_of(frame), addressing.map(|addressing| addressing.rank()))
+    }
+
+    fn has_length_of(&self, frame: &Frame) -> bool {
+        usize::from(self.exchange.data_length()) == frame.dlc()
     }
 }
 
@@ -111,7 +137,8 @@ pub struct Received<P: Protocol> {
     pub identifier: P::Identifier,
     /// The message.
     pub message: P,
-    shape: &'static Shape<P>,
+    exchange: &'static Exchange,
+    kind: Kind,
     frame: Frame,
 }
 
@@ -125,9 +152,9 @@ impl<P: Protocol> Received<P> {
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         let frame = classic(frame).ok_or(Problem::Frame)?;
         let is_request = direction::<P>(&frame)?;
-        let shape = find::<P>(is_request, &frame)?;
+        let Recognised { exchange, kind, message } = recognise::<P>(is_request, &frame)?;
         let identifier = P::Identifier::from_raw(frame.raw_id());
-        Ok(Self { identifier, message: (shape.decode)(&frame.bytes()), shape, frame })
+        Ok(Self { identifier, message, exchange, kind, frame })
     }
 
     /// Returns the frame as it was received.
@@ -137,33 +164,37 @@ impl<P: Protocol> Received<P> {
 
     /// Returns what the frame is for.
     pub const fn kind(&self) -> Kind {
-        self.shape.kind
+        self.kind
     }
 
     /// Returns how the message travels: its name, its access, its selectors.
     pub const fn exchange(&self) -> &'static Exchange {
-        self.shape.exchange
+        self.exchange
     }
 
     /// Returns the addressing mode that the identifier shows.
     pub fn addressing(&self) -> Option<Addressing> {
-        self.shape.exchange.addressing(P::MODES, self.shape.kind, self.identifier.to_raw())
+        self.exchange.addressing(P::MODES, self.kind, self.identifier.to_raw())
     }
 
     /// Tests whether the frame is an error reply.
     pub fn is_error_reply(&self) -> bool {
-        self.shape.kind != Kind::Request && !self.is_normal()
+        self.kind != Kind::Request && !self.is_normal()
+    }
+
+    fn filter(&self) -> Option<Filter> {
+        self.exchange.filter(self.kind)
     }
 
     fn is_normal(&self) -> bool {
         let has_normal_selectors = |filter: Filter| filter.has_normal_selectors(self.frame.bytes());
-        P::NORMAL.matches(&self.frame) && self.shape.filter().is_none_or(has_normal_selectors)
+        P::NORMAL.matches(&self.frame) && self.filter().is_none_or(has_normal_selectors)
     }
 
     /// Returns the selectors in the data, each with its raw value.
     pub fn selectors(&self) -> impl Iterator<Item = (&'static Selector, u64)> {
         let data = self.frame.bytes();
-        let selectors = self.shape.filter().map_or(&[][..], |filter| filter.data_selectors());
+        let selectors = self.filter().map_or(&[][..], |filter| filter.data_selectors());
         selectors.iter().map(move |selector| (selector, selector.place.get(&data)))
     }
 
@@ -191,7 +222,7 @@ impl<P: Protocol> Received<P> {
         let id = self.identifier.to_raw();
         let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());
         let again = Self::decode(&frame).ok().filter(|again| again.identifier == self.identifier);
-        let same = |again: &Self| core::ptr::eq(again.shape, self.shape);
+        let same = |again: &Self| again.kind == self.kind && again.exchange.is(self.exchange);
         let again = again.filter(same).ok_or(Error::Identifier { message: self.exchange().message(), id })?;
         if self.kind() == Kind::Request {
             again.check_addressing(id)?;
@@ -246,26 +277,15 @@ fn direction<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
     }
 }
 
-/// Finds the kind of frame whose constants all hold, and among several the one whose addresses fit best.
-fn find<P: Protocol>(is_request: bool, frame: &Frame) -> Result<&'static Shape<P>, Problem> {
-    let id = frame.raw_id();
-    let by_id =
-        |shape: &&Shape<_>| (shape.kind == Kind::Request) == is_request && shape.shows(|filter| filter.matches_id(id));
-    let by_length = |shape: &&Shape<_>| usize::from(shape.exchange.data_length()) == frame.dlc();
-    let by_data = |shape: &&Shape<_>| shape.shows(|filter| filter.matches_data(&frame.bytes()));
-    if !P::SHAPES.iter().any(|shape| by_id(&shape)) {
-        return Err(Problem::UnknownMessage);
-    }
-    if !P::SHAPES.iter().filter(by_id).any(|shape| by_length(&shape)) {
-        return Err(Problem::Length);
-    }
-    let shapes = P::SHAPES.iter().filter(by_id).filter(by_length).filter(by_data);
-    best::<P>(shapes, id).ok_or(Problem::UnknownMessage)
+/// Finds the message, and tests the length.
+fn recognise<P: Protocol>(is_request: bool, frame: &Frame) -> Result<Recognised<P>, Problem> {
+    let recognised = if is_request { P::request(frame) } else { P::reply(frame) };
+    recognised.filter(|recognised| recognised.has_length_of(frame)).ok_or_else(|| problem::<P>(is_request, frame))
 }
 
-fn best<P: Protocol>(mut shapes: impl Iterator<Item = &'static Shape<P>>, id: u32) -> Option<&'static Shape<P>> {
-    let rank =
-        |shape: &Shape<P>| shape.exchange.addressing(P::MODES, shape.kind, id).map(|addressing| addressing.rank());
-    let first = shapes.next()?;
-    Some(shapes.fold(first, |best, next| if rank(next) > rank(best) { next } else { best }))
+/// Says whether the length is wrong, or the selectors are.
+fn problem<P: Protocol>(is_request: bool, frame: &Frame) -> Problem {
+    let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(frame.raw_id());
+    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.dlc());
+    if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
 }

@@ -114,6 +114,11 @@ impl Exchange {
         self.access
     }
 
+    /// Tests whether this is the same access to the same message.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        (self.message, self.access) == (other.message, other.access)
+    }
+
     /// Returns the addressing mode that an identifier shows.
     pub(crate) fn addressing(&self, modes: &'static [Mode], kind: Kind, id: u32) -> Option<Addressing> {
         Addressing::find(modes, self.answers, kind, id)

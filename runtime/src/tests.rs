@@ -4,7 +4,7 @@ use std::string::ToString;
 
 use crate::{
     Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Kind,
-    Layout, Mode, Pattern, Payload, Place, Problem, Protocol, Received, Replies, Request, Route, Selector, Shape,
+    Layout, Mode, Pattern, Payload, Place, Problem, Protocol, Received, Recognised, Replies, Request, Route, Selector,
     Signal, Who,
 };
 
@@ -122,6 +122,7 @@ impl Heat {
         .length(4)
         .request(FRAME.id(COMMAND, 8))
         .reply(FRAME.id(COMMAND, 8));
+    const PROBE: Exchange = Exchange::new("heat", "probe", &[None; 3]).length(2);
 
     fn set(self, route: impl Into<Route<To>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, &self)
@@ -153,12 +154,35 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(ERROR, 0);
     const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];
-    const SHAPES: &'static [Shape<Self>] = &[
-        Shape::request(&Heat::SET, |data| Self::Heat(Layout::decode(data))),
-        Shape::reply(&Heat::SET, |data| Self::Heat(Layout::decode(data))),
-        Shape::request(&Heat::READ, |_| Self::ReadHeat),
-        Shape::reply(&Heat::READ, |data| Self::Heat(Layout::decode(data))),
-    ];
+
+    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+        let data = &frame.bytes();
+        Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
+            (0x07, 0x01) => Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))),
+            (0x08, _) => Recognised::request(&Heat::READ, Self::ReadHeat),
+            (0x0A, _) => Recognised::request(&Heat::READ, Self::ReadHeat)
+                .or(Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))), frame)
+                .or(Recognised::request(&Heat::PROBE, Self::ReadHeat), frame),
+            _ => return None,
+        })
+    }
+
+    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+        let data = &frame.bytes();
+        Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
+            (0x07, 0x02) => Recognised::reply(&Heat::SET, Self::Heat(Layout::decode(data))),
+            (0x08, _) => Recognised::reply(&Heat::READ, Self::Heat(Layout::decode(data))),
+            _ => return None,
+        })
+    }
+
+    fn request_lengths(id: u32) -> &'static [u8] {
+        if matches!(COMMAND.of(id), 0x07 | 0x08) { &[4] } else { &[] }
+    }
+
+    fn reply_lengths(id: u32) -> &'static [u8] {
+        Self::request_lengths(id)
+    }
 
     fn layout(&self) -> &dyn Layout {
         match self {
@@ -196,8 +220,8 @@ fn a_request_shows_addresses_constants_and_values() {
 #[test]
 fn a_request_refuses_addresses_modes_and_values_that_are_not_documented() {
     let refusal = |result: Result<Request<Heat>, Error>| result.expect_err("a refusal").to_string();
-    assert_eq!(refusal(HEAT.set(To::Heater(10))), "`heater` is 10, but its limits are 1 and 9");
-    assert_eq!(refusal(HEAT.set(Route::new(To::All, 0xF2))), "`controller` is 242, but its limits are 240 and 241");
+    assert_eq!(refusal(HEAT.set(To::Heater(10))), "`heater` is 0x0A, but its limits are 0x01..=0x09");
+    assert_eq!(refusal(HEAT.set(Route::new(To::All, 0xF2))), "`controller` is 0xF2, but its limits are 0xF0..=0xF1");
     let read = Heat::READ.request_to(To::All, &());
     assert_eq!(refusal(read), "`heat` has no `read` with the addressing mode `all`");
     let hot = Heat { power_w: 2000.1 }.set(To::All);
@@ -248,6 +272,17 @@ fn problems_are_tested_in_order() {
 }
 
 #[test]
+fn of_several_messages_the_length_and_then_the_addresses_choose_and_the_first_wins_a_tie() {
+    let access = |id, length| {
+        let received = decode(&Frame::new_raw(id, true, [0; 8], length)).expect("a known frame");
+        received.exchange().access()
+    };
+    assert_eq!(access(0x010A_03F0, 4), "set");
+    assert_eq!(access(0x010A_5DF0, 4), "read");
+    assert_eq!(access(0x010A_03F0, 2), "probe");
+}
+
+#[test]
 fn the_addressing_mode_is_the_one_that_fits_best() {
     assert_eq!(mode_of(0x0107_03F0, [1, 0, 0, 0]), Some(("single", true, true)));
     assert_eq!(mode_of(0x0107_30F0, [1, 0, 0, 0]), Some(("single", true, false)));
@@ -279,5 +314,8 @@ fn a_message_is_not_built_under_the_identifier_of_another() {
         assert_eq!(text, std::format!("the identifier {expected} is none of `heat`"));
     }
     received.identifier = Identifier(0x0107_30F0);
-    assert_eq!(received.encode().expect_err("a refusal").to_string(), "`heater` is 48, but its limits are 1 and 9");
+    assert_eq!(
+        received.encode().expect_err("a refusal").to_string(),
+        "`heater` is 0x30, but its limits are 0x01..=0x09"
+    );
 }

@@ -1,13 +1,18 @@
 //! Rust: a `no_std` codec on the runtime.
 
 mod address;
+mod arms;
+mod choice;
+mod dispatch;
 mod doc;
 mod identifier;
 mod literal;
 mod message;
 mod names;
+mod parts;
 mod place;
 mod protocol;
+mod rows;
 mod spacing;
 mod word;
 
@@ -22,7 +27,7 @@ use names::Names;
 const TRAITS: [&str; 6] = ["IdentifierFields", "Layout", "Named", "Packed", "StatusWord", "Word"];
 
 /// What else generated code may take from the runtime.
-const RUNTIME: [&str; 28] = [
+const RUNTIME: [&str; 29] = [
     "Address",
     "AddressType",
     "AnySignal",
@@ -32,6 +37,7 @@ const RUNTIME: [&str; 28] = [
     "Error",
     "Exchange",
     "Filter",
+    "Frame",
     "Legend",
     "Mode",
     "Pattern",
@@ -40,10 +46,10 @@ const RUNTIME: [&str; 28] = [
     "Place",
     "Problem",
     "Protocol",
+    "Recognised",
     "Request",
     "Route",
     "Selector",
-    "Shape",
     "Signal",
     "StatusBit",
     "Text",
@@ -64,7 +70,7 @@ pub fn rust(protocol: &Protocol) -> String {
 /// Lays the code out; if it is no Rust it stays as it is, so that its compiler can say why.
 fn formatted(code: &TokenStream) -> String {
     let file = syn::parse2(code.clone());
-    file.map_or_else(|_| code.to_string(), |file| spacing::spaced(&prettyplease::unparse(&file)))
+    file.map_or_else(|_| code.to_string(), |file| spacing::spaced(&arms::joined(&prettyplease::unparse(&file))))
 }
 
 fn items(protocol: &Protocol) -> TokenStream {

@@ -4,11 +4,13 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::address;
+use super::dispatch::dispatch;
 use super::doc;
 use super::identifier::unnamed;
 use super::literal::hexadecimal;
 use super::message::{is_exact, selector_name};
-use super::names::{MessageNames, Names, ident, screaming};
+use super::names::{MessageNames, Names, screaming};
+use super::parts::{part_name, parts};
 use super::place::Written;
 use crate::model::{Message, Protocol, SelectorPlace, Shape};
 
@@ -26,8 +28,8 @@ pub fn frame(protocol: &Protocol) -> TokenStream {
         Some(quote!(.id(Identifier::#place, #value)))
     });
     let sent = fields.iter().filter_map(|field| {
-        let value = hexadecimal(field.send.filter(|value| *value != 0 && field.constant.is_none())?, field.width);
-        let place = screaming(&field.name);
+        let sent = field.send.or(field.normal).filter(|value| *value != 0 && field.constant.is_none())?;
+        let (place, value) = (screaming(&field.name), hexadecimal(sent, field.width));
         Some(quote!(.send_id(Identifier::#place, #value)))
     });
     let selectors = used_selectors(protocol).map(|index| selector(protocol, index));
@@ -63,7 +65,10 @@ fn selector(protocol: &Protocol, index: usize) -> Option<TokenStream> {
 pub fn protocol(protocol: &Protocol, names: &Names) -> TokenStream {
     let variants = Variants::new(protocol, names);
     let definition = variants.definition();
-    let implementation = implementation(protocol, names, &variants);
+    let functions: Vec<_> = dispatch(protocol, names).into_iter().chain([variants.layout()]).collect();
+    let first = functions.iter().filter_map(|parts| parts.first());
+    let implementation = implementation(protocol, first);
+    let further = functions.iter().flat_map(|parts| parts.iter().skip(1));
     quote! {
         #definition
 
@@ -79,6 +84,8 @@ pub fn protocol(protocol: &Protocol, names: &Names) -> TokenStream {
             pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
                 Received::decode(frame)
             }
+
+            #(#further)*
         }
 
         #implementation
@@ -124,17 +131,42 @@ impl<'a> Variants<'a> {
         }
     }
 
-    fn layout(&self) -> TokenStream {
+    /// Emits the functions that show what a message carries: the one of the trait, then those in which it goes on.
+    fn layout(&self) -> Vec<TokenStream> {
         let (carrying, empty): (Vec<_>, Vec<_>) = self.list.iter().partition(|(.., carried)| carried.is_some());
-        let carrying = carrying.iter().map(|(name, ..)| quote!(Self::#name(message) => message));
-        let empty: Vec<_> = empty.iter().map(|(name, ..)| name).collect();
-        let empty = (!empty.is_empty()).then(|| quote!(#(Self::#empty)|* => &(),));
-        quote! {
-            fn layout(&self) -> &dyn Layout {
-                match self { #empty #(#carrying),* }
-            }
+        let (carrying, empty) = (names_of(&carrying), names_of(&empty));
+        match (carrying.is_empty(), empty.as_slice()) {
+            (true, []) => vec![layout(0, &quote!(match *self {}))],
+            (true, _) => vec![layout(0, &quote!(&()))],
+            (false, []) => layouts(carrying, &quote!()),
+            (false, [only]) => layouts(carrying, &quote!(Self::#only => &(),)),
+            (false, _) => layouts(carrying, &quote!(_ => &(),)),
         }
     }
+}
+
+fn names_of<'a>(variants: &[&(&'a Ident, String, Option<&Ident>)]) -> Vec<&'a Ident> {
+    variants.iter().map(|(name, ..)| *name).collect()
+}
+
+/// Emits what the variants carry; `empty` is the arm of those that carry nothing.
+fn layouts(carrying: Vec<&Ident>, empty: &TokenStream) -> Vec<TokenStream> {
+    let parts = parts(carrying, |name| quote!(Self::#name(message) => message,));
+    let functions = parts.iter().enumerate().map(|(index, names)| {
+        let next = (index + 1 < parts.len()).then(|| part_name("layout", index + 1));
+        let rest = match next {
+            Some(next) => quote!(_ => self.#next(),),
+            None if index > 0 => quote!(_ => &(),),
+            None => empty.clone(),
+        };
+        layout(index, &quote!(match self { #(Self::#names(message) => message,)* #rest }))
+    });
+    functions.collect()
+}
+
+fn layout(index: usize, body: &TokenStream) -> TokenStream {
+    let name = part_name("layout", index);
+    quote!(fn #name(&self) -> &dyn Layout { #body })
 }
 
 fn comment(protocol: &Protocol, message: &Message, names: &MessageNames, shape: &Shape) -> String {
@@ -145,34 +177,20 @@ fn comment(protocol: &Protocol, message: &Message, names: &MessageNames, shape: 
     }
 }
 
-fn implementation(protocol: &Protocol, names: &Names, variants: &Variants) -> TokenStream {
+fn implementation<'a>(protocol: &Protocol, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
     let normal = protocol.identifier.fields.iter().filter_map(|field| {
         let (place, value) = (screaming(&field.name), hexadecimal(field.normal?, field.width));
         Some(quote!(.id(Identifier::#place, #value)))
     });
     let modes = address::modes(protocol);
-    let messages = protocol.messages.iter().zip(&names.messages);
-    let shapes = messages.flat_map(|(message, names)| {
-        message.shapes.iter().zip(&names.variants).map(|(shape, variant)| row(names, shape, variant))
-    });
-    let layout = variants.layout();
     quote! {
         impl Protocol for Message {
             type Identifier = Identifier;
             const FRAME: Filter = FRAME;
             const NORMAL: Filter = FRAME #(#normal)*;
             const MODES: &'static [Mode] = #modes;
-            const SHAPES: &'static [Shape<Self>] = &[#(#shapes),*];
 
-            #layout
+            #(#functions)*
         }
     }
-}
-
-fn row(names: &MessageNames, shape: &Shape, variant: &Ident) -> TokenStream {
-    let (home, exchange) = (&names.structs[0].name, &names.exchanges[shape.access]);
-    let kind = ident(shape.kind.name());
-    let carries = names.carried(shape).is_some();
-    let decode = if carries { quote!(|data| Self::#variant(Layout::decode(data))) } else { quote!(|_| Self::#variant) };
-    quote!(Shape::#kind(&#home::#exchange, #decode))
 }

@@ -1,0 +1,60 @@
+//! A `match` too long for one function, in parts of which each goes on in the next.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::names::ident;
+
+/// How many lines the arms in one function may have.
+const LINES: usize = 72;
+
+/// Distributes what becomes arms evenly over as few parts as are short enough, at least one.
+pub fn parts<T>(items: Vec<T>, arm: impl Fn(&T) -> TokenStream) -> Vec<Vec<T>> {
+    let heights: Vec<_> = items.iter().map(|item| height(&arm(item))).collect();
+    let total = heights.iter().sum::<usize>();
+    let enough = total.div_ceil(total.div_ceil(LINES).max(1));
+    let (mut parts, mut part, mut lines) = (Vec::new(), Vec::new(), 0);
+    for (item, height) in items.into_iter().zip(heights) {
+        if lines >= enough || (lines > 0 && lines + height > LINES) {
+            parts.push(std::mem::take(&mut part));
+            lines = 0;
+        }
+        lines += height;
+        part.push(item);
+    }
+    parts.push(part);
+    parts
+}
+
+/// Names the function of a part.
+pub fn part_name(name: &str, index: usize) -> Ident {
+    if index == 0 { ident(name) } else { ident(&format!("{name}_{}", index + 1)) }
+}
+
+/// Returns how many lines an arm has in a function of an `impl`.
+fn height(arm: &TokenStream) -> usize {
+    let around = |arm| quote!(impl Message { fn decode() { match id { #arm _ => last(), } } });
+    let lines = |arm| super::formatted(&around(arm)).lines().count();
+    lines(Some(arm)).saturating_sub(lines(None))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arms_are_distributed_evenly_over_parts_that_are_short_enough() {
+        let arm = |_: &usize| quote!(0x01 => { one(); two(); });
+        let lengths = |count: usize| parts((0..count).collect(), arm).iter().map(Vec::len).collect::<Vec<_>>();
+        assert_eq!(lengths(0), [0]);
+        assert_eq!(lengths(18), [18]);
+        assert_eq!(lengths(41), [14, 14, 13]);
+    }
+
+    #[test]
+    fn an_arm_is_as_high_as_it_is_laid_out() {
+        assert_eq!(height(&quote!(0x01 => one(),)), 1);
+        let long = ident(&"a".repeat(60));
+        assert_eq!(height(&quote!(0x01 => #long(#long),)), 5);
+    }
+}
