@@ -1,0 +1,65 @@
+//! The documents' own frames in the generated code: the values that the spec states, and the same bytes back.
+
+use canspec_codegen::model::{Encoding, Example, Kind, Protocol};
+use canspec_runtime::{Number, Received};
+use canspec_tests::{Visitor, protocol, visit};
+use embedded_can::Frame as _;
+
+struct Examples {
+    frames: usize,
+}
+
+impl Visitor for Examples {
+    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
+        let protocol = protocol(path);
+        for example in protocol.examples.iter().filter(|example| example.fails.is_none()) {
+            self.frames += usize::from(holds::<P>(&protocol, example));
+        }
+    }
+}
+
+/// Runs an example that has data; `false` for an identifier alone.
+fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -> bool {
+    let (Some(bytes), Some(message)) = (&example.data, example.message) else { return false };
+    let message = &protocol.messages[message];
+    let mut data = [0; 8];
+    data[..bytes.len()].copy_from_slice(bytes);
+    let length = u8::try_from(bytes.len()).expect("at most 8 bytes");
+    let frame = canspec_runtime::Frame::new_raw(example.id, example.extended, data, length);
+    let at = format!("{}: {}", protocol.name, example.doc.path);
+    let received = Received::<P>::decode(&frame).unwrap_or_else(|problem| panic!("{at}: {problem}"));
+    assert_eq!(received.exchange().message(), message.name, "{at}");
+    let mut read = Vec::new();
+    received.visit(|reading| read.push((reading.name, bits(reading.raw))));
+    assert_eq!(read.len(), example.means.len(), "{at}");
+    for meaning in &example.means {
+        let signal = &message.signals[meaning.signal];
+        let (_, raw) = read.iter().find(|(name, _)| *name == signal.name).unwrap_or_else(|| panic!("{at}: {}", signal.name));
+        let width = signal.place.width();
+        let mask = u64::MAX >> (64 - width);
+        assert_eq!(Some(raw & mask), meaning.raw, "{at}: {} means {}", signal.name, meaning.text);
+        assert!(matches!(signal.encoding, Encoding::Number { signed: true, .. }) || raw & !mask == 0, "{at}");
+    }
+    if example.kind != Kind::Request || example.notes.is_empty() {
+        let encoded = received.encode().unwrap_or_else(|error| panic!("{at}: {error}"));
+        assert_eq!(encoded.data(), bytes, "{at}");
+        assert_eq!(encoded.raw_id(), example.id, "{at}");
+    }
+    true
+}
+
+/// Returns a raw value as bits.
+fn bits(raw: Number) -> u64 {
+    match raw {
+        Number::Unsigned(raw) => raw,
+        Number::Signed(raw) => raw.cast_unsigned(),
+        Number::Float(_) => panic!("a raw value is an integer"),
+    }
+}
+
+#[test]
+fn every_frame_that_a_document_prints_holds_in_the_generated_code() {
+    let mut examples = Examples { frames: 0 };
+    visit(&mut examples);
+    assert!(examples.frames >= 140, "{} frames", examples.frames);
+}
