@@ -1,4 +1,4 @@
-//! Generates codecs of the feature specs, and a list of every protocol: those that ship and those of the features.
+//! Generates codecs of the feature specs and of made-up devices, and a list of every protocol, those that ship included.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,10 +13,13 @@ fn main() {
     for (name, path) in specs(&root.join("../specs")) {
         list.visit(&format!("canspec_protocols::{name}"), &path);
     }
-    for (name, path) in specs(&root.join("specs/features")) {
-        fs::write(out.join(format!("{name}.rs")), generate(&path)).expect("OUT_DIR can be written");
-        list.module(&name);
-        list.visit(&name, &path);
+    for folder in ["features", "devices"] {
+        for (name, path) in specs(&root.join("specs").join(folder)) {
+            let module = format!("{folder}_{name}");
+            fs::write(out.join(format!("{module}.rs")), generate(&path)).expect("OUT_DIR can be written");
+            list.module(&module, &path);
+            list.visit(&module, &path);
+        }
     }
     fs::write(out.join("protocols.rs"), list.finish()).expect("OUT_DIR can be written");
 }
@@ -56,12 +59,13 @@ struct Protocols {
 }
 
 impl Protocols {
-    fn module(&mut self, name: &str) {
+    fn module(&mut self, name: &str, path: &Path) {
         let _ = writeln!(
             self.modules,
-            "/// Generated from `specs/features/{name}.yaml`.\n\
+            "/// Generated from `{}`.\n\
              #[deny(warnings, missing_docs, unsafe_code)]\n\
-             pub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
+             pub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}",
+            path.display()
         );
     }
 
