@@ -8,7 +8,8 @@ test:
 ci:
     .ci/run
 
-# Accept the generated code of the snapshots, after reading it.
+# Rewrite the expected outputs: generated code, diagnostics, whole commands. Read the difference before you commit it.
 bless:
-    INSTA_UPDATE=always cargo test -p canspec-tests
+    INSTA_UPDATE=always CANSPEC_BLESS=1 cargo test -p canspec-tests
+    TRYCMD=overwrite cargo test -p canspec --test commands
     git diff --stat

@@ -77,7 +77,7 @@ pub fn is_channel(text: &str) -> bool {
 
 /// Reads `ID#DATA`, and the forms of remote, error and FD frames.
 fn read_frame(word: &str) -> Result<Frame, String> {
-    let (id, data) = word.split_once('#').ok_or_else(|| format!("{} is no ID#DATA", quoted(word)))?;
+    let (id, data) = word.split_once('#').ok_or_else(|| format!("{} is no ID#DATA; `candump -L` writes it", quoted(word)))?;
     let (id, extended, error) = identifier(id)?;
     let (form, data) = match (error, data.strip_prefix('#')) {
         (true, _) => (Form::Error, bytes(data, CLASSIC)?),
@@ -270,7 +270,7 @@ mod tests {
     fn an_unreadable_frame_says_why() {
         let reasons = [
             ("can0", "no frame in the form ID#DATA; `candump -L` writes it"),
-            ("can0 can1 123#00", "`can1` is no ID#DATA"),
+            ("can0 can1 123#00", "`can1` is no ID#DATA; `candump -L` writes it"),
             ("(1) (2) 123#00", "the channel `(2)` is no name"),
             ("\u{1b}[2J 123#00", "the channel `\\u{1b}[2J` is no name"),
             ("20000000G#00", "the identifier `20000000G` is not hexadecimal"),

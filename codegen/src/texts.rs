@@ -47,8 +47,12 @@ pub fn raw_of_bits(word: &StatusWord, names: &[String]) -> Result<u64, String> {
 fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational, String> {
     let number = match signal.unit.filter(|_| with_unit) {
         Some(unit) => {
-            let number = text.strip_suffix(unit.symbol).map(str::trim_end);
-            number.ok_or_else(|| format!("`{text}` is not a number of {} for `{}`", unit.symbol, signal.name))?
+            let number = text.strip_suffix(unit.symbol).and_then(|number| Rational::parse(number.trim_end()));
+            let written = text.trim_end_matches(|letter: char| !letter.is_ascii_digit());
+            let symbol = unit.symbol;
+            return number.ok_or_else(|| {
+                format!("`{text}` is not a number of {symbol} for `{}`; write it as `{written} {symbol}`", signal.name)
+            });
         }
         None => text,
     };

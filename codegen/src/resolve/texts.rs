@@ -91,7 +91,7 @@ impl Resolver<'_> {
 
     /// Reads `high..low` or one number: bits of a word of `width` bits, 0 being the least significant.
     pub fn bits(&mut self, path: &Path, text: &str, width: u8) -> Option<(u8, u8)> {
-        let (high, low) = text.split_once("..").unwrap_or((text, text));
+        let (high, low) = self.ends(path, text, "7..4")?;
         let high = self.integer(path, high, 0, width - 1)?;
         let low = self.integer(path, low, 0, width - 1)?;
         if high < low {
@@ -104,8 +104,19 @@ impl Resolver<'_> {
 
     /// Reads `first..last` or one number: bytes of the payload, the most significant first.
     pub fn bytes(&mut self, path: &Path, text: &str) -> Option<Place> {
-        let (first, last) = text.split_once("..").unwrap_or((text, text));
+        let (first, last) = self.ends(path, text, "0..3")?;
         Some(Place::bytes(self.integer(path, first, 0, 7)?, self.integer(path, last, 0, 7)?))
+    }
+
+    /// Splits a place into its two ends.
+    fn ends<'t>(&mut self, path: &Path, text: &'t str, form: &str) -> Option<(&'t str, &'t str)> {
+        let ends = text.split_once("..").unwrap_or((text, text));
+        if Rational::parse(ends.0).is_none() || Rational::parse(ends.1).is_none() {
+            let help = format!("write `{form}` or one number");
+            self.error_with_help("place", path.at_value(), format!("`{text}` is not a place"), help);
+            return None;
+        }
+        Some(ends)
     }
 
     /// Reads a unit of the language.
@@ -179,8 +190,8 @@ impl Resolver<'_> {
     pub fn check_name(&mut self, path: &Path, name: &str) {
         let first = name.starts_with(|letter: char| letter.is_ascii_lowercase());
         let rest = name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_');
-        if !(first && rest) {
-            let help = "names are lower-case letters, digits and `_`, and start with a letter";
+        if !(first && rest) || name.ends_with('_') || name.contains("__") {
+            let help = "names are lower-case letters, digits and single `_` between them, and start with a letter";
             self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
         }
     }
