@@ -77,7 +77,8 @@ pub fn is_channel(text: &str) -> bool {
 
 /// Reads `ID#DATA`, and the forms of remote, error and FD frames.
 fn read_frame(word: &str) -> Result<Frame, String> {
-    let (id, data) = word.split_once('#').ok_or_else(|| format!("{} is no ID#DATA; `candump -L` writes it", quoted(word)))?;
+    let (id, data) =
+        word.split_once('#').ok_or_else(|| format!("{} is no ID#DATA; `candump -L` writes it", quoted(word)))?;
     let (id, extended, error) = identifier(id)?;
     let (form, data) = match (error, data.strip_prefix('#')) {
         (true, _) => (Form::Error, bytes(data, CLASSIC)?),

@@ -109,7 +109,9 @@ fn the_table_shows_the_same_values() {
     let table = String::from_utf8(output.stdout).expect("the output is UTF-8");
     for line in decoded() {
         let signals = line["signals"].as_object().cloned().unwrap_or_default();
-        for (name, signal) in signals.iter().filter(|(_, signal)| signal.get("value").is_some_and(|value| !value.is_null())) {
+        for (name, signal) in
+            signals.iter().filter(|(_, signal)| signal.get("value").is_some_and(|value| !value.is_null()))
+        {
             let shown = format!("{name} {}", value(signal));
             let scaled = signal["value"].as_f64().map_or(shown.clone(), |number| format!("{name} {number:?}"));
             assert!(table.contains(&shown) || table.contains(&scaled), "{shown} is not in the table");

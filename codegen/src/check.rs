@@ -1,8 +1,8 @@
 //! The rules of the last stage, in order: what is resolved must also be right.
 
-mod direction;
 mod ambiguous;
 mod default_value;
+mod direction;
 mod erratum;
 mod example;
 mod grid;

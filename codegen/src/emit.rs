@@ -2,4 +2,5 @@
 
 mod rust;
 
+pub(crate) use rust::camel_case;
 pub use rust::rust;

@@ -43,7 +43,9 @@ impl Rational {
             None => (1, numerator),
         };
         let (digits, places) = match magnitude.split_once('.') {
-            Some((whole, fraction)) if !whole.is_empty() && !fraction.is_empty() => (format!("{whole}{fraction}"), fraction.len()),
+            Some((whole, fraction)) if !whole.is_empty() && !fraction.is_empty() => {
+                (format!("{whole}{fraction}"), fraction.len())
+            }
             Some(_) => return None,
             None => (magnitude.to_owned(), 0),
         };
@@ -172,7 +174,9 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_refused() {
-        for text in ["", "-", "0x", "0X1F", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1", "1/-2", "9".repeat(45).as_str()] {
+        for text in
+            ["", "-", "0x", "0X1F", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1", "1/-2", "9".repeat(45).as_str()]
+        {
             assert_eq!(parts(text), None, "{text}");
         }
     }

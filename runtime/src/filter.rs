@@ -25,8 +25,13 @@ impl Selector {
         Self { normal: Some(normal), ..self }
     }
 
-    fn is_normal(&self, data: Data) -> bool {
-        self.normal.is_none_or(|normal| self.place.get(&data) == normal)
+    pub(crate) fn is_normal(&self, raw: u64) -> bool {
+        self.normal.is_none_or(|normal| raw == normal)
+    }
+
+    /// Tests whether so many data bytes have the field.
+    pub(crate) fn is_within(&self, length: usize) -> bool {
+        self.place.mask().iter().skip(length).all(|byte| *byte == 0)
     }
 }
 
@@ -106,10 +111,6 @@ impl Filter {
     /// Returns the selectors that such frames have in their data.
     pub const fn data_selectors(&self) -> &'static [Selector] {
         self.selectors
-    }
-
-    pub(crate) fn has_normal_selectors(&self, data: Data) -> bool {
-        self.selectors.iter().all(|selector| selector.is_normal(data))
     }
 
     /// Tests whether identifiers have 29 bits rather than 11.

@@ -19,7 +19,9 @@ impl Frame {
     /// Returns a frame with the low 29 or 11 bits of `id` and the first `length` bytes of `data`, at most 8.
     pub const fn new_raw(id: u32, extended: bool, data: Data, length: u8) -> Self {
         let id = id & if extended { 0x1FFF_FFFF } else { 0x7FF };
-        Self { id, extended, length: if length < 8 { length } else { 8 }, data }
+        let length = if length < 8 { length } else { 8 };
+        let kept = u64::MAX.unbounded_shl(64 - 8 * length as u32);
+        Self { id, extended, length, data: (u64::from_be_bytes(data) & kept).to_be_bytes() }
     }
 
     /// Returns the identifier as a number.
@@ -28,8 +30,17 @@ impl Frame {
     }
 
     /// Returns the bytes as they are read: eight, of which those beyond the frame's length are 0.
-    pub fn bytes(&self) -> Data {
-        padded(embedded_can::Frame::data(self))
+    pub const fn bytes(&self) -> Data {
+        self.data
+    }
+
+    /// Returns the same frame in the type of a driver, which may refuse it.
+    pub fn to<F: embedded_can::Frame>(&self) -> Option<F> {
+        F::new(embedded_can::Frame::id(self), embedded_can::Frame::data(self))
+    }
+
+    pub(crate) fn length(&self) -> usize {
+        self.length.into()
     }
 }
 
@@ -86,6 +97,14 @@ pub fn raw_id(id: Id) -> (u32, bool) {
     }
 }
 
+/// Copies a classic data frame.
+pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
+    let (id, extended) = raw_id(frame.id());
+    let length = u8::try_from(frame.data().len()).ok()?;
+    let is_classic = !frame.is_remote_frame() && length <= 8;
+    is_classic.then(|| Frame::new_raw(id, extended, padded(frame.data()), length))
+}
+
 /// Returns the first eight of `bytes`, with zeros where there are fewer.
 pub fn padded(bytes: &[u8]) -> Data {
     let mut data = [0; 8];
@@ -131,5 +150,14 @@ mod tests {
     fn bits_and_bytes_that_no_frame_has_are_dropped() {
         let frame = Frame::new_raw(u32::MAX, false, [0xFF; 8], 200);
         assert_eq!((frame.raw_id(), frame.dlc()), (0x7FF, 8));
+        let short = Frame::new_raw(0x83, false, [0xFF; 8], 3);
+        assert_eq!((short.bytes(), short.data()), ([0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0], &[0xFF; 3][..]));
+        assert_eq!(Frame::new_raw(0x83, false, [0xFF; 8], 0), Frame::new_raw(0x83, false, [0; 8], 0));
+    }
+
+    #[test]
+    fn a_frame_becomes_the_frame_of_a_driver() {
+        let frame = Frame::new_raw(0x029C_03F0, true, [1, 2, 3, 0, 0, 0, 0, 0], 3);
+        assert_eq!(frame.to::<Frame>(), Some(frame));
     }
 }

@@ -47,7 +47,7 @@ impl Piece {
         match *self {
             Self::Literal(literal) => formatter.write_str(literal),
             Self::Text(place) => {
-                let letters = place.get(&data).to_be_bytes().into_iter().skip(8 - bytes(place));
+                let letters = place.get(&data).to_be_bytes().into_iter().skip(8_usize.saturating_sub(bytes(place)));
                 letters.map(char::from).try_for_each(|letter| formatter.write_char(letter))
             }
             Self::Number { place, digits, .. } => {

@@ -34,38 +34,45 @@ impl Bits {
     }
 
     /// Returns the largest number that fits.
+    #[inline]
     pub const fn max(self) -> u64 {
         u64::MAX.wrapping_shr(64_u32.wrapping_sub(self.width as u32))
     }
 
     /// Returns the bits of the word that belong to this run.
+    #[inline]
     pub const fn mask(self) -> u64 {
         self.max().wrapping_shl(self.shift as u32)
     }
 
     /// Returns these bits of `word` as a number.
+    #[inline]
     pub const fn get(self, word: u64) -> u64 {
         word.wrapping_shr(self.shift as u32) & self.max()
     }
 
     /// Returns these bits of an identifier.
     #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
+    #[inline]
     pub const fn of(self, id: u32) -> u32 {
         self.get(id as u64) as u32
     }
 
     /// Returns these bits of an identifier as a raw value.
+    #[inline]
     pub fn read<R: Raw>(self, id: u32) -> R {
         R::from_bits(self.get(id.into()))
     }
 
     /// Returns an identifier in which only these bits are set, to the low bits of a raw value.
     #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
+    #[inline]
     pub fn write(self, raw: impl Raw) -> u32 {
         self.put(0, raw.to_bits()) as u32
     }
 
     /// Returns these bits of `word` as a number in two's complement.
+    #[inline]
     pub const fn get_signed(self, word: u64) -> i64 {
         let unused = 64_u32.wrapping_sub(self.width as u32);
         self.get(word).wrapping_shl(unused).cast_signed().wrapping_shr(unused)
@@ -73,6 +80,7 @@ impl Bits {
 
     /// Returns `word` with these bits replaced by the low bits of `raw`.
     #[must_use]
+    #[inline]
     pub const fn put(self, word: u64, raw: u64) -> u64 {
         let mask = self.mask();
         (word & !mask) | (raw.wrapping_shl(self.shift as u32) & mask)
@@ -89,6 +97,7 @@ pub enum ByteOrder {
 }
 
 impl ByteOrder {
+    #[inline]
     const fn load(self, data: Data) -> u64 {
         match self {
             Self::Big => u64::from_be_bytes(data),
@@ -96,6 +105,7 @@ impl ByteOrder {
         }
     }
 
+    #[inline]
     const fn store(self, word: u64) -> Data {
         match self {
             Self::Big => word.to_be_bytes(),
@@ -184,36 +194,43 @@ impl Place {
     }
 
     /// Returns the largest number that fits.
+    #[inline]
     pub const fn max(self) -> u64 {
         self.bits.max()
     }
 
     /// Returns the payload in which only the bits of this place are set.
+    #[inline]
     pub const fn mask(self) -> Data {
         self.order.store(self.bits.mask())
     }
 
     /// Returns the number at this place.
+    #[inline]
     pub const fn get(self, data: &Data) -> u64 {
         self.bits.get(self.order.load(*data))
     }
 
     /// Returns the number in two's complement at this place.
+    #[inline]
     pub const fn get_signed(self, data: &Data) -> i64 {
         self.bits.get_signed(self.order.load(*data))
     }
 
     /// Returns the raw value at this place.
+    #[inline]
     pub fn read<R: Raw>(self, data: &Data) -> R {
         R::from_bits(if R::SIGNED { self.get_signed(data).cast_unsigned() } else { self.get(data) })
     }
 
     /// Writes the low bits of a raw value to this place and leaves the others as they are.
+    #[inline]
     pub fn write(self, raw: impl Raw, data: &mut Data) {
         self.put(data, raw.to_bits());
     }
 
     /// Writes the low bits of `raw` to this place and leaves the others as they are.
+    #[inline]
     pub const fn put(self, data: &mut Data, raw: u64) {
         *data = self.order.store(self.bits.put(self.order.load(*data), raw));
     }

@@ -1,12 +1,16 @@
 //! Recognising frames.
 
 use core::fmt::{self, Debug};
+use core::mem::discriminant;
 
 use embedded_can::Frame as _;
 
 use crate::address::Rank;
-use crate::frame::{padded, raw_id};
-use crate::{Addressing, Data, Error, Exchange, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading, Selector};
+use crate::frame::classic;
+use crate::reply::{has_error, selected};
+use crate::{
+    Addressing, Data, Error, Exchange, Failure, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading, Selector,
+};
 
 /// A protocol, implemented by the enum of its messages.
 pub trait Protocol: Copy + Debug + 'static {
@@ -52,7 +56,9 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
     fn to_raw(self) -> u32;
 
     /// Tests whether an identifier belongs to somebody else on the bus.
-    fn is_foreign(id: u32) -> bool;
+    fn is_foreign(_: u32) -> bool {
+        false
+    }
 
     /// Tests whether an identifier goes towards a module.
     fn is_to_module(id: u32) -> bool;
@@ -97,7 +103,7 @@ impl<M: Protocol> Recognised<M> {
     }
 
     fn has_length_of(&self, frame: &Frame) -> bool {
-        usize::from(self.exchange.data_length()) == frame.dlc()
+        usize::from(self.exchange.data_length()) == frame.length()
     }
 }
 
@@ -133,10 +139,8 @@ impl core::error::Error for Problem {}
 /// A recognised frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Received<P: Protocol> {
-    /// The identifier.
-    pub identifier: P::Identifier,
-    /// The message.
-    pub message: P,
+    identifier: P::Identifier,
+    content: P,
     exchange: &'static Exchange,
     kind: Kind,
     frame: Frame,
@@ -151,10 +155,53 @@ impl<P: Protocol> Received<P> {
     /// data are looked at once the length is known to be right.
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         let frame = classic(frame).ok_or(Problem::Frame)?;
-        let is_request = direction::<P>(&frame)?;
+        let is_request = is_to_module::<P>(&frame)?;
         let Recognised { exchange, kind, message } = recognise::<P>(is_request, &frame)?;
         let identifier = P::Identifier::from_raw(frame.raw_id());
-        Ok(Self { identifier, message, exchange, kind, frame })
+        Ok(Self { identifier, content: message, exchange, kind, frame })
+    }
+
+    /// Returns what a request asks for.
+    #[must_use]
+    pub fn request(&self) -> Option<&P> {
+        (self.kind == Kind::Request).then_some(&self.content)
+    }
+
+    /// Returns what a reply says, or [`Failure::Error`] for an error reply.
+    #[must_use]
+    pub fn reply(&self) -> Option<Result<&P, Failure>> {
+        let said = if self.is_error_reply() { Err(Failure::Error) } else { Ok(&self.content) };
+        (self.kind == Kind::Reply).then_some(said)
+    }
+
+    /// Returns what a report says, unless it shows an error code.
+    #[must_use]
+    pub fn report(&self) -> Option<&P> {
+        (self.kind == Kind::Report && !self.is_error_reply()).then_some(&self.content)
+    }
+
+    /// Returns what stands in the frame whatever its kind, for logs.
+    ///
+    /// That holds for an error reply too, whose values mean nothing unless the document says so.
+    pub const fn content(&self) -> &P {
+        &self.content
+    }
+
+    /// Returns the identifier.
+    pub const fn identifier(&self) -> P::Identifier {
+        self.identifier
+    }
+
+    /// Returns the same message under another identifier; [`encode`](Self::encode) makes the frame of it.
+    #[must_use]
+    pub const fn with_identifier(self, identifier: P::Identifier) -> Self {
+        Self { identifier, ..self }
+    }
+
+    /// Returns other values under the same identifier; [`encode`](Self::encode) makes the frame of them.
+    #[must_use]
+    pub const fn with_content(self, content: P) -> Self {
+        Self { content, ..self }
     }
 
     /// Returns the frame as it was received.
@@ -177,30 +224,23 @@ impl<P: Protocol> Received<P> {
         self.exchange.addressing(P::MODES, self.kind, self.identifier.to_raw())
     }
 
-    /// Tests whether the frame is an error reply.
+    /// Tests whether the frame shows an error code towards the controller.
     pub fn is_error_reply(&self) -> bool {
-        self.kind != Kind::Request && !self.is_normal()
+        self.kind != Kind::Request && has_error::<P>(self.data_selectors(), &self.frame)
     }
 
-    fn filter(&self) -> Option<Filter> {
-        self.exchange.filter(self.kind)
-    }
-
-    fn is_normal(&self) -> bool {
-        let has_normal_selectors = |filter: Filter| filter.has_normal_selectors(self.frame.bytes());
-        P::NORMAL.matches(&self.frame) && self.filter().is_none_or(has_normal_selectors)
+    fn data_selectors(&self) -> &'static [Selector] {
+        self.exchange.filter(self.kind).map_or(&[], |filter| filter.data_selectors())
     }
 
     /// Returns the selectors in the data, each with its raw value.
     pub fn selectors(&self) -> impl Iterator<Item = (&'static Selector, u64)> {
-        let data = self.frame.bytes();
-        let selectors = self.filter().map_or(&[][..], |filter| filter.data_selectors());
-        selectors.iter().map(move |selector| (selector, selector.place.get(&data)))
+        selected(self.data_selectors(), self.frame)
     }
 
     /// Shows the signals, by first byte.
     pub fn visit(&self, mut visitor: impl FnMut(Reading<'_>)) {
-        for signal in self.message.layout().signals() {
+        for signal in self.content.layout().signals() {
             signal.read(&self.frame.bytes(), &mut visitor);
         }
     }
@@ -208,11 +248,11 @@ impl<P: Protocol> Received<P> {
     /// Returns the set bits that neither signals nor selectors cover.
     pub fn reserved(&self) -> Data {
         let selectors = self.selectors().map(|(selector, _)| selector.place);
-        let signals = self.message.layout().signals().iter().map(|signal| signal.place());
+        let signals = self.content.layout().signals().iter().map(|signal| signal.place());
         selectors.chain(signals).fold(self.frame.bytes(), cleared)
     }
 
-    /// Builds the frame anew, of [`identifier`](Self::identifier) and [`message`](Self::message).
+    /// Builds the frame anew, of [`identifier`](Self::identifier) and [`content`](Self::content).
     ///
     /// # Errors
     ///
@@ -222,22 +262,29 @@ impl<P: Protocol> Received<P> {
         let id = self.identifier.to_raw();
         let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());
         let again = Self::decode(&frame).ok().filter(|again| again.identifier == self.identifier);
-        let same = |again: &Self| again.kind == self.kind && again.exchange.is(self.exchange);
-        let again = again.filter(same).ok_or(Error::Identifier { message: self.exchange().message(), id })?;
+        let again = again
+            .filter(|again| again.is_like(self))
+            .ok_or(Error::Identifier { message: self.exchange().message(), id })?;
         if self.kind() == Kind::Request {
             again.check_addressing(id)?;
         }
         Ok(frame)
     }
 
+    /// Tests whether this is the same kind of frame of the same message.
+    fn is_like(&self, other: &Self) -> bool {
+        let is_same_variant = discriminant(&self.content) == discriminant(&other.content);
+        is_same_variant && self.kind == other.kind && self.exchange.is(other.exchange)
+    }
+
     /// Writes the signals over the frame as it was received.
     fn data(&self) -> Result<Data, Error> {
-        let signals = self.message.layout().signals().iter();
+        let signals = self.content.layout().signals().iter();
         let data = signals.fold(self.frame.bytes(), |data, signal| cleared(data, signal.place()));
         let is_request = self.kind() == Kind::Request;
         let new = if is_request { Payload::within_limits } else { Payload::new };
         let mut payload = new(self.exchange().message(), data);
-        self.message.layout().encode(&mut payload)?;
+        self.content.layout().encode(&mut payload)?;
         Ok(*payload.data())
     }
 
@@ -254,16 +301,8 @@ fn cleared(mut data: Data, place: Place) -> Data {
     data
 }
 
-/// Copies a classic data frame.
-fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
-    let (id, extended) = raw_id(frame.id());
-    let length = u8::try_from(frame.data().len()).ok()?;
-    let is_classic = !frame.is_remote_frame() && length <= 8;
-    is_classic.then(|| Frame::new_raw(id, extended, padded(frame.data()), length))
-}
-
 /// Tests the identifier, and tells whether it goes towards a module.
-fn direction<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
+pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
     let id = frame.raw_id();
     let has_width = frame.is_extended() == P::FRAME.is_extended();
     if has_width && P::Identifier::is_foreign(id) {
@@ -286,6 +325,6 @@ fn recognise<P: Protocol>(is_request: bool, frame: &Frame) -> Result<Recognised<
 /// Says whether the length is wrong, or the selectors are.
 fn problem<P: Protocol>(is_request: bool, frame: &Frame) -> Problem {
     let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(frame.raw_id());
-    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.dlc());
+    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());
     if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
 }

@@ -3,7 +3,8 @@
 use core::marker::PhantomData;
 
 use crate::address::{AddressType, Addressing, Kind, Mode, Pattern, Who};
-use crate::{Error, Filter, Frame, Layout, Payload, Protocol};
+use crate::reply::answer;
+use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
 /// Whom a request of a protocol can address.
 pub trait Destination: Copy {
@@ -124,17 +125,18 @@ impl Exchange {
         Addressing::find(modes, self.answers, kind, id)
     }
 
-    /// Builds the request that carries `message`.
+    /// Builds the request that carries `message`; generated code calls it.
     ///
     /// # Errors
     ///
     /// Refuses a mode that the message does not have, an address that the document does not name, and values outside
     /// their limits.
+    #[doc(hidden)]
     pub fn request_to<T: Destination, R>(
         &self,
         route: impl Into<Route<T>>,
         message: &impl Layout,
-    ) -> Result<Request<R>, Error> {
+    ) -> Result<Request<T::Protocol, R>, Error> {
         let route = route.into();
         let (mode, who, pattern, request) = self.way(&route)?;
         for address in pattern.addresses {
@@ -143,7 +145,7 @@ impl Exchange {
         let filter = pattern.narrow(request, |kind| Some(route.number(kind)));
         let frame = self.fill(filter, Payload::within_limits(self.message, filter.data_value()), message)?;
         let replies = self.replies(mode, who, |kind| pattern.has(kind).then(|| route.number(kind)));
-        Ok(Request { frame, replies, normal: T::Protocol::NORMAL, reply: PhantomData })
+        Ok(Request { frame, replies, reply: PhantomData })
     }
 
     fn way<T: Destination>(&self, route: &Route<T>) -> Result<(&'static Mode, Who, Pattern, Filter), Error> {
@@ -200,15 +202,16 @@ impl Replies {
 
 /// A request ready to be sent, whose replies carry `R`.
 #[derive(Debug)]
-pub struct Request<R> {
+#[must_use = "a request is only a frame; send it"]
+pub struct Request<P, R> {
     frame: Frame,
     replies: Replies,
-    normal: Filter,
-    reply: PhantomData<fn() -> R>,
+    reply: PhantomData<fn() -> (P, R)>,
 }
 
-impl<R: Layout> Request<R> {
-    /// Returns the frame.
+impl<P: Protocol, R: Layout> Request<P, R> {
+    /// Returns the frame to send.
+    #[must_use]
     pub const fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -218,36 +221,23 @@ impl<R: Layout> Request<R> {
         &self.replies
     }
 
+    /// Decodes a frame if it answers this request, be it with an error; returns `None` for somebody else's frame.
+    pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>> {
+        let filter = self.replies.filter()?;
+        let frame = answer::<P>(filter, frame)?;
+        Some(Reply::decode(filter.data_selectors(), self.frame.length(), frame))
+    }
+
     /// Tests whether a frame answers this request, be it with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
-        self.replies.filter().is_some_and(|filter| filter.matches(frame)) && frame.dlc() == self.frame_length()
-    }
-
-    /// Tests whether a frame answers this request with an error.
-    pub fn is_error_reply(&self, frame: &impl embedded_can::Frame) -> bool {
-        self.is_reply(frame) && !self.is_normal(frame)
-    }
-
-    /// Decodes a frame that answers this request without an error.
-    pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<R> {
-        let answers = self.is_reply(frame) && self.is_normal(frame);
-        answers.then(|| R::decode(&crate::frame::padded(frame.data())))
-    }
-
-    fn is_normal(&self, frame: &impl embedded_can::Frame) -> bool {
-        let has_normal_selectors = |filter: &Filter| filter.has_normal_selectors(crate::frame::padded(frame.data()));
-        self.normal.matches(frame) && self.replies.filter().is_none_or(has_normal_selectors)
-    }
-
-    fn frame_length(&self) -> usize {
-        embedded_can::Frame::dlc(&self.frame)
+        self.replies.filter().is_some_and(|filter| answer::<P>(filter, frame).is_some())
     }
 }
 
-impl<R> Clone for Request<R> {
+impl<P, R> Clone for Request<P, R> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<R> Copy for Request<R> {}
+impl<P, R> Copy for Request<P, R> {}

@@ -83,9 +83,15 @@ impl<R: Raw> Signal<R> {
         if !raw.is_whole() {
             return Err(self.meaningless(payload));
         }
-        let number = self.physical(raw);
-        self.check(number, Some(raw.to_bits()), payload)?;
-        self.store(raw.to_bits(), number, payload)
+        if payload.keeps_limits() && self.is_limited(raw) {
+            self.check(self.physical(raw), Some(raw.to_bits()), payload)?;
+        }
+        self.store(raw.to_bits(), || self.physical(raw), payload)
+    }
+
+    /// Tests whether some raw values are legal and others are not.
+    fn is_limited(&self, raw: R) -> bool {
+        self.limits.is_some() || matches!(raw.number(), Number::Float(_))
     }
 
     fn bits(&self, data: Data) -> u64 {
@@ -93,11 +99,11 @@ impl<R: Raw> Signal<R> {
     }
 
     /// Writes bits that come back as they were.
-    fn store(&self, bits: u64, number: Number, payload: &mut Payload) -> Result<(), Error> {
+    fn store(&self, bits: u64, number: impl FnOnce() -> Number, payload: &mut Payload) -> Result<(), Error> {
         let mut data = *payload.data();
         self.place.put(&mut data, bits);
         if self.bits(data) != bits {
-            return Err(self.too_wide(number, payload));
+            return Err(self.too_wide(number(), payload));
         }
         payload.replace(data);
         Ok(())
@@ -212,7 +218,7 @@ fn encode_scaled<R: Raw>(signal: &Signal<R>, scale: Scale, physical: f64, payloa
     let exact = raw.filter(|raw| scale.physical(*raw) == physical).map(i64::cast_unsigned);
     signal.check(number, exact, payload)?;
     match raw {
-        Some(raw) if R::SIGNED || raw >= 0 => signal.store(raw.cast_unsigned(), number, payload),
+        Some(raw) if R::SIGNED || raw >= 0 => signal.store(raw.cast_unsigned(), || number, payload),
         _ if physical.is_nan() => Err(signal.not_finite(payload)),
         _ => Err(signal.too_wide(number, payload)),
     }

@@ -3,9 +3,9 @@
 use std::string::ToString;
 
 use crate::{
-    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Kind,
-    Layout, Mode, Pattern, Payload, Place, Problem, Protocol, Received, Recognised, Replies, Request, Route, Selector,
-    Signal, Who,
+    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Failure, Filter, Frame,
+    IdentifierFields, Kind, Layout, Mode, Pattern, Payload, Place, Problem, Protocol, Received, Recognised, Replies,
+    Request, Route, Selector, Signal, Who,
 };
 
 const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -122,9 +122,10 @@ impl Heat {
         .length(4)
         .request(FRAME.id(COMMAND, 8))
         .reply(FRAME.id(COMMAND, 8));
+    const REPORT: Exchange = Exchange::new("heat", "report", &[None; 3]).length(4).report(FRAME.id(COMMAND, 0x0B));
     const PROBE: Exchange = Exchange::new("heat", "probe", &[None; 3]).length(2);
 
-    fn set(self, route: impl Into<Route<To>>) -> Result<Request<Self>, Error> {
+    fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
         Self::SET.request_to(route, &self)
     }
 }
@@ -172,6 +173,7 @@ impl Protocol for Message {
         Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
             (0x07, 0x02) => Recognised::reply(&Heat::SET, Self::Heat(Layout::decode(data))),
             (0x08, _) => Recognised::reply(&Heat::READ, Self::Heat(Layout::decode(data))),
+            (0x0B, _) => Recognised::report(&Heat::REPORT, Self::Heat(Layout::decode(data))),
             _ => return None,
         })
     }
@@ -219,7 +221,7 @@ fn a_request_shows_addresses_constants_and_values() {
 
 #[test]
 fn a_request_refuses_addresses_modes_and_values_that_are_not_documented() {
-    let refusal = |result: Result<Request<Heat>, Error>| result.expect_err("a refusal").to_string();
+    let refusal = |result: Result<Request<Message, Heat>, Error>| result.expect_err("a refusal").to_string();
     assert_eq!(refusal(HEAT.set(To::Heater(10))), "`heater` is 0x0A, but its limits are 0x01..=0x09");
     assert_eq!(refusal(HEAT.set(Route::new(To::All, 0xF2))), "`controller` is 0xF2, but its limits are 0xF0..=0xF1");
     let read = Heat::READ.request_to(To::All, &());
@@ -232,7 +234,8 @@ fn a_request_refuses_addresses_modes_and_values_that_are_not_documented() {
 fn replies_come_from_whom_the_request_addressed() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
     assert!(matches!(request.replies(), Replies::One(filter) if filter.id_mask() == 0x03FF_FFFF));
-    assert_eq!(request.reply(&frame(0x0107_F003, [2, 0xF0, 0, 0x64])), Some(Heat { power_w: 1000.0 }));
+    let reply = request.reply(&frame(0x0107_F003, [2, 0xF0, 0, 0x64])).expect("the reply of heater 3");
+    assert_eq!((reply.identifier, reply.values), (Identifier(0x0107_F003), Ok(Heat { power_w: 1000.0 })));
     for other in [0x0107_F004, 0x0107_F103, 0x0108_F003, 0x0107_03F0] {
         assert!(!request.is_reply(&frame(other, [2, 0xF0, 0, 0x64])), "{other:X}");
     }
@@ -244,7 +247,7 @@ fn each_heater_of_a_group_may_answer_and_nobody_answers_all() {
     let request = HEAT.set(To::Group(2)).expect("a legal request");
     assert!(matches!(request.replies(), Replies::Each(filter) if filter.id_mask() == 0x03FF_FF00));
     assert!(request.is_reply(&frame(0x0107_F009, [2, 0xF0, 0, 0])));
-    let coordinator: Request<Heat> = Heat::READ.request_to(To::Group(2), &()).expect("a legal request");
+    let coordinator: Request<Message, Heat> = Heat::READ.request_to(To::Group(2), &()).expect("a legal request");
     assert!(matches!(coordinator.replies(), Replies::Coordinator(filter) if filter.id_value() == 0x0108_F05D));
     assert_eq!(HEAT.set(To::All).expect("a legal request").replies(), &Replies::Nobody);
 }
@@ -253,10 +256,103 @@ fn each_heater_of_a_group_may_answer_and_nobody_answers_all() {
 fn an_error_reply_is_a_reply_without_values() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
     for error in [frame(0x0907_F003, [2, 0xF0, 0, 0]), frame(0x0107_F003, [2, 0xF2, 0, 0])] {
-        assert!(request.is_reply(&error) && request.is_error_reply(&error));
-        assert_eq!(request.reply(&error), None);
-        assert!(decode(&error).expect("a known frame").is_error_reply());
+        let reply = request.reply(&error).expect("the reply of heater 3");
+        assert_eq!((reply.identifier.0, reply.values), (error.raw_id(), Err(Failure::Error)));
+        let received = decode(&error).expect("a known frame");
+        assert!(received.is_error_reply() && received.reply() == Some(Err(Failure::Error)));
+        assert_eq!(received.content(), &Message::Heat(Heat { power_w: 0.0 }));
     }
+    let refused = request.reply(&frame(0x0107_F003, [2, 0xF2, 0, 0])).expect("the reply of heater 3");
+    let codes: std::vec::Vec<_> = refused.selectors().map(|(selector, raw)| (selector.name, raw)).collect();
+    assert_eq!(codes, [("function", 2), ("result", 0xF2)]);
+}
+
+#[test]
+fn a_reply_of_another_length_has_no_values_but_may_have_an_error_code() {
+    let request: Request<Message, Heat> = Heat::READ.request_to(To::Group(2), &()).expect("a legal request");
+    let values =
+        |id, length| request.reply(&Frame::new_raw(id, true, [0; 8], length)).expect("the coordinator's reply").values;
+    assert_eq!(values(0x0108_F05D, 4), Ok(Heat { power_w: 0.0 }));
+    assert_eq!(values(0x0108_F05D, 3), Err(Failure::Length));
+    assert_eq!(values(0x0108_F05D, 5), Err(Failure::Length));
+    assert_eq!(values(0x0908_F05D, 0), Err(Failure::Error));
+    let request = HEAT.set(To::Heater(3)).expect("a legal request");
+    let short =
+        |data, length| request.reply(&Frame::new_raw(0x0107_F003, true, data, length)).map(|reply| reply.values);
+    assert_eq!(short([2, 0, 0, 0, 0, 0, 0, 0], 1), Some(Err(Failure::Length)));
+    assert_eq!(short([2, 0xF2, 0, 0, 0, 0, 0, 0], 2), Some(Err(Failure::Error)));
+    assert_eq!(short([0; 8], 0), None);
+}
+
+#[test]
+fn a_frame_of_a_controller_is_no_reply_of_a_group() {
+    let request = HEAT.set(To::Group(2)).expect("a legal request");
+    assert!(request.replies().filter().is_some_and(|filter| filter.matches(&frame(0x0107_F0F1, [2, 0xF0, 0, 0]))));
+    assert!(!request.is_reply(&frame(0x0107_F0F1, [2, 0xF0, 0, 0])));
+}
+
+/// A frame that is no classic data frame.
+struct Strange {
+    data: [u8; 12],
+    length: usize,
+    is_remote: bool,
+}
+
+impl embedded_can::Frame for Strange {
+    fn new(_: impl Into<embedded_can::Id>, _: &[u8]) -> Option<Self> {
+        None
+    }
+
+    fn new_remote(_: impl Into<embedded_can::Id>, _: usize) -> Option<Self> {
+        None
+    }
+
+    fn is_extended(&self) -> bool {
+        true
+    }
+
+    fn is_remote_frame(&self) -> bool {
+        self.is_remote
+    }
+
+    fn id(&self) -> embedded_can::Id {
+        frame(0x0107_F003, [0; 4]).id()
+    }
+
+    fn dlc(&self) -> usize {
+        4
+    }
+
+    fn data(&self) -> &[u8] {
+        self.data.get(..self.length).expect("at most 12 bytes")
+    }
+}
+
+#[test]
+fn what_is_no_classic_data_frame_is_no_reply() {
+    let request = HEAT.set(To::Heater(3)).expect("a legal request");
+    let strange = |length, is_remote| Strange { data: [2, 0xF0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], length, is_remote };
+    let values = |strange| request.reply(&strange).map(|reply| reply.values);
+    assert_eq!(values(strange(4, false)), Some(Ok(Heat { power_w: 0.0 })));
+    assert_eq!(values(strange(8, false)), Some(Err(Failure::Length)));
+    assert_eq!(values(strange(12, false)), None);
+    assert_eq!(values(strange(4, true)), None);
+    assert_eq!(Received::<Message>::decode(&strange(12, false)).map(|_| ()), Err(Problem::Frame));
+}
+
+#[test]
+fn a_message_is_only_taken_for_the_kind_of_frame_that_it_came_in() {
+    let request = decode(&frame(0x0107_03F0, [1, 0, 0x00, 0x96])).expect("a known frame");
+    assert_eq!(request.request(), Some(&Message::Heat(HEAT)));
+    assert_eq!((request.reply(), request.report()), (None, None));
+    let reply = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
+    assert_eq!(reply.reply(), Some(Ok(&Message::Heat(HEAT))));
+    assert_eq!((reply.request(), reply.report()), (None, None));
+    let report = decode(&frame(0x010B_F003, [0, 0, 0x00, 0x96])).expect("a known frame");
+    assert_eq!(report.report(), Some(&Message::Heat(HEAT)));
+    assert_eq!((report.request(), report.reply()), (None, None));
+    let broken = decode(&frame(0x090B_F003, [0, 0, 0x00, 0x96])).expect("a known frame");
+    assert!(broken.report().is_none() && broken.is_error_reply());
 }
 
 #[test]
@@ -295,7 +391,7 @@ fn the_addressing_mode_is_the_one_that_fits_best() {
 #[test]
 fn a_frame_is_taken_apart_and_built_anew() {
     let received = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
-    assert_eq!((received.kind(), received.message), (Kind::Reply, Message::Heat(HEAT)));
+    assert_eq!((received.kind(), received.content()), (Kind::Reply, &Message::Heat(HEAT)));
     let selectors: std::vec::Vec<_> = received.selectors().map(|(selector, raw)| (selector.name, raw)).collect();
     assert_eq!(selectors, [("function", 2), ("result", 0xF0)]);
     assert_eq!(received.reserved(), [0; 8]);
@@ -307,15 +403,19 @@ fn a_frame_is_taken_apart_and_built_anew() {
 
 #[test]
 fn a_message_is_not_built_under_the_identifier_of_another() {
-    let mut received = decode(&frame(0x0107_03F0, [1, 0, 0x00, 0x96])).expect("a known frame");
+    let received = decode(&frame(0x0107_03F0, [1, 0, 0x00, 0x96])).expect("a known frame");
     for (id, expected) in [(0x0108_03F0, "0x10803F0"), (0x0107_F003, "0x107F003"), (0x0100_0000, "0x1000000")] {
-        received.identifier = Identifier(id);
-        let text = received.encode().expect_err("a refusal").to_string();
+        let text = received.with_identifier(Identifier(id)).encode().expect_err("a refusal").to_string();
         assert_eq!(text, std::format!("the identifier {expected} is none of `heat`"));
     }
-    received.identifier = Identifier(0x0107_30F0);
-    assert_eq!(
-        received.encode().expect_err("a refusal").to_string(),
-        "`heater` is 0x30, but its limits are 0x01..=0x09"
-    );
+    let text = received.with_identifier(Identifier(0x0107_30F0)).encode().expect_err("a refusal").to_string();
+    assert_eq!(text, "`heater` is 0x30, but its limits are 0x01..=0x09");
+}
+
+#[test]
+fn a_frame_takes_other_values_but_not_another_message() {
+    let received = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
+    let other = received.with_content(Message::Heat(Heat { power_w: 1000.0 })).encode().expect("a legal reply");
+    assert_eq!(other.to_string(), "0107F003#02F00064");
+    assert!(matches!(received.with_content(Message::ReadHeat).encode(), Err(Error::Identifier { .. })));
 }

@@ -50,6 +50,11 @@ pub trait StatusWord: Word {
         self.raw().to_bits() & bits == bits
     }
 
+    /// Tests whether some bit of `other` is set.
+    fn intersects(self, other: Self) -> bool {
+        self.raw().to_bits() & other.raw().to_bits() != 0
+    }
+
     /// Tests whether no bit is set.
     fn is_empty(self) -> bool {
         self.raw().to_bits() == 0
@@ -198,6 +203,7 @@ mod tests {
         assert_eq!(status.set_bits().map(|bit| bit.name).collect::<Vec<_>>(), ["dc_off", "hot"]);
         assert_eq!(status.unknown(), 0b1000_0000);
         assert!(status.contains(Status(0b0010_0000)) && !status.contains(Status(0b0010_0010)));
+        assert!(status.intersects(Status(0b0010_0010)) && !status.intersects(Status(0b0000_0010)));
         assert_eq!(Status(1).union(Status(4)), Status(5));
         assert!(Status(0).is_empty());
     }

@@ -134,9 +134,11 @@ fn candidates(signal: &Signal, random: &mut fastrand::Rng) -> Vec<f64> {
     match &signal.encoding {
         Encoding::Number { .. } | Encoding::Float => {
             let limits = signal.range.iter().flat_map(|range| [range.minimum.to_f64(), range.maximum.to_f64()]);
-            let mut values = vec![0.0, -0.0, 0.5, 1.5, 2.5, -0.5, -1.5, 0.049_999_999_999_999_99, f64::NAN, f64::INFINITY, 1e300];
+            let mut values =
+                vec![0.0, -0.0, 0.5, 1.5, 2.5, -0.5, -1.5, 0.049_999_999_999_999_99, f64::NAN, f64::INFINITY, 1e300];
             values.extend(limits.flat_map(|limit| [limit, limit.next_up(), limit.next_down()]));
-            values.extend((0..40).map(|_| random.f64() * 2_f64.powi(random.i32(-12..40)) * f64::from(random.i8(-1..=1))));
+            values
+                .extend((0..40).map(|_| random.f64() * 2_f64.powi(random.i32(-12..40)) * f64::from(random.i8(-1..=1))));
             values
         }
         _ => Vec::new(),
@@ -152,7 +154,7 @@ fn signals<P: canspec_runtime::Protocol>(protocol: &Protocol) -> Signals {
     let mut signals = Signals::new();
     for frame in std::iter::repeat_with(|| frames.next_frame()).take(20_000) {
         let Ok(received) = Received::<P>::decode(&received_frame(&frame)) else { continue };
-        let carried = received.message.layout().signals();
+        let carried = received.content().layout().signals();
         let known = signals.entry(received.exchange().message()).or_insert(carried);
         if known.len() < carried.len() {
             *known = carried;

@@ -34,7 +34,8 @@ fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -
     assert_eq!(read.len(), example.means.len(), "{at}");
     for meaning in &example.means {
         let signal = &message.signals[meaning.signal];
-        let (_, raw) = read.iter().find(|(name, _)| *name == signal.name).unwrap_or_else(|| panic!("{at}: {}", signal.name));
+        let (_, raw) =
+            read.iter().find(|(name, _)| *name == signal.name).unwrap_or_else(|| panic!("{at}: {}", signal.name));
         let width = signal.place.width();
         let mask = u64::MAX >> (64 - width);
         assert_eq!(Some(raw & mask), meaning.raw, "{at}: {} means {}", signal.name, meaning.text);

@@ -1,11 +1,10 @@
 //! Requests of the generated code: the frames of the document, whom they address, and which frames answer them.
 
 use canspec_protocols::infy::{
-    Barcode, Identifier, Message, ModuleOutput, ModuleStatus, Power, SetModuleOutput, SetTotalOutput, Status0, Status1,
-    Status2, SwitchModules, SystemOutput, Target,
+    Barcode, Error, ErrorCode, Failure, Frame, Identifier, IdentifierFields, Message, ModuleOutput, ModuleStatus,
+    Power, Problem, Received, Replies, Reply, Request, SetModuleOutput, SetTotalOutput, Status0, Status1, Status2,
+    StatusWord, SwitchModules, SystemOutput, Target, embedded_can::Frame as _,
 };
-use canspec_runtime::{Error, Frame, IdentifierFields, Problem, Replies, StatusWord};
-use embedded_can::Frame as _;
 
 /// Returns a frame as the document prints it.
 fn frame(id: u32, data: u64) -> Frame {
@@ -27,7 +26,7 @@ fn one_module_answers_a_set_point_with_the_values_in_effect() {
     let request = output.set(Target::Module(0)).expect("0x1C can go to one module");
     assert_eq!(request.frame(), &frame(0x029C_00F0, 0x0003_0D40_0000_1388));
     let reply = request.reply(&frame(0x029C_F000, 0x0003_0D31_0000_1388)).expect("the reply of module 0");
-    assert_eq!(reply, SetModuleOutput { voltage_v: 199.985, current_a: 5.0 });
+    assert_eq!(reply.values, Ok(SetModuleOutput { voltage_v: 199.985, current_a: 5.0 }));
     assert!(!request.is_reply(&frame(0x029C_F001, 0x0003_0D31_0000_1388)), "that is module 1");
     assert!(!request.is_reply(&frame(0x0289_F000, 0x0003_0D31_0000_1388)), "that is another command");
     assert!(!request.is_reply(request.frame()), "that is the request");
@@ -40,6 +39,9 @@ fn each_module_of_a_group_answers() {
     assert!(matches!(request.replies(), Replies::Each(_)));
     assert!(request.is_reply(&frame(0x02DC_F000, 0)) && request.is_reply(&frame(0x02DC_F03B, 0)));
     assert!(!request.is_reply(&frame(0x029C_F000, 0)), "that answers a request to one module");
+    assert!(!request.is_reply(&frame(0x02DC_F0F1, 0)), "that is another controller");
+    let source = |id| request.reply(&frame(id, 0)).map(|reply| reply.identifier.source);
+    assert_eq!([source(0x02DC_F000), source(0x02DC_F03B)], [Some(0x00), Some(0x3B)]);
 }
 
 #[test]
@@ -47,7 +49,7 @@ fn a_coordinator_answers_for_the_system_and_for_a_group() {
     let system = SystemOutput::read_total(Target::Broadcast).expect("0x01 can be broadcast");
     assert_eq!(system.frame(), &frame(0x0281_3FF0, 0));
     let output = system.reply(&frame(0x0281_F03F, 0x43FA_0000_4248_0000)).expect("the coordinator's reply");
-    assert_eq!((output.voltage_v, output.current_a), (500.0, 50.0));
+    assert_eq!(output.values, Ok(SystemOutput { voltage_v: 500.0, current_a: 50.0 }));
     let group = SystemOutput::read_total(Target::Group(1)).expect("0x01 can go to a group");
     assert!(group.is_reply(&frame(0x02C1_F001, 0)) && !group.is_reply(&frame(0x02C1_F002, 0)));
 }
@@ -90,12 +92,26 @@ fn values_that_do_not_fit_are_refused_with_all_that_one_needs_to_know() {
 
 #[test]
 fn an_error_reply_answers_the_request_but_carries_no_values() {
-    let request = OUTPUT.set(Target::Module(0)).expect("0x1C can go to one module");
-    let refused = frame(0x0E9C_F000, 0x000B_71B0_0000_3A98);
-    assert!(request.is_reply(&refused) && request.is_error_reply(&refused));
-    assert_eq!(request.reply(&refused), None);
-    let received = Message::decode(&refused).expect("an error reply is a frame of this protocol");
-    assert!(received.is_error_reply());
+    let request: Request<SetModuleOutput> = OUTPUT.set(Target::Module(0)).expect("0x1C can go to one module");
+    for length in [8, 0] {
+        let refused = Frame::new_raw(0x0E9C_F000, true, 0x000B_71B0_0000_3A98_u64.to_be_bytes(), length);
+        let reply: Reply<SetModuleOutput> = request.reply(&refused).expect("the refusal of module 0");
+        assert_eq!((reply.identifier.error, reply.values), (ErrorCode::DataInvalid, Err(Failure::Error)));
+    }
+    let short = Frame::new_raw(0x029C_F000, true, [0; 8], 7);
+    assert_eq!(request.reply(&short).map(|reply| reply.values), Some(Err(Failure::Length)));
+}
+
+#[test]
+fn neither_a_command_nor_an_error_reply_is_taken_for_the_values_in_effect() {
+    let received = |id| Message::decode(&frame(id, 0x000B_71B0_0000_3A98)).expect("a frame of this protocol");
+    let output = Message::SetModuleOutput(OUTPUT);
+    let [command, echo, refused]: [Received; 3] = [0x029C_00F0, 0x029C_F000, 0x0E9C_F000].map(received);
+    assert_eq!((command.request(), command.reply(), command.report()), (Some(&output), None, None));
+    assert_eq!((echo.request(), echo.reply(), echo.report()), (None, Some(Ok(&output)), None));
+    assert_eq!((refused.request(), refused.reply(), refused.report()), (None, Some(Err(Failure::Error)), None));
+    assert_eq!((refused.content(), refused.identifier().error), (&output, ErrorCode::DataInvalid));
+    assert!(refused.is_error_reply() && !echo.is_error_reply());
 }
 
 #[test]
@@ -103,6 +119,7 @@ fn a_status_keeps_the_bits_that_have_no_name() {
     let status = ModuleStatus::read(Target::Module(0)).expect("0x04 can go to one module");
     assert_eq!(status.frame(), &frame(0x0284_00F0, 0));
     let reply = status.reply(&frame(0x0284_F000, 0x0000_0200_1600_40C0)).expect("the reply of module 0");
+    let reply = reply.values.expect("no error");
     assert_eq!((reply.group, reply.temperature_c), (2, 22));
     assert_eq!((reply.status_2, reply.status_1), (Status2(0), Status1::WALK_IN_ENABLED));
     assert_eq!(reply.status_0, Status0(0xC0));
@@ -113,6 +130,7 @@ fn a_status_keeps_the_bits_that_have_no_name() {
 fn a_barcode_reads_as_it_is_printed_on_the_housing() {
     let barcode = Barcode::read(Target::Module(0)).expect("0x0B can go to one module");
     let reply = barcode.reply(&frame(0x028B_F000, 0x5613_0C15_A3FB_06A8)).expect("the reply of module 0");
+    let reply = reply.values.expect("no error");
     assert_eq!(reply.value.to_string(), "081807123451V1704");
 }
 

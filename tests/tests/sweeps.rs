@@ -59,7 +59,7 @@ fn generated<P: canspec_runtime::Protocol>(protocol: &Protocol) {
         let length = u8::try_from(frame.data.len()).expect("at most 8 bytes");
         let frame = canspec_runtime::Frame::new_raw(frame.id, frame.extended, data, length);
         let Ok(received) = Received::<P>::decode(&frame) else { continue };
-        for signal in received.message.layout().signals() {
+        for signal in received.content().layout().signals() {
             let name = (received.exchange().message(), signal.name());
             if !swept.contains(&name) {
                 swept.push(name);

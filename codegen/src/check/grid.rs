@@ -31,7 +31,10 @@ fn fault(signal: &Signal, signed: bool, scale: Rational, offset: Rational) -> Op
     let width = u32::from(signal.place.width()) - u32::from(signed);
     let extreme = largest(1 << width, scale, offset);
     if extreme.is_none_or(|extreme| extreme >= LIMIT) {
-        return Some(format!("{} bits times {scale} reach 2^50, beyond which a double misses steps", signal.place.width()));
+        return Some(format!(
+            "{} bits times {scale} reach 2^50, beyond which a double misses steps",
+            signal.place.width()
+        ));
     }
     None
 }

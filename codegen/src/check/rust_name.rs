@@ -3,13 +3,24 @@
 //! `output_1` and `output1` are two messages but one struct. Rename one of the two; a vendor's word can stand in the title.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::emit::camel_case;
 use crate::model::{Doc, Protocol};
 use crate::syntax::tree::Path;
 
 /// Types that every generated module has.
 const TAKEN: [&str; 12] = [
-    "Access", "Addressing", "Error", "Frame", "Identifier", "Kind", "Message", "Problem", "Received", "Request",
-    "Route", "Target",
+    "Access",
+    "Addressing",
+    "Error",
+    "Frame",
+    "Identifier",
+    "Kind",
+    "Message",
+    "Problem",
+    "Received",
+    "Request",
+    "Route",
+    "Target",
 ];
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -40,11 +51,7 @@ fn check_types(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 /// Reports names that are reserved, or equal after conversion.
-fn check_names<'a>(
-    what: &str,
-    names: impl Iterator<Item = (String, &'a str, &'a Doc)>,
-    diagnostics: &mut Diagnostics,
-) {
+fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a Doc)>, diagnostics: &mut Diagnostics) {
     let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
     for (rust, name, doc) in names {
         if syn::parse_str::<syn::Ident>(&rust).is_err() {
@@ -58,13 +65,4 @@ fn check_names<'a>(
         }
         seen.push((rust, name, doc));
     }
-}
-
-/// Converts `set_module_output` to `SetModuleOutput`.
-fn camel_case(name: &str) -> String {
-    let capital = |word: &str| {
-        let mut letters = word.chars();
-        letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
-    };
-    name.split('_').map(capital).collect()
 }

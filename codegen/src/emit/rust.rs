@@ -23,38 +23,27 @@ use crate::model::Protocol;
 use message::Emitter;
 use names::Names;
 
-/// Traits whose methods users call; they are passed on.
-const TRAITS: [&str; 6] = ["IdentifierFields", "Layout", "Named", "Packed", "StatusWord", "Word"];
+pub(crate) use names::camel_case;
 
-/// What else generated code may take from the runtime.
-const RUNTIME: [&str; 29] = [
+/// What generated code may take from the runtime beside the prelude, which it passes on.
+const RUNTIME: [&str; 19] = [
     "Address",
     "AddressType",
     "AnySignal",
     "Bits",
-    "Data",
     "Destination",
-    "Error",
     "Exchange",
     "Filter",
-    "Frame",
     "Legend",
     "Mode",
     "Pattern",
-    "Payload",
     "Piece",
     "Place",
-    "Problem",
     "Protocol",
     "Recognised",
-    "Request",
-    "Route",
     "Selector",
     "Signal",
-    "StatusBit",
-    "Text",
     "Who",
-    "embedded_can",
     "left_aligned",
     "right_aligned",
 ];
@@ -106,13 +95,13 @@ fn imports(items: &TokenStream) -> TokenStream {
         let used = names.iter().filter(|name| used.iter().any(|known| known == *name));
         used.map(|name| format_ident!("{name}")).collect()
     };
-    let (traits, runtime) = (listed(&TRAITS), listed(&RUNTIME));
+    let runtime = listed(&RUNTIME);
     let display = listed(&["Display"]);
     let or = listed(&["BitOr"]);
     quote! {
         #(use core::fmt::{self, #display, Formatter};)*
         #(use core::ops::#or;)*
-        pub use canspec_runtime::{#(#traits),*};
+        pub use canspec_runtime::prelude::*;
         use canspec_runtime::{#(#runtime),*};
     }
 }
@@ -132,6 +121,65 @@ fn collect(tokens: TokenStream, used: &mut Vec<String>) {
                 colons = 0;
             }
             _ => colons = 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::source::Source;
+
+    const SPEC: &str = r#"
+canspec: 1
+protocol: heater
+title: Heaters
+document: {title: Heaters, version: "1"}
+length: 8
+identifier: {command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}
+types:
+  controller: {range: 0xF0..0xF0, outside: refused, send: 0xF0, section: "1"}
+  module: {range: 0..0x3F, section: "1"}
+  power: {scale: 10, unit: W, note: never above the rating, section: "3"}
+  mode: {values: {0: eco, 1: boost}, note: eco by default, section: "3"}
+addressing:
+  module:
+    title: One heater
+    note: heaters of a group too
+    section: "4"
+    erratum: E1
+    request: {target: module, source: controller}
+    one: {target: controller, source: module}
+access:
+  set: {request: {}, reply: {}, answers: {module: one}, note: the reply carries the values now in effect, section: "5"}
+messages:
+  heat:
+    section: "2"
+    match: {command: 7}
+    access: [set]
+    erratum: [E1, E2, E3]
+    fields: {power: {bytes: 0..1, type: power}, mode: {bytes: 2, type: mode}}
+    examples:
+      - {request: 000703F0#0001010000000000, means: {power: 10 W, mode: boost}}
+      - {reply: 0007F003#0001010000000000, means: {power: 10 W, mode: boost}}
+errata:
+  E1: {kind: vendor, section: "2", prints: kilowatts, uses: watts, because: the examples are in watts}
+  E2: {kind: ocr, section: "2", prints: k11owatts, uses: kilowatts, because: the scan is blurred}
+  E3: {kind: note, section: "2", prints: two units, uses: both, because: they do not contradict}
+"#;
+
+    #[test]
+    fn notes_and_sections_stand_in_the_docs_and_of_the_errata_those_that_are_not_about_the_scan() {
+        let outcome = crate::compile(Source::new("heater.yaml", SPEC.into()).expect("plain text"));
+        let code = super::rust(&outcome.protocol.expect("a spec without errors"));
+        for part in [
+            "    /// Builds the request `set` with these values. Section 5.\n    ///\n    /// The reply carries the values now in effect.\n",
+            "    /// One heater: `0x00..=0x3F`. Section 4.\n    ///\n    /// Heaters of a group too.\n    Module(u8),\n",
+            "steps of 10 W.\n    ///\n    /// Never above the rating.\n    pub power_w: f64,\n",
+            "    /// Mode: byte 2.\n    pub mode: Mode",
+            "/// Heat. Section 2.\n///\n/// Erratum E1: printed is \"kilowatts\", used is \"watts\".\n#[derive",
+            "    /// A value without a name; it is sent as it is.\n    Unknown(u8),\n",
+        ] {
+            assert!(code.contains(part), "{part:?} is not in\n{code}");
         }
     }
 }

@@ -33,7 +33,8 @@ impl Content {
     pub fn of(protocol: &Protocol, decoded: &Decoded) -> Self {
         let message = &protocol.messages[decoded.message];
         let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
-        let selectors = decoded.selectors.iter().map(|(index, value)| (protocol.selectors[*index].name.clone(), *value));
+        let selectors =
+            decoded.selectors.iter().map(|(index, value)| (protocol.selectors[*index].name.clone(), *value));
         let signals = decoded.signals.iter().map(|reading| {
             let signal = &message.signals[reading.signal];
             (signal.name.clone(), Input::of(protocol, signal, &reading.value, reading.bits))

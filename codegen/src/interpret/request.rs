@@ -1,4 +1,4 @@
-//! A request by name: `set_module_output` to `module:3`.
+//! A request by name: `set_output` to `module:3`.
 
 use super::encode::{find_message, frame, refuse};
 use super::value::raw_of;
@@ -179,7 +179,7 @@ fn put_signals(
     Ok(())
 }
 
-/// Reads a value as a person types it: `750V`, `750 V`, `750`, `on`, `[walk_in_enabled]`.
+/// Reads a value as a person types it: `750V`, `750 V`, `750`, `on`, `[fan_fault]`.
 pub fn parse_input(signal: &Signal, text: &str) -> Input {
     if matches!(signal.encoding, Encoding::Status(_)) {
         let names = text.trim_start_matches('[').trim_end_matches(']').split(',').map(str::trim);

@@ -139,18 +139,13 @@ impl Resolver<'_> {
     }
 
     /// Returns the raw values of a field that belong to somebody else: those of strict types, and constants of the same direction.
-    fn excluded(
-        &self,
-        request: bool,
-        field: &str,
-        identifier: &Identifier,
-        types: &[AddressType],
-    ) -> Vec<(u32, u32)> {
+    fn excluded(&self, request: bool, field: &str, identifier: &Identifier, types: &[AddressType]) -> Vec<(u32, u32)> {
         let mut excluded = claimed(self.spec, field, types);
         let width = identifier.fields.iter().find(|known| known.name == field).map_or(32, |known| known.width);
         let same = patterns(self.spec).filter(|(key, _)| (*key == "request") == request);
         let constants = same.filter_map(|(_, pattern)| Rational::parse(pattern.get(field)?)?.to_integer());
-        let constants = constants.filter_map(|value| u32::try_from(value).ok()).filter(|value| value >> (width - 1) < 2);
+        let constants =
+            constants.filter_map(|value| u32::try_from(value).ok()).filter(|value| value >> (width - 1) < 2);
         excluded.extend(constants.map(|value| (value, value)));
         excluded.sort_unstable();
         excluded.dedup();

@@ -3,8 +3,8 @@
 use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
-use crate::number::Rational;
 use crate::model::{DeviceModel, Document, Erratum, Procedure, Quantity, Timing, TypeOfModel, Unit};
+use crate::number::Rational;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -122,11 +122,13 @@ impl Resolver<'_> {
     fn model(&mut self, path: &Path, name: &str, model: &ast::DeviceModel) -> DeviceModel {
         let doc = remarks!(model).doc(path, None);
         let parallel = model.max_parallel.as_ref();
-        let types = model.types.iter().filter_map(|(name, field)| self.type_of_model(path, name, field, &doc)).collect();
+        let types =
+            model.types.iter().filter_map(|(name, field)| self.type_of_model(path, name, field, &doc)).collect();
         DeviceModel {
             name: name.to_owned(),
             items: model.items.clone(),
-            max_parallel: parallel.and_then(|text| self.integer(&path.key("max_parallel"), text, 1, u32::from(u16::MAX))),
+            max_parallel: parallel
+                .and_then(|text| self.integer(&path.key("max_parallel"), text, 1, u32::from(u16::MAX))),
             bit_rates: self.bit_rates(&path.key("bit_rates"), &model.bit_rates),
             facts: self.facts(&path.key("facts"), &model.facts),
             types,

@@ -103,7 +103,8 @@ impl Resolver<'_> {
     /// Reads the rules of notes that decoding must report.
     fn notes(&mut self, path: &Path, names: &[String]) -> Vec<String> {
         let places = names.iter().enumerate();
-        let known = places.filter(|(index, name)| self.lookup(&path.index(*index), "note", name, NOTES.into_iter()).is_some());
+        let known =
+            places.filter(|(index, name)| self.lookup(&path.index(*index), "note", name, NOTES.into_iter()).is_some());
         known.map(|(_, name)| name.clone()).collect()
     }
 

@@ -21,8 +21,7 @@ impl Role {
         Self { name: "an address type", keys: &["range", "scale", "offset", "outside", "send", "examples"] };
     pub const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields"] };
     pub const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in"] };
-    pub const CONSTANT: Self =
-        Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
+    pub const CONSTANT: Self = Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
     pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
 
     /// Returns the role of a signal.

@@ -31,7 +31,10 @@ impl Resolver<'_> {
         let length = self.integer(&Path::default().key("length"), &spec.length, 0, 8).unwrap_or(8);
         let surroundings = Surroundings { identifier, modes, accesses, timing, length };
         let root = Path::default().key("messages");
-        spec.messages.iter().map(|(name, message)| self.message(&root.key(name), name, message, &surroundings)).collect()
+        spec.messages
+            .iter()
+            .map(|(name, message)| self.message(&root.key(name), name, message, &surroundings))
+            .collect()
     }
 
     fn message(&mut self, path: &Path, name: &str, message: &ast::Message, surroundings: &Surroundings) -> Message {
@@ -145,7 +148,10 @@ impl Resolver<'_> {
     fn header(&self) -> Vec<usize> {
         let root = Path::default().key("header");
         let selectors = self.tables.selectors.iter().enumerate();
-        selectors.filter(|(_, selector)| selector.doc.path.ancestors().any(|outer| *outer == root)).map(|(index, _)| index).collect()
+        selectors
+            .filter(|(_, selector)| selector.doc.path.ancestors().any(|outer| *outer == root))
+            .map(|(index, _)| index)
+            .collect()
     }
 
     /// Tests that no selector has two values.

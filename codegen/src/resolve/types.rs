@@ -49,12 +49,17 @@ impl Resolver<'_> {
         let spec = self.spec;
         for (name, field) in &spec.types {
             self.check_type_name(&root.key(name), name);
-            let is_address = super::addressing::patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
+            let is_address =
+                super::addressing::patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
             if is_address || self.tables.used_types.contains(name) {
                 continue;
             }
             if field.examples.is_empty() {
-                let diagnostic = Diagnostic::warning("unused_type", root.key(name).at_key(), format!("nothing uses the type `{name}`"));
+                let diagnostic = Diagnostic::warning(
+                    "unused_type",
+                    root.key(name).at_key(),
+                    format!("nothing uses the type `{name}`"),
+                );
                 self.diagnostics.push(diagnostic.help("name it in a field or in an addressing mode, or take it out"));
             }
         }

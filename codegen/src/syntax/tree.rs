@@ -162,7 +162,7 @@ impl Path {
     }
 }
 
-/// Writes `messages.module_output.examples[2]`, and nothing for the root.
+/// Writes `messages.output.examples[2]`, and nothing for the root.
 impl fmt::Display for Path {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.split() {

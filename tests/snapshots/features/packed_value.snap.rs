@@ -2,11 +2,10 @@
 
 use core::fmt::{self, Display, Formatter};
 
-pub use canspec_runtime::{IdentifierFields, Layout, Packed, Word};
+pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Filter,
-    Frame, Legend, Mode, Pattern, Payload, Piece, Place, Problem, Protocol, Recognised,
-    Request, Route, Signal, Text, Who, embedded_can, left_aligned, right_aligned,
+    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
+    Pattern, Piece, Place, Protocol, Recognised, Signal, Who, left_aligned, right_aligned,
 };
 
 /// What every frame shows.
@@ -44,10 +43,6 @@ impl IdentifierFields for Identifier {
     fn to_raw(self) -> u32 {
         Self::DIRECTION.write(self.direction) | Self::COMMAND.write(self.command)
             | Self::NODE.write(self.node)
-    }
-
-    fn is_foreign(_: u32) -> bool {
-        false
     }
 
     fn is_to_module(id: u32) -> bool {
@@ -177,7 +172,7 @@ impl Label {
         .request(FRAME.id(Identifier::COMMAND, 0x06))
         .reply(FRAME.id(Identifier::COMMAND, 0x06));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.
     ///
     /// `single`: the module answers.
     ///
@@ -216,6 +211,12 @@ pub enum Message {
 
 /// A recognised frame.
 pub type Received = canspec_runtime::Received<Message>;
+
+/// A request ready to be sent, whose replies carry `R`.
+pub type Request<R> = canspec_runtime::Request<Message, R>;
+
+/// A frame that answers a request.
+pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.

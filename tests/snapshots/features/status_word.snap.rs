@@ -2,11 +2,10 @@
 
 use core::ops::BitOr;
 
-pub use canspec_runtime::{IdentifierFields, Layout, StatusWord, Word};
+pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Filter,
-    Frame, Legend, Mode, Pattern, Payload, Place, Problem, Protocol, Recognised, Request,
-    Route, Signal, StatusBit, Who, embedded_can,
+    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
+    Pattern, Place, Protocol, Recognised, Signal, Who,
 };
 
 /// What every frame shows.
@@ -44,10 +43,6 @@ impl IdentifierFields for Identifier {
     fn to_raw(self) -> u32 {
         Self::DIRECTION.write(self.direction) | Self::COMMAND.write(self.command)
             | Self::NODE.write(self.node)
-    }
-
-    fn is_foreign(_: u32) -> bool {
-        false
     }
 
     fn is_to_module(id: u32) -> bool {
@@ -171,7 +166,7 @@ impl Status {
         .request(FRAME.id(Identifier::COMMAND, 0x04))
         .reply(FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.
     ///
     /// `single`: the module answers.
     ///
@@ -214,6 +209,12 @@ pub enum Message {
 
 /// A recognised frame.
 pub type Received = canspec_runtime::Received<Message>;
+
+/// A request ready to be sent, whose replies carry `R`.
+pub type Request<R> = canspec_runtime::Request<Message, R>;
+
+/// A frame that answers a request.
+pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.

@@ -3,12 +3,10 @@
 use core::fmt::{self, Display, Formatter};
 use core::ops::BitOr;
 
-pub use canspec_runtime::{IdentifierFields, Layout, Named, Packed, StatusWord, Word};
+pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Filter,
-    Frame, Legend, Mode, Pattern, Payload, Piece, Place, Problem, Protocol, Recognised,
-    Request, Route, Signal, StatusBit, Text, Who, embedded_can, left_aligned,
-    right_aligned,
+    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
+    Pattern, Piece, Place, Protocol, Recognised, Signal, Who, left_aligned, right_aligned,
 };
 
 /// What every frame shows.
@@ -18,9 +16,6 @@ const FRAME: Filter = Filter::EXTENDED;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Identifier {
     /// Cause of an error in the data, or that the module is starting up: bits 28..26. Section 2.2.
-    ///
-    /// Erratum L22: printed is "/ : for 0x01, and /A. in a row without number between 0x04 and 0x07", used
-    /// is "no meaning for either".
     pub error: ErrorCode,
     /// `0xA` for single modules and `0xB` for groups: bits 25..22. Section 2.2.
     pub device: u8,
@@ -80,13 +75,15 @@ impl IdentifierFields for Identifier {
 /// Whom a request addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// One module: `0x00..=0x3B`.
+    /// One module: `0x00..=0x3B`. Section 2.2.
     Module(u8),
-    /// All modules of one group: `0x00..=0x3E`.
+    /// All modules of one group: `0x00..=0x3E`. Section 2.2.
     Group(u8),
-    /// All modules.
+    /// All modules. Section 2.2.
     Broadcast,
-    /// All groups.
+    /// All groups. Section 2.4.
+    ///
+    /// Only totals can be read or set, and all modules be switched, for instance off in an emergency.
     AllGroups,
 }
 
@@ -130,8 +127,9 @@ pub const MODULE_ADDRESS: AddressType = AddressType::new("module", 0x00, 0x3B);
 
 /// Number of a group: `0x00..=0x3E`. Section 3.4.
 ///
-/// Erratum D45: printed is "groups count from 1 (2.4), all modules are in group 0 at delivery (3.4), no
-/// highest number", used is "0 to 0x3E as address, 1 to 0x3E in `set_group`".
+/// Erratum D45: printed is "groups count from 1 and, cut off, something about the support of group
+/// control (2.4); all modules are in group 0 at delivery (3.4); no highest number", used is "0 to 0x3E
+/// as address, 1 to 0x3E in `set_group`".
 pub const GROUP_ADDRESS: AddressType = AddressType::new("group", 0x00, 0x3E);
 
 /// One module. Section 2.2.
@@ -264,9 +262,6 @@ const SET_TOTAL_ANSWERS: [Option<Who>; 4] = [
 ];
 
 /// Cause of an error in the data, or that the module is starting up. Section 2.2.
-///
-/// Erratum L22: printed is "/ : for 0x01, and /A. in a row without number between 0x04 and 0x07", used
-/// is "no meaning for either".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ErrorCode {
     /// 0: `normal`.
@@ -279,7 +274,7 @@ pub enum ErrorCode {
     AddressInvalid,
     /// 7: `starting_up`.
     StartingUp,
-    /// A value without a name.
+    /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
@@ -327,7 +322,7 @@ pub enum WalkIn {
     Disabled,
     /// 1: `enabled`.
     Enabled,
-    /// A value without a name.
+    /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
@@ -363,7 +358,7 @@ pub enum Led {
     Normal,
     /// 1: `flashing`.
     Flashing,
-    /// A value without a name.
+    /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
@@ -393,15 +388,13 @@ impl Word for Led {
 impl Named for Led {}
 
 /// Sleep. Section 2.4.
-///
-/// Erratum L19: printed is "1 for asleep, the word for 0 lost", used is "awake".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sleep {
     /// 0: `awake`.
     Awake,
     /// 1: `asleep`.
     Asleep,
-    /// A value without a name.
+    /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
@@ -434,15 +427,13 @@ impl Named for Sleep {}
 ///
 /// 0 is on, so all-zero data switch modules on; one without a set-point since power-on then delivers
 /// its default, see `models`.
-///
-/// Erratum L1A: printed is "1 for off, the word for 0 lost", used is "on".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Power {
     /// 0: `on`.
     On,
     /// 1: `off`.
     Off,
-    /// A value without a name.
+    /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
@@ -471,15 +462,15 @@ impl Named for Power {}
 
 /// Origin of the module address. Section 3.4.
 ///
-/// Automatic by default; such addresses follow the serial numbers and stay until a module is exchanged,
-/// added or removed.
+/// Automatic by default, with the group from the DIP switch; such addresses follow the serial numbers
+/// and stay until a module is exchanged, added or removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressMode {
     /// 0: `automatic`.
     Automatic,
     /// 1: `dip_switch`.
     DipSwitch,
-    /// A value without a name.
+    /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
@@ -509,15 +500,16 @@ impl Word for AddressMode {
 impl Named for AddressMode {}
 
 /// Status 2. Section 2.4.
-///
-/// Erratum S21: printed is "no severities", used is "state, alarm and fault".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Status2(pub u8);
 
 impl Status2 {
-    /// Output power limited: bit 0, state.
+    /// Power of the module limited: bit 0, state.
     pub const POWER_LIMITED: Self = Self(0x01);
-    /// Address used twice: bit 1, fault. Cleared when conflicting address removed. LED: red. Section 3.4.
+    /// ID of the module used twice: bit 1, fault. Cleared when conflicting address removed. LED: red.
+    /// Section 2.4, 3.4.
+    ///
+    /// Taken to be the address conflict of 3.4.
     pub const DUPLICATE_ID: Self = Self(0x02);
     /// Severe current imbalance between modules: bit 2, fault.
     pub const CURRENT_IMBALANCE: Self = Self(0x04);
@@ -537,8 +529,8 @@ impl Word for Status2 {
     type Raw = u8;
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
-            StatusBit::state(0, "power_limited", "Output power limited"),
-            StatusBit::fault(1, "duplicate_id", "Address used twice"),
+            StatusBit::state(0, "power_limited", "Power of the module limited"),
+            StatusBit::fault(1, "duplicate_id", "ID of the module used twice"),
             StatusBit::fault(
                 2,
                 "current_imbalance",
@@ -572,8 +564,6 @@ impl BitOr for Status2 {
 }
 
 /// Status 1. Section 2.4.
-///
-/// Erratum S21: printed is "no severities", used is "state, alarm and fault".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Status1(pub u8);
 
@@ -582,7 +572,7 @@ impl Status1 {
     pub const DC_OFF: Self = Self(0x01);
     /// Module fault: bit 1, fault. Effect: module cannot switch on. Section 3.3.
     pub const FAULT: Self = Self(0x02);
-    /// Module protection: bit 2, alarm. Effect: module cannot switch on. Section 3.3.
+    /// Module protection active: bit 2, alarm. Effect: module cannot switch on. Section 3.3.
     pub const PROTECTION: Self = Self(0x04);
     /// Fan fault: bit 3, fault.
     pub const FAN_FAULT: Self = Self(0x08);
@@ -603,7 +593,7 @@ impl Word for Status1 {
         &[
             StatusBit::state(0, "dc_off", "DC side is switched off"),
             StatusBit::fault(1, "fault", "Module fault"),
-            StatusBit::alarm(2, "protection", "Module protection"),
+            StatusBit::alarm(2, "protection", "Module protection active"),
             StatusBit::fault(3, "fan_fault", "Fan fault"),
             StatusBit::alarm(4, "overtemperature", "Temperature too high"),
             StatusBit::alarm(5, "output_overvoltage", "Output voltage too high"),
@@ -632,8 +622,6 @@ impl BitOr for Status1 {
 }
 
 /// Status 0. Section 2.4.
-///
-/// Erratum S21: printed is "no severities", used is "state, alarm and fault".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Status0(pub u8);
 
@@ -642,7 +630,7 @@ impl Status0 {
     pub const OUTPUT_SHORT_CIRCUIT: Self = Self(0x01);
     /// Communication inside the module failed: bit 2, fault.
     pub const INTERNAL_COMMUNICATION_FAULT: Self = Self(0x04);
-    /// Input or internal bus abnormal: bit 3, fault.
+    /// Input or power bus abnormal: bit 3, fault.
     pub const INPUT_OR_BUS_ABNORMAL: Self = Self(0x08);
     /// Module is asleep: bit 4, state.
     pub const SLEEPING: Self = Self(0x10);
@@ -660,11 +648,7 @@ impl Word for Status0 {
                 "internal_communication_fault",
                 "Communication inside the module failed",
             ),
-            StatusBit::fault(
-                3,
-                "input_or_bus_abnormal",
-                "Input or internal bus abnormal",
-            ),
+            StatusBit::fault(3, "input_or_bus_abnormal", "Input or power bus abnormal"),
             StatusBit::state(4, "sleeping", "Module is asleep"),
             StatusBit::fault(5, "discharge_abnormal", "Abnormal discharge"),
         ],
@@ -746,13 +730,11 @@ impl Display for BarcodeValue {
 /// Output voltage and total current of the system or of a group. Section 2.4.
 ///
 /// The same as `system_output_fixed` in floating point.
-///
-/// Erratum E61: printed is "use command 0x as well, the digits lost", used is "0x08".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SystemOutput {
     /// Output voltage in V: bytes 0..3.
     pub voltage_v: f32,
-    /// Total current of all modules in A: bytes 4..7.
+    /// Total current of the system or of the group in A: bytes 4..7.
     pub current_a: f32,
 }
 
@@ -774,7 +756,7 @@ impl SystemOutput {
         .request(FRAME.id(Identifier::COMMAND, 0x01))
         .reply(FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request `read_total`.
+    /// Builds the request `read_total`. Section 2.4.
     ///
     /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
     ///
@@ -825,7 +807,7 @@ impl ModuleCount {
         .request(FRAME.id(Identifier::COMMAND, 0x02))
         .reply(FRAME.id(Identifier::COMMAND, 0x02));
 
-    /// Builds the request `read_total`.
+    /// Builds the request `read_total`. Section 2.4.
     ///
     /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
     ///
@@ -878,7 +860,7 @@ impl ModuleOutput {
         .request(FRAME.id(Identifier::COMMAND, 0x03))
         .reply(FRAME.id(Identifier::COMMAND, 0x03));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -914,8 +896,6 @@ pub struct ModuleStatus {
     /// Number of the group: byte 2.
     pub group: u8,
     /// Ambient temperature of the module in °C: byte 4.
-    ///
-    /// Erratum L04: printed is "one byte, shown up to 127 °C", used is "signed, -128 °C to 127 °C".
     pub temperature_c: i8,
     /// Status 2: byte 5.
     pub status_2: Status2,
@@ -944,7 +924,7 @@ impl ModuleStatus {
         .request(FRAME.id(Identifier::COMMAND, 0x04))
         .reply(FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -989,10 +969,6 @@ impl Layout for ModuleStatus {
 /// Line-to-line AC input voltages of one module. Section 2.4.
 ///
 /// On a single-phase module only `ab` is valid.
-///
-/// Erratum E62: printed is "a note cut to pieces: unit, only Bytel and Bytel valid, for ... input
-/// modules; bytes 0 and 1 with the word single-phase in their cells", used is "0.1 V; bytes 0 and 1 on
-/// single-phase modules, and nothing on another kind of input".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputVoltage {
     /// Voltage between phases A and B in V: bytes 0..1, steps of 0.1 V.
@@ -1023,7 +999,7 @@ impl InputVoltage {
         .request(FRAME.id(Identifier::COMMAND, 0x06))
         .reply(FRAME.id(Identifier::COMMAND, 0x06));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -1060,7 +1036,7 @@ impl Layout for InputVoltage {
 pub struct SystemOutputFixed {
     /// Output voltage in V: bytes 0..3, steps of 0.001 V.
     pub voltage_v: f64,
-    /// Total current of all modules in A: bytes 4..7, steps of 0.001 A.
+    /// Total current of the system or of the group in A: bytes 4..7, steps of 0.001 A.
     pub current_a: f64,
 }
 
@@ -1084,7 +1060,7 @@ impl SystemOutputFixed {
         .request(FRAME.id(Identifier::COMMAND, 0x08))
         .reply(FRAME.id(Identifier::COMMAND, 0x08));
 
-    /// Builds the request `read_total`.
+    /// Builds the request `read_total`. Section 2.4.
     ///
     /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
     ///
@@ -1115,9 +1091,6 @@ impl Layout for SystemOutputFixed {
 }
 
 /// Output voltage and current of one module in fixed point. Section 2.4.
-///
-/// Erratum D52: printed is "MSB above four bytes", used is "MSB in bytes 0 and 4 and LSB in bytes 3 and
-/// 7".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModuleOutputFixed {
     /// Output voltage in V: bytes 0..3, steps of 0.001 V.
@@ -1146,7 +1119,7 @@ impl ModuleOutputFixed {
         .request(FRAME.id(Identifier::COMMAND, 0x09))
         .reply(FRAME.id(Identifier::COMMAND, 0x09));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -1177,10 +1150,6 @@ impl Layout for ModuleOutputFixed {
 }
 
 /// Limits of one module. Section 2.4.
-///
-/// Erratum E56: printed is "request 02 8AC 00 F000; reply 02.84 FO 00 03 FF 00 6/ 1 01 00 05 DC, read
-/// again as L EE 00. 04 6 01 00 05 DC; of the note on units only: voltage", used is "02 8A 00 F0; 02 8A
-/// F0 00 with 02 EE 00 64 01 00 05 DC; 1 V, 0.1 A and 10 W".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModuleLimits {
     /// Highest output voltage in V: bytes 0..1.
@@ -1188,8 +1157,6 @@ pub struct ModuleLimits {
     /// Lowest output voltage in V: bytes 2..3.
     pub minimum_voltage_v: u16,
     /// Highest output current in A: bytes 4..5, steps of 0.1 A.
-    ///
-    /// Erratum D46: printed is "a highest current of 25.6 A", used is "25.6 A as printed".
     pub maximum_current_a: f64,
     /// Rated power in W: bytes 6..7, steps of 10 W.
     pub rated_power_w: f64,
@@ -1226,7 +1193,7 @@ impl ModuleLimits {
         .request(FRAME.id(Identifier::COMMAND, 0x0A))
         .reply(FRAME.id(Identifier::COMMAND, 0x0A));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -1267,10 +1234,6 @@ impl Layout for ModuleLimits {
 
 /// Barcode of one module. Section 2.4.
 ///
-/// Erratum E57: printed is "the 13th character, 12 digits in hexadecimal and 4 digits in hexadecimal,
-/// no widths; frame lost but for 23451V17", used is "byte 0 in ASCII, bytes 1 to 5, bytes 6 and 7; 56
-/// 13 0C 15 A3 FB 06 A8".
-///
 /// Erratum U0B: printed is "0x0B and 0x0C with examples for module 0 only, no word on groups", used is
 /// "each module of a group answers".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -1289,7 +1252,7 @@ impl Barcode {
         .request(FRAME.id(Identifier::COMMAND, 0x0B))
         .reply(FRAME.id(Identifier::COMMAND, 0x0B));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -1317,11 +1280,7 @@ impl Layout for Barcode {
     }
 }
 
-/// External voltage of one module and the current it can deliver. Section 2.4.
-///
-/// Erratum E58: printed is "data as 30 U1 bt | 5 00 00.( | and noise, text 495.2 V, the current lost;
-/// of the note only: when the module ..., ... 0", used is "13 58 01 66 00 00 00 00, 35.8 A; 0 A while
-/// the module is off".
+/// External voltage of one module and the current that the module can deliver. Section 2.4.
 ///
 /// Erratum U0B: printed is "0x0B and 0x0C with examples for module 0 only, no word on groups", used is
 /// "each module of a group answers".
@@ -1329,7 +1288,8 @@ impl Layout for Barcode {
 pub struct ExternalVoltage {
     /// External voltage in V: bytes 0..1, steps of 0.1 V.
     ///
-    /// Erratum U0C: printed is "external voltage without saying where", used is "External voltage".
+    /// Erratum U0C: printed is "external voltage without saying where", used is "the same, without a
+    /// place".
     pub voltage_v: f64,
     /// Highest output current under present conditions in A: bytes 2..3, steps of 0.1 A.
     ///
@@ -1356,7 +1316,7 @@ impl ExternalVoltage {
         .request(FRAME.id(Identifier::COMMAND, 0x0C))
         .reply(FRAME.id(Identifier::COMMAND, 0x0C));
 
-    /// Builds the request `read`.
+    /// Builds the request `read`. Section 2.4.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers.
     ///
@@ -1405,7 +1365,9 @@ impl SetWalkIn {
         .request(FRAME.id(Identifier::COMMAND, 0x13))
         .reply(FRAME.id(Identifier::COMMAND, 0x13));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     ///
@@ -1450,7 +1412,9 @@ impl SetLed {
         .request(FRAME.id(Identifier::COMMAND, 0x14))
         .reply(FRAME.id(Identifier::COMMAND, 0x14));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     ///
@@ -1483,8 +1447,9 @@ pub struct SetGroup {
     ///
     /// Lost at power-off; needed for modules without DIP switch and with the address mode `dip_switch`.
     ///
-    /// Erratum D45: printed is "groups count from 1 (2.4), all modules are in group 0 at delivery (3.4), no
-    /// highest number", used is "0 to 0x3E as address, 1 to 0x3E in `set_group`".
+    /// Erratum D45: printed is "groups count from 1 and, cut off, something about the support of group
+    /// control (2.4); all modules are in group 0 at delivery (3.4); no highest number", used is "0 to 0x3E
+    /// as address, 1 to 0x3E in `set_group`".
     pub group: u8,
 }
 
@@ -1498,7 +1463,9 @@ impl SetGroup {
         .request(FRAME.id(Identifier::COMMAND, 0x16))
         .reply(FRAME.id(Identifier::COMMAND, 0x16));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     ///
@@ -1527,8 +1494,6 @@ impl Layout for SetGroup {
 }
 
 /// Send modules to sleep. Section 2.4.
-///
-/// Erratum D53: printed is "nothing but the heading", used is "what 2.4 says about 0x19".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetSleep {
     /// Sleep: byte 0.
@@ -1545,7 +1510,9 @@ impl SetSleep {
         .request(FRAME.id(Identifier::COMMAND, 0x19))
         .reply(FRAME.id(Identifier::COMMAND, 0x19));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     ///
@@ -1598,7 +1565,9 @@ impl SwitchModules {
         .request(FRAME.id(Identifier::COMMAND, 0x1A))
         .reply(FRAME.id(Identifier::COMMAND, 0x1A));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     /// `all_groups`: nobody answers.
@@ -1634,7 +1603,7 @@ impl Layout for SwitchModules {
 pub struct SetTotalOutput {
     /// Output voltage in V: bytes 0..3, steps of 0.001 V. The limits depend on the device model.
     pub voltage_v: f64,
-    /// Sum of the output currents of all modules in A: bytes 4..7, steps of 0.001 A. Section 3.3.
+    /// Sum of the output currents of all modules addressed in A: bytes 4..7, steps of 0.001 A. Section 3.3.
     ///
     /// Shared equally by all that report neither `protection` nor `fault`; a share above the limit is
     /// treated as in `set_module_output`.
@@ -1661,7 +1630,12 @@ impl SetTotalOutput {
         .request(FRAME.id(Identifier::COMMAND, 0x1B))
         .reply(FRAME.id(Identifier::COMMAND, 0x1B));
 
-    /// Builds the request `set_total` with these values.
+    /// Builds the request `set_total` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
+    ///
+    /// Erratum D40: printed is "only 0x01, 0x02 and 0x08 are answered when broadcast", used is "0x1B is
+    /// answered too".
     ///
     /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
     ///
@@ -1695,9 +1669,6 @@ impl Layout for SetTotalOutput {
 }
 
 /// Set voltage and current of every module addressed. Section 2.4.
-///
-/// Erratum D48: printed is "two ways to treat a current above the limit of the model", used is "both,
-/// by version: ignored before protocol V1.07 and limited from V1.07 on".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetModuleOutput {
     /// Output voltage in V: bytes 0..3, steps of 0.001 V. The limits depend on the device model. Section
@@ -1730,7 +1701,9 @@ impl SetModuleOutput {
         .request(FRAME.id(Identifier::COMMAND, 0x1C))
         .reply(FRAME.id(Identifier::COMMAND, 0x1C));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     ///
@@ -1784,7 +1757,9 @@ impl SetAddressMode {
         .request(FRAME.id(Identifier::COMMAND, 0x1F))
         .reply(FRAME.id(Identifier::COMMAND, 0x1F));
 
-    /// Builds the request `set` with these values.
+    /// Builds the request `set` with these values. Section 2.4.
+    ///
+    /// The reply carries the values now in effect.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     ///
@@ -1851,7 +1826,7 @@ pub enum Message {
     Barcode(Barcode),
     /// The request of `external_voltage` by `read`.
     ReadExternalVoltage,
-    /// External voltage of one module and the current it can deliver.
+    /// External voltage of one module and the current that the module can deliver.
     ExternalVoltage(ExternalVoltage),
     /// Enable or disable soft start.
     SetWalkIn(SetWalkIn),
@@ -1873,6 +1848,12 @@ pub enum Message {
 
 /// A recognised frame.
 pub type Received = canspec_runtime::Received<Message>;
+
+/// A request ready to be sent, whose replies carry `R`.
+pub type Request<R> = canspec_runtime::Request<Message, R>;
+
+/// A frame that answers a request.
+pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.

@@ -7,7 +7,7 @@ use super::doc;
 use super::identifier::field_place;
 use super::literal::{decimal, hexadecimal};
 use super::names::{Names, ident};
-use crate::model::{Address, AddressPattern, AddressType, Mode, Protocol, Who};
+use crate::model::{Address, AddressPattern, AddressType, Doc, Mode, Protocol, Who};
 
 /// Emits the types of addresses, the modes, and who answers by each access.
 pub fn addressing(protocol: &Protocol) -> TokenStream {
@@ -155,7 +155,7 @@ pub fn target(protocol: &Protocol, names: &Names) -> Option<TokenStream> {
             Variant { name, mode, index, address }
         })
         .collect();
-    let definitions = variants.iter().map(definition);
+    let definitions = variants.iter().map(|variant| definition(protocol, variant));
     let sender = sender(protocol).map(sent_by);
     let destination = destination(&variants);
     (!variants.is_empty()).then(|| {
@@ -169,11 +169,12 @@ pub fn target(protocol: &Protocol, names: &Names) -> Option<TokenStream> {
     })
 }
 
-fn definition(variant: &Variant) -> TokenStream {
+fn definition(protocol: &Protocol, variant: &Variant) -> TokenStream {
     let name = variant.name;
     let title = doc::title(&variant.mode.doc, &variant.mode.name);
     let numbers = variant.address.map_or_else(String::new, |address| format!(": {}", range(address)));
-    let comment = doc::line(doc::sentence_of(&format!("{title}{numbers}")));
+    let errata_elsewhere = Doc { errata: Vec::new(), ..variant.mode.doc.clone() };
+    let comment = doc::item(protocol, &errata_elsewhere, &doc::sentence_of(&format!("{title}{numbers}")), None);
     let number = variant.address.map(|address| {
         let integer = number_type(address);
         quote!((#integer))

@@ -51,8 +51,12 @@ fn reference(section: &str) -> String {
     }
 }
 
+/// Writes an erratum in one line, unless it is about the scan of the document alone.
 fn erratum(protocol: &Protocol, name: &str) -> Option<String> {
     let erratum = protocol.errata.iter().find(|erratum| erratum.name == name)?;
+    if matches!(erratum.kind.as_str(), "ocr" | "note") {
+        return None;
+    }
     let [prints, uses] = [&erratum.prints, &erratum.uses].map(|text| plain(text));
     Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\"")))
 }

@@ -98,9 +98,9 @@ fn test(name: &str, condition: Option<TokenStream>) -> TokenStream {
     condition.map_or(never, |condition| quote!(fn #name(id: u32) -> bool { #condition }))
 }
 
-fn foreign(protocol: &Protocol) -> TokenStream {
+fn foreign(protocol: &Protocol) -> Option<TokenStream> {
     let entries = protocol.foreign.iter().map(|foreign| foreign_test(protocol, foreign)).collect::<Vec<_>>();
-    test("is_foreign", disjunction(entries))
+    disjunction(entries).map(|condition| test("is_foreign", Some(condition)))
 }
 
 fn foreign_test(protocol: &Protocol, foreign: &Foreign) -> TokenStream {

@@ -10,8 +10,9 @@ use super::literal::{data, decimal, float, hexadecimal};
 use super::names::{MessageNames, Names, Struct, screaming};
 use super::place::Written;
 use super::word::{integer, text_type};
-use crate::model::{Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal, Who};
+use crate::model::{Access, Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal, Who};
 use crate::number::Rational;
+use crate::syntax::tree::Path;
 
 /// A message on its way into Rust.
 pub struct Emitter<'a> {
@@ -57,8 +58,21 @@ impl Emitter<'_> {
         let (name, kind) = (&self.names.fields[index], self.field_type(index));
         let paragraphs =
             doc::paragraphs(self.protocol, &signal.doc, &self.member_sentence(signal), Some(&self.message.doc));
-        let comment = doc::comment(paragraphs);
+        let comment = doc::comment(paragraphs.into_iter().chain(self.type_notes(signal)));
         quote!(#comment pub #name: #kind)
+    }
+
+    /// Returns the notes of a signal's types, except of one that is a type in Rust too.
+    fn type_notes(&self, signal: &Signal) -> impl Iterator<Item = String> {
+        let in_rust = match &signal.encoding {
+            Encoding::Named(known) => Some(&self.protocol.enumerations[*known].doc.path),
+            Encoding::Status(known) => Some(&self.protocol.status_words[*known].doc.path),
+            _ => None,
+        };
+        let paths = signal.types.iter().map(|name| Path::default().key("types").key(name));
+        let others = paths.filter(move |path| in_rust != Some(path));
+        let docs = others.filter_map(|path| self.protocol.types.iter().find(|doc| doc.path == path));
+        docs.filter_map(|doc| Some(doc::sentence_of(&doc::plain(doc.note.as_ref()?))))
     }
 
     fn member_sentence(&self, signal: &Signal) -> String {
@@ -216,7 +230,7 @@ impl Emitter<'_> {
         };
         let exchange = if is_own { quote!(Self::#exchange) } else { quote!(#home::#exchange) };
         let carries = self.names.carried(shape).is_some();
-        let comment = doc::comment(self.method_comment(shape, &known.name, carries));
+        let comment = doc::comment(self.method_comment(shape, known, carries));
         let (receiver, content) = if carries { (Some(quote!(&self,)), quote!(self)) } else { (None, quote!(&())) };
         quote! {
             #comment
@@ -226,12 +240,14 @@ impl Emitter<'_> {
         }
     }
 
-    fn method_comment(&self, shape: &Shape, access: &str, carries: bool) -> [String; 4] {
+    fn method_comment(&self, shape: &Shape, access: &Access, carries: bool) -> Vec<String> {
         let values = if carries { " with these values" } else { "" };
-        let first = format!("Builds the request `{access}`{values}.");
+        let first = format!("Builds the request `{}`{values}.", access.name);
         let values = if carries { "values outside their limits, " } else { "" };
         let errors = format!("Refuses {values}other addressing modes, and undocumented addresses.");
-        [first, self.modes(shape), "# Errors".to_owned(), errors]
+        let mut paragraphs = doc::paragraphs(self.protocol, &access.doc, &first, None);
+        paragraphs.extend([self.modes(shape), "# Errors".to_owned(), errors]);
+        paragraphs
     }
 
     /// Says in which modes a request can be sent, and who answers.

@@ -5,11 +5,12 @@ use proc_macro2::{Ident, Span};
 use crate::model::{Encoding, Kind, Message, Protocol, Shape, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 62] = [
+const TAKEN: [&str; 68] = [
     "Address",
     "AddressType",
     "Addressing",
     "AnySignal",
+    "BitOr",
     "Bits",
     "Clone",
     "Copy",
@@ -23,8 +24,10 @@ const TAKEN: [&str; 62] = [
     "Err",
     "Error",
     "Exchange",
+    "Failure",
     "Filter",
     "Fn",
+    "Formatter",
     "Frame",
     "From",
     "Hash",
@@ -68,6 +71,9 @@ const TAKEN: [&str; 62] = [
     "String",
     "Sync",
     "Target",
+    "Text",
+    "Who",
+    "Word",
 ];
 
 /// Methods and constants that every message has.
@@ -107,8 +113,8 @@ pub fn ident(name: &str) -> Ident {
     }
 }
 
-/// Converts `set_module_output` to `SetModuleOutput`.
-pub fn camel(name: &str) -> String {
+/// Converts `set_output` to `SetOutput`.
+pub fn camel_case(name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();
         letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
@@ -119,11 +125,11 @@ pub fn camel(name: &str) -> String {
 /// Names the variants of an enum, and the one that keeps values without a name.
 pub fn variants<'a>(names: impl Iterator<Item = &'a str>) -> (Vec<Ident>, Ident) {
     let mut pool = Pool::default();
-    let variants = names.map(|name| pool.take(camel(name), "_")).collect();
+    let variants = names.map(|name| pool.take(camel_case(name), "_")).collect();
     (variants, pool.take("Unknown".to_owned(), "Value"))
 }
 
-/// Converts `set_module_output` to `SET_MODULE_OUTPUT`.
+/// Converts `set_output` to `SET_OUTPUT`.
 pub fn screaming(name: &str) -> Ident {
     ident(&name.to_ascii_uppercase())
 }
@@ -173,7 +179,7 @@ impl Names {
     pub fn new(protocol: &Protocol) -> Self {
         let mut types = Pool::new(&TAKEN);
         let structs: Vec<_> = protocol.messages.iter().map(|message| structs(message, &mut types)).collect();
-        let mut named = |name: &str, suffix| types.take(camel(name), suffix);
+        let mut named = |name: &str, suffix| types.take(camel_case(name), suffix);
         let enumerations = protocol.enumerations.iter().map(|known| named(&known.name, "Value")).collect();
         let status_words = protocol.status_words.iter().map(|word| named(&word.name, "Word")).collect();
         let mut variants = Pool::default();
@@ -195,9 +201,9 @@ fn structs(message: &Message, types: &mut Pool) -> Vec<Struct> {
     }
     sets.sort_by_key(|shape| std::cmp::Reverse(shape.signals.len()));
     let first = sets.first().map(|shape| shape.signals.clone()).unwrap_or_default();
-    let own = Struct { name: types.take(camel(&message.name), "Message"), signals: first };
+    let own = Struct { name: types.take(camel_case(&message.name), "Message"), signals: first };
     let others = sets.iter().skip(1).map(|shape| {
-        let name = format!("{}{}", camel(&message.name), camel(shape.kind.name()));
+        let name = format!("{}{}", camel_case(&message.name), camel_case(shape.kind.name()));
         Struct { name: types.take(name, "Message"), signals: shape.signals.clone() }
     });
     std::iter::once(own).chain(others).collect()
@@ -235,7 +241,7 @@ fn field(signal: &Signal) -> String {
 
 fn packed(message: &Message, signal: &Signal, types: &mut Pool) -> Option<Ident> {
     let name = if signal.name == "value" { message.name.clone() } else { format!("{}_{}", message.name, signal.name) };
-    matches!(signal.encoding, Encoding::Packed { .. }).then(|| types.take(camel(&name), "Value"))
+    matches!(signal.encoding, Encoding::Packed { .. }).then(|| types.take(camel_case(&name), "Value"))
 }
 
 /// Names a variant after the struct it carries, else after the frame.
@@ -243,11 +249,11 @@ fn variant(protocol: &Protocol, message: &Message, names: &MessageNames, shape: 
     if let Some(carried) = names.carried(shape) {
         return carried.name.clone();
     }
-    let access = camel(&protocol.accesses[message.accesses[shape.access].access].name);
-    let message = camel(&message.name);
+    let access = camel_case(&protocol.accesses[message.accesses[shape.access].access].name);
+    let message = camel_case(&message.name);
     let name = match shape.kind {
         Kind::Request => format!("{access}{message}"),
-        kind => format!("{message}{access}{}", camel(kind.name())),
+        kind => format!("{message}{access}{}", camel_case(kind.name())),
     };
     variants.take(name, "Frame")
 }
@@ -257,7 +263,7 @@ fn targets(protocol: &Protocol) -> Vec<Ident> {
     let alone = |index: &usize| protocol.modes.iter().filter(|other| other.target == Some(*index)).count() == 1;
     let names = protocol.modes.iter().map(|mode| {
         let address = mode.target.filter(alone).map(|index| &protocol.address_types[index].name);
-        variants.take(camel(address.unwrap_or(&mode.name)), "Mode")
+        variants.take(camel_case(address.unwrap_or(&mode.name)), "Mode")
     });
     names.collect()
 }

@@ -75,6 +75,12 @@ pub fn protocol(protocol: &Protocol, names: &Names) -> TokenStream {
         /// A recognised frame.
         pub type Received = canspec_runtime::Received<Message>;
 
+        /// A request ready to be sent, whose replies carry `R`.
+        pub type Request<R> = canspec_runtime::Request<Message, R>;
+
+        /// A frame that answers a request.
+        pub type Reply<R> = canspec_runtime::Reply<Message, R>;
+
         impl Message {
             /// Recognises a frame.
             ///

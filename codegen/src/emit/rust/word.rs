@@ -30,7 +30,7 @@ pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration)
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum #name {
             #(#comments #variants,)*
-            /// A value without a name.
+            /// A value without a name; it is sent as it is.
             #unknown(#raw),
         }
 

@@ -1,0 +1,81 @@
+//! Replies: who sent them, and what they say.
+
+use core::fmt;
+
+use crate::frame::classic;
+use crate::protocol::is_to_module;
+use crate::{Filter, Frame, IdentifierFields, Layout, Protocol, Selector};
+
+/// A frame that answers a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use = "a reply can be an error; look at its `values`"]
+pub struct Reply<P: Protocol, R> {
+    /// The identifier: it shows who answers, and in some protocols the error code.
+    pub identifier: P::Identifier,
+    /// The values, or why there are none.
+    pub values: Result<R, Failure>,
+    selectors: &'static [Selector],
+    frame: Frame,
+}
+
+impl<P: Protocol, R> Reply<P, R> {
+    /// Returns the selectors in the data, each with its raw value: in some protocols one of them is the error code.
+    pub fn selectors(&self) -> impl Iterator<Item = (&'static Selector, u64)> {
+        selected(self.selectors, self.frame)
+    }
+}
+
+impl<P: Protocol, R: Layout> Reply<P, R> {
+    /// Decodes an [`answer`], which should have so many data bytes.
+    pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
+        let identifier = P::Identifier::from_raw(frame.raw_id());
+        let failure = failure::<P>(selectors, length, &frame);
+        let values = failure.map_or_else(|| Ok(R::decode(&frame.bytes())), Err);
+        Self { identifier, values, selectors, frame }
+    }
+}
+
+/// Why a reply has no values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Failure {
+    /// The device answers with an error code, in the identifier or in a selector.
+    Error,
+    /// It has too few or too many data bytes.
+    Length,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Error => "the device answers with an error code",
+            Self::Length => "the reply has too few or too many data bytes",
+        })
+    }
+}
+
+impl core::error::Error for Failure {}
+
+/// Copies a frame that shows what the replies show, unless it goes to a module.
+pub fn answer<P: Protocol>(replies: &Filter, frame: &impl embedded_can::Frame) -> Option<Frame> {
+    classic(frame).filter(|frame| replies.matches(frame) && is_to_module::<P>(frame) == Ok(false))
+}
+
+/// Says why a reply of `length` bytes has no values.
+fn failure<P: Protocol>(selectors: &'static [Selector], length: usize, frame: &Frame) -> Option<Failure> {
+    if has_error::<P>(selectors, frame) {
+        Some(Failure::Error)
+    } else {
+        (frame.length() != length).then_some(Failure::Length)
+    }
+}
+
+/// Tests whether identifier or selectors show an error code.
+pub fn has_error<P: Protocol>(selectors: &'static [Selector], frame: &Frame) -> bool {
+    !P::NORMAL.matches_id(frame.raw_id()) || selected(selectors, *frame).any(|(selector, raw)| !selector.is_normal(raw))
+}
+
+/// Returns the selectors that a frame is long enough to have, each with its raw value.
+pub fn selected(selectors: &'static [Selector], frame: Frame) -> impl Iterator<Item = (&'static Selector, u64)> {
+    let known = selectors.iter().filter(move |selector| selector.is_within(frame.length()));
+    known.map(move |selector| (selector, selector.place.get(&frame.bytes())))
+}
