@@ -1,11 +1,9 @@
 //! A spec as it is written: every leaf is still its text.
 
-use std::fmt;
+mod reading;
 
 use indexmap::IndexMap;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 
 /// Names to entries, in the order of the file.
 pub type Map<V> = IndexMap<String, V>;
@@ -486,73 +484,3 @@ pub struct Erratum {
 /// One name, or a list of names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<String>);
-
-impl<'de> Deserialize<'de> for Names {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NamesVisitor;
-        impl<'de> Visitor<'de> for NamesVisitor {
-            type Value = Names;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a name or a list of names")
-            }
-
-            fn visit_str<E>(self, name: &str) -> Result<Names, E> {
-                Ok(Names(vec![name.to_owned()]))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Names, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Names)
-            }
-        }
-        deserializer.deserialize_any(NamesVisitor)
-    }
-}
-
-impl<'de> Deserialize<'de> for IdentifierEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct EntryVisitor;
-        impl<'de> Visitor<'de> for EntryVisitor {
-            type Value = IdentifierEntry;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a field, or a place such as `6..1` after `ones` or `zeros`")
-            }
-
-            fn visit_str<E>(self, place: &str) -> Result<IdentifierEntry, E> {
-                Ok(IdentifierEntry::Place(place.to_owned()))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<IdentifierEntry, A::Error> {
-                Field::deserialize(MapAccessDeserializer::new(map)).map(|field| IdentifierEntry::Field(Box::new(field)))
-            }
-        }
-        deserializer.deserialize_any(EntryVisitor)
-    }
-}
-
-impl<'de> Deserialize<'de> for Means {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct MeansVisitor;
-        impl<'de> Visitor<'de> for MeansVisitor {
-            type Value = Means;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a value, a list of status bits, or a value for each signal")
-            }
-
-            fn visit_str<E>(self, value: &str) -> Result<Means, E> {
-                Ok(Means::Value(value.to_owned()))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Means, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Means::Bits)
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Means, A::Error> {
-                Map::deserialize(MapAccessDeserializer::new(map)).map(Means::Signals)
-            }
-        }
-        deserializer.deserialize_any(MeansVisitor)
-    }
-}
