@@ -102,19 +102,48 @@ fn the_session_encodes_back_to_the_same_frames() {
     assert!(output.status.success());
 }
 
+/// Splits the table into the text of each line of the log, with the wrapped parts joined.
+fn blocks(table: &str) -> Vec<String> {
+    let mut blocks: Vec<String> = Vec::new();
+    for row in table.lines().skip(1) {
+        let words = row.split_whitespace().collect::<Vec<_>>().join(" ");
+        match blocks.last_mut() {
+            Some(block) if row.starts_with(' ') => *block = format!("{block} {words}"),
+            _ => blocks.push(words),
+        }
+    }
+    blocks
+}
+
+/// Returns the ways in which the table may write `name=value unit`: scaled and floating numbers have a decimal point.
+fn written(signal: &str) -> [String; 2] {
+    let (name, value) = signal.split_once('=').expect("a signal has a value");
+    if let Some(raw) = value.strip_prefix('?') {
+        let raw: u64 = raw.parse().expect("a raw value");
+        return [format!("{name} ? (raw {raw:#X})"), format!("{name} ? (raw {raw})")];
+    }
+    let (number, unit) =
+        value.split_once(' ').map_or((value, String::new()), |(number, unit)| (number, format!(" {unit}")));
+    [format!("{name} {number}{unit}"), format!("{name} {number}.0{unit}")]
+}
+
 #[test]
-fn the_table_shows_the_same_values() {
+fn each_row_of_the_table_shows_the_values_of_the_document() {
     let log = logs("infy-session.log");
     let output = canspec(&["decode", "--protocol", "infy", &log.to_string_lossy()], b"");
-    let table = String::from_utf8(output.stdout).expect("the output is UTF-8");
-    for line in decoded() {
-        let signals = line["signals"].as_object().cloned().unwrap_or_default();
-        for (name, signal) in
-            signals.iter().filter(|(_, signal)| signal.get("value").is_some_and(|value| !value.is_null()))
-        {
-            let shown = format!("{name} {}", value(signal));
-            let scaled = signal["value"].as_f64().map_or(shown.clone(), |number| format!("{name} {number:?}"));
-            assert!(table.contains(&shown) || table.contains(&scaled), "{shown} is not in the table");
+    let blocks = blocks(&String::from_utf8(output.stdout).expect("the output is UTF-8"));
+    let expected = fs::read_to_string(logs("infy-session.expected.tsv")).expect("the file ships");
+    let expected: Vec<_> = expected.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(blocks.len(), expected.len());
+    for (block, line) in blocks.iter().zip(expected) {
+        let mut columns = line.split('\t').skip(1);
+        let message = columns.next().expect("a message");
+        assert!(message == "-" || block.contains(&format!(" {message}")), "{message}: {block}");
+        let signals = columns.nth(1).unwrap_or_default();
+        for signal in signals.split("; ").filter(|signal| signal.contains('=') && !signal.contains('{')) {
+            let shown = written(signal);
+            let ends = |text: &String| block.contains(&format!("{text} ")) || block.ends_with(text.as_str());
+            assert!(shown.iter().any(ends), "{shown:?} is not in {block:?}");
         }
     }
 }
