@@ -46,24 +46,11 @@ impl Decode {
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocols = self.protocols.load()?;
         let mut printer = self.printer(&protocols);
-        let mut input = Input::open(self.file.as_deref())?;
-        let mut out = BufWriter::new(io::stdout().lock());
-        let mut finish = Finish::Done;
-        while let Some(line) = input.next_line()? {
-            match line.text.and_then(log::read) {
-                Ok(None) => {}
-                Ok(Some(entry)) => printer.frame(&mut out, &protocols, line.number, &entry)?,
-                Err(why) => {
-                    out.flush()?;
-                    input.complain(&why);
-                    finish = Finish::Errors;
-                }
-            }
-            if input.may_wait() {
-                out.flush()?;
-            }
-        }
-        Ok(finish)
+        let out = BufWriter::new(io::stdout().lock());
+        Input::open(self.file.as_deref())?.each(out, |out, line| {
+            let entry = line.text.and_then(log::read)?;
+            Ok(entry.map_or(Ok(()), |entry| printer.frame(out, &protocols, line.number, &entry)))
+        })
     }
 
     fn printer(&self, protocols: &[Protocol]) -> Printer {

@@ -1,6 +1,6 @@
 //! `canspec encode`.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::Path;
 
 use canspec_codegen::interpret::{self, Frame, Target};
@@ -94,27 +94,14 @@ impl Encode {
 
 /// Turns decoded lines into a log.
 fn lines(protocol: &Protocol, file: Option<&Path>) -> Result<Finish, Failure> {
-    let mut input = Input::open(file)?;
-    let mut out = BufWriter::new(io::stdout().lock());
-    let mut finish = Finish::Done;
-    while let Some(line) = input.next_line()? {
-        match line.text.and_then(|text| read(protocol, text)) {
-            Ok(None) => {}
-            Ok(Some((content, frame))) => {
-                let time = content.time.as_ref().map(|time| time.get());
-                log::write(&mut out, time, content.channel.as_deref(), &frame)?;
-            }
-            Err(why) => {
-                out.flush()?;
-                input.complain(&why);
-                finish = Finish::Errors;
-            }
-        }
-        if input.may_wait() {
-            out.flush()?;
-        }
-    }
-    Ok(finish)
+    let out = BufWriter::new(io::stdout().lock());
+    Input::open(file)?.each(out, |out, line| {
+        let made = line.text.and_then(|text| read(protocol, text))?;
+        Ok(made.map_or(Ok(()), |(content, frame)| {
+            let time = content.time.as_ref().map(|time| time.get());
+            log::write(out, time, content.channel.as_deref(), &frame)
+        }))
+    })
 }
 
 fn read(protocol: &Protocol, line: &str) -> Result<Option<(Content, Frame)>, String> {

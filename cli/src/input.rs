@@ -1,10 +1,10 @@
 //! The lines of a file or of standard input, with their numbers.
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
 
-use crate::failure::{Failure, tell};
+use crate::failure::{Failure, Finish, tell};
 
 /// Longer lines are unreadable.
 const LONGEST: usize = 1 << 16;
@@ -51,7 +51,7 @@ impl Input {
     /// # Errors
     ///
     /// Where the input cannot be read any further.
-    pub fn next_line(&mut self) -> Result<Option<Line<'_>>, Failure> {
+    fn next_line(&mut self) -> Result<Option<Line<'_>>, Failure> {
         self.line.clear();
         let more = self.fill().map_err(|error| Failure::input(&self.name, &error))?;
         self.number += 1;
@@ -76,13 +76,40 @@ impl Input {
         str::from_utf8(line).map_err(|error| format!("byte {} of the line is not UTF-8", error.valid_up_to() + 1))
     }
 
+    /// Does `work` on each line; what it refuses is complained about, and the rest goes on.
+    ///
+    /// # Errors
+    ///
+    /// Where the input cannot be read, or the output cannot be written.
+    pub fn each<W: Write>(
+        mut self,
+        mut out: W,
+        mut work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
+    ) -> Result<Finish, Failure> {
+        let mut finish = Finish::Done;
+        while let Some(line) = self.next_line()? {
+            match work(&mut out, line) {
+                Ok(written) => written?,
+                Err(why) => {
+                    out.flush()?;
+                    self.complain(&why);
+                    finish = Finish::Errors;
+                }
+            }
+            if self.may_wait() {
+                out.flush()?;
+            }
+        }
+        Ok(finish)
+    }
+
     /// Tests whether the next line may have to be waited for, so that what is known should be shown first.
-    pub fn may_wait(&self) -> bool {
+    fn may_wait(&self) -> bool {
         !self.reader.buffer().contains(&b'\n')
     }
 
     /// Says on standard error what is wrong with the line read last.
-    pub fn complain(&self, why: &str) {
+    fn complain(&self, why: &str) {
         tell(format_args!("{}:{}: {}", self.name, self.number, without_controls(why)));
     }
 }
