@@ -1,0 +1,73 @@
+//! How it is shown.
+
+use canspec_codegen::diagnostic::{At, Diagnostic};
+
+use super::{WHOLE, first};
+
+#[test]
+fn lines_are_underlined_with_labels_and_help() {
+    let text = format!("{WHOLE}types:\n  a: {{}}\n  a: {{}}\nmodels: {{m: {{max_paralel: 4}}}}\n");
+    let expected = "\
+error[duplicate_key]: duplicate key `a`
+  --> mini.yaml:10:3
+   |
+ 9 |   a: {}
+   |   - first given here
+10 |   a: {}
+   |   ^ given again here
+   |
+   = help: remove one of the two, or give it another name
+
+error[unknown_key]: unknown key `max_paralel`
+  --> mini.yaml:11:14
+   |
+11 | models: {m: {max_paralel: 4}}
+   |              ^^^^^^^^^^^
+   |
+   = help: did you mean `max_parallel`? allowed here: `title`, `items`, `max_parallel`, `bit_rates`, `facts`, `types`, `note`, `section`, `erratum`";
+    assert_eq!(first(&text).render(false), expected);
+}
+
+#[test]
+fn places_far_apart_are_shown_one_after_the_other() {
+    let filler = "# filler\n".repeat(1000);
+    let text = format!("{WHOLE}types: {{}}\n{filler}types: {{}}\n");
+    let expected = "\
+error[duplicate_key]: duplicate key `types`
+    --> mini.yaml:1009:1
+     |
+1009 | types: {}
+     | ^^^^^ given again here
+     |
+    ::: mini.yaml:8:1
+     |
+   8 | types: {}
+     | ----- first given here
+     |
+     = help: remove one of the two, or give it another name";
+    assert_eq!(first(&text).render(false), expected);
+}
+
+#[test]
+fn long_lines_are_not_drawn() {
+    let text = format!("{WHOLE}bit_rates: [{}on]", "1, ".repeat(10_000));
+    let expected = "\
+error[plain_word]: `on` is written without quotes
+--> mini.yaml:8:30013
+ = help: write `\"on\"`: readers of YAML disagree on what the plain word means";
+    assert_eq!(first(&text).render(false), expected);
+}
+
+#[test]
+fn a_warning_about_the_whole_file_names_it() {
+    let mut diagnostics = first(WHOLE);
+    diagnostics
+        .push(Diagnostic::warning("quiet", At::File, "says little").other(At::File, "as others do").help("say more"));
+    let expected = "\
+warning[quiet]: says little
+--> mini.yaml
+ = note: as others do
+ = help: say more";
+    assert_eq!(diagnostics.render(false), expected);
+    assert!(diagnostics.render(true).contains('\u{1b}'));
+}
