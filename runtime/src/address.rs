@@ -1,5 +1,7 @@
 //! Addressing modes: whom a request addresses, and who answers.
 
+use core::ptr;
+
 use crate::{Bits, Error, Filter};
 
 /// A kind of address: a documented range of numbers.
@@ -69,6 +71,11 @@ impl AddressType {
         }
     }
 
+    /// Tests whether this is the same kind of address.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        ptr::eq(self, other) || self == other
+    }
+
     /// Returns the number if the document names it.
     pub(crate) fn documented(&self, number: i32) -> Result<i32, Error> {
         let Self { name: address, first, last, .. } = *self;
@@ -126,24 +133,32 @@ pub struct Pattern {
 impl Pattern {
     /// Tests an identifier: `Some(true)` with documented addresses, `Some(false)` with tolerated ones.
     fn fit(&self, id: u32) -> Option<bool> {
-        let constants = self.constants.iter().all(|(bits, value)| bits.of(id) == *value);
-        let documented = self.addresses.iter().all(|address| address.is_documented(id));
-        let tolerated = self.addresses.iter().all(|address| address.is_documented(id) || address.is_tolerated(id));
-        (constants && tolerated).then_some(documented)
+        if self.constants.iter().any(|(bits, value)| bits.of(id) != *value) {
+            return None;
+        }
+        let is_documented = self.addresses.iter().all(|address| address.is_documented(id));
+        let mut addresses = self.addresses.iter();
+        let is_fit = is_documented || addresses.all(|address| address.is_documented(id) || address.is_tolerated(id));
+        is_fit.then_some(is_documented)
     }
 
     /// Tests whether the identifier shows a number of this kind.
     pub(crate) fn has(&self, kind: &AddressType) -> bool {
-        self.addresses.iter().any(|address| address.kind == kind)
+        self.addresses.iter().any(|address| address.kind.is(kind))
     }
 
     /// Narrows a filter to the constants, and to those addresses whose number is known.
-    pub(crate) fn narrow(&self, filter: Filter, number: impl Fn(&AddressType) -> Option<i32>) -> Filter {
-        let fixed = self.constants.iter().fold(filter, |filter, (bits, value)| filter.id(*bits, *value));
-        self.addresses.iter().fold(fixed, |filter, address| match number(address.kind) {
-            Some(number) => filter.id(address.bits, address.kind.raw(number)),
-            None => filter,
-        })
+    pub(crate) fn narrow(&self, filter: &Filter, number: impl Fn(&AddressType) -> Option<i32>) -> Filter {
+        let add = |(mask, value): (u32, u32), bits: Bits, raw: u32| {
+            let field = bits.write(u32::MAX);
+            (mask | field, (value & !field) | bits.write(raw))
+        };
+        let fixed = self.constants.iter().fold((0, 0), |fields, (bits, raw)| add(fields, *bits, *raw));
+        let (mask, value) = self.addresses.iter().fold(fixed, |fields, address| match number(address.kind) {
+            Some(number) => add(fields, address.bits, address.kind.raw(number)),
+            None => fields,
+        });
+        filter.id_bits(mask, value)
     }
 }
 
@@ -166,6 +181,8 @@ pub struct Mode {
 
 /// Who answers a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Who {
     /// The module addressed.
     One,
@@ -179,6 +196,8 @@ pub enum Who {
 
 /// What a frame is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kind {
     /// Towards a module: reads and sets alike.
     Request,
@@ -189,19 +208,19 @@ pub enum Kind {
 }
 
 impl Mode {
-    pub(crate) fn reply(&self, who: Who) -> Option<Pattern> {
+    pub(crate) const fn reply(&self, who: Who) -> Option<&Pattern> {
         match who {
-            Who::One => self.one,
-            Who::Each => self.each,
-            Who::Coordinator => self.coordinator,
+            Who::One => self.one.as_ref(),
+            Who::Each => self.each.as_ref(),
+            Who::Coordinator => self.coordinator.as_ref(),
             Who::Nobody => None,
         }
     }
 
     /// Returns the patterns of a kind of frame, and who sends such a reply.
-    fn patterns(&self, kind: Kind) -> [(Option<Who>, Option<Pattern>); 3] {
+    fn patterns(&self, kind: Kind) -> [(Option<Who>, Option<&Pattern>); 3] {
         match kind {
-            Kind::Request => [(None, self.request), (None, None), (None, None)],
+            Kind::Request => [(None, self.request.as_ref()), (None, None), (None, None)],
             Kind::Reply | Kind::Report => {
                 [Who::One, Who::Each, Who::Coordinator].map(|who| (Some(who), self.reply(who)))
             }
@@ -214,7 +233,7 @@ impl Mode {
 pub struct Addressing {
     rank: Rank,
     mode: &'static Mode,
-    pattern: Pattern,
+    pattern: &'static Pattern,
 }
 
 /// How well a mode fits: one that the message has, then documented addresses, then the number of constants.

@@ -7,6 +7,7 @@ use crate::Number;
 /// Why a frame is not built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
     /// The value lies outside the documented range, or outside what the signal's bits can hold.
     Limits {
@@ -36,6 +37,11 @@ pub enum Error {
         message: &'static str,
         /// Name of the signal.
         signal: &'static str,
+    },
+    /// The device model does not have the message.
+    Model {
+        /// Name of the message.
+        message: &'static str,
     },
     /// The message does not travel in this addressing mode, or in no known one.
     Mode {
@@ -78,6 +84,7 @@ impl fmt::Display for Error {
             }
             Self::NotFinite { message, signal } => write!(formatter, "`{signal}` of `{message}` is no finite number"),
             Self::Meaning { message, signal } => write!(formatter, "`{signal}` of `{message}` has no such value"),
+            Self::Model { message } => write!(formatter, "the device model has no `{message}`"),
             Self::Mode { message, access, mode: Some(mode) } => {
                 write!(formatter, "`{message}` has no `{access}` with the addressing mode `{mode}`")
             }

@@ -138,6 +138,11 @@ impl Filter {
         self.data_value
     }
 
+    /// Returns the identifier that is written when such a frame is built.
+    pub(crate) const fn sent_id(&self) -> u32 {
+        self.id_value
+    }
+
     /// Returns the frame that shows what the filter asks for, with zeros elsewhere.
     pub const fn frame(&self, length: u8) -> Frame {
         Frame::new_raw(self.id_value, self.extended, self.data_value, length)
@@ -166,6 +171,7 @@ mod tests {
         let filter = Filter::EXTENDED.id(COMMAND, 0x1C).send_id(ERROR, 2);
         assert_eq!((filter.id_mask(), filter.id_value()), (0x003F_0000, 0x001C_0000));
         assert!(filter.matches(&frame(0x029C_03F0, 7)));
+        assert!(filter.matches(&frame(0x1FDC_FFFF, 7)) && filter.matches(&frame(0x001C_0000, 7)));
         assert!(!filter.matches(&frame(0x029B_03F0, 7)));
         assert_eq!(filter.frame(8), frame(0x081C_0000, 0));
     }

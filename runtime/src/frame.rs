@@ -106,12 +106,13 @@ pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
 }
 
 /// Returns the first eight of `bytes`, with zeros where there are fewer.
+#[inline]
 pub fn padded(bytes: &[u8]) -> Data {
-    let mut data = [0; 8];
-    for (byte, value) in data.iter_mut().zip(bytes) {
-        *byte = *value;
-    }
-    data
+    bytes.first_chunk().copied().unwrap_or_else(|| {
+        let mut data = [0; 8];
+        data.iter_mut().zip(bytes).for_each(|(byte, value)| *byte = *value);
+        data
+    })
 }
 
 #[cfg(test)]

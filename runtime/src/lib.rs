@@ -1,6 +1,17 @@
 //! What the codecs that canspec generates call: places, scaling, signals, frames, filters and addressing.
 //!
 //! No allocation, no unsafe code, no dependency but [`embedded_can`].
+//!
+//! # Features
+//!
+//! None is on by default. Each gives the optional traits to the types of this crate, and lets code generated with the
+//! switch of the same name give them to its own.
+//!
+//! | feature | traits |
+//! |---|---|
+//! | `serde` | `serde::Serialize` and `serde::Deserialize`, without the standard library |
+//! | `defmt` | `defmt::Format` |
+//! | `arbitrary` | `arbitrary::Arbitrary` of messages and frames; the crate `arbitrary` needs the standard library |
 #![no_std]
 
 #[cfg(test)]
@@ -14,6 +25,7 @@ mod layout;
 mod number;
 mod packed;
 mod payload;
+mod physical;
 mod place;
 pub mod prelude;
 mod protocol;
@@ -26,9 +38,21 @@ mod status;
 #[cfg(test)]
 mod tests;
 mod text;
+#[cfg(feature = "arbitrary")]
+pub mod with_arbitrary;
+#[cfg(feature = "defmt")]
+pub mod with_defmt;
+#[cfg(feature = "serde")]
+pub mod with_serde;
 mod word;
 
 pub use address::{Address, AddressType, Addressing, Kind, Mode, Pattern, Who};
+#[cfg(feature = "arbitrary")]
+#[doc(hidden)]
+pub use arbitrary;
+#[cfg(feature = "defmt")]
+#[doc(hidden)]
+pub use defmt;
 pub use embedded_can;
 pub use error::Error;
 pub use filter::{Filter, Selector};
@@ -37,13 +61,33 @@ pub use layout::Layout;
 pub use number::Number;
 pub use packed::{Packed, PackedText, Piece, left_aligned, right_aligned};
 pub use payload::Payload;
+pub use physical::Physical;
 pub use place::{Bits, ByteOrder, Data, Place};
 pub use protocol::{IdentifierFields, Problem, Protocol, Received, Recognised};
 pub use raw::{Integer, Meaning, Raw};
 pub use reply::{Failure, Reply};
 pub use request::{Destination, Exchange, Replies, Request, Route};
 pub use scale::{Scale, nearest};
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde;
 pub use signal::{AnySignal, Reading, Signal};
 pub use status::{Severity, StatusBit};
 pub use text::Text;
 pub use word::{Legend, Named, StatusWord, Word};
+
+/// Includes the code that a build script generated for a protocol, as the content of a module.
+///
+/// ```ignore
+/// pub mod heater {
+///     canspec_runtime::include_protocol!("heater");
+/// }
+/// ```
+///
+/// The name is that of the protocol in its spec. The file is `OUT_DIR/heater.rs`, where `canspec_codegen::Builder` writes it.
+#[macro_export]
+macro_rules! include_protocol {
+    ($name:literal) => {
+        ::core::include!(::core::concat!(::core::env!("OUT_DIR"), "/", $name, ".rs"));
+    };
+}

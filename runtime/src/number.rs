@@ -4,11 +4,15 @@ use core::fmt;
 
 /// A number as a signal carries it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Number {
     /// An unsigned integer.
     Unsigned(u64),
     /// A signed integer.
     Signed(i64),
+    /// A scaled number in single precision.
+    Single(f32),
     /// A scaled or floating-point number.
     Float(f64),
 }
@@ -20,7 +24,23 @@ impl Number {
         match self {
             Self::Unsigned(number) => number as f64,
             Self::Signed(number) => number as f64,
+            Self::Single(number) => number as f64,
             Self::Float(number) => number,
+        }
+    }
+
+    /// Returns the nearest single.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        reason = "the nearest single is what is asked for"
+    )]
+    pub const fn to_f32(self) -> f32 {
+        match self {
+            Self::Unsigned(number) => number as f32,
+            Self::Signed(number) => number as f32,
+            Self::Single(number) => number,
+            Self::Float(number) => number as f32,
         }
     }
 }
@@ -30,6 +50,7 @@ impl fmt::Display for Number {
         match self {
             Self::Unsigned(number) => number.fmt(formatter),
             Self::Signed(number) => number.fmt(formatter),
+            Self::Single(number) => number.fmt(formatter),
             Self::Float(number) => number.fmt(formatter),
         }
     }

@@ -8,17 +8,24 @@ pub struct Payload {
     message: &'static str,
     data: Data,
     keeps_limits: bool,
+    model: Option<u8>,
 }
 
 impl Payload {
     /// Returns the bytes of a message that takes whatever fits its signals, as in a reply.
     pub const fn new(message: &'static str, data: Data) -> Self {
-        Self { message, data, keeps_limits: false }
+        Self { message, data, keeps_limits: false, model: None }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
     pub const fn within_limits(message: &'static str, data: Data) -> Self {
-        Self { message, data, keeps_limits: true }
+        Self { message, data, keeps_limits: true, model: None }
+    }
+
+    /// Returns the same bytes for a device model, by its number: limits of its own count in place of the general ones.
+    #[must_use]
+    pub const fn for_model(self, model: Option<u8>) -> Self {
+        Self { model, ..self }
     }
 
     /// Returns the bytes written so far.
@@ -33,6 +40,10 @@ impl Payload {
 
     pub(crate) const fn keeps_limits(&self) -> bool {
         self.keeps_limits
+    }
+
+    pub(crate) const fn model(&self) -> Option<u8> {
+        self.model
     }
 
     pub(crate) const fn replace(&mut self, data: Data) {

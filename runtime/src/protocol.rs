@@ -23,13 +23,15 @@ pub trait Protocol: Copy + Debug + 'static {
     /// All addressing modes.
     const MODES: &'static [Mode];
 
-    /// Recognises a frame towards a module by its selectors, whatever its length.
-    fn request(_: &Frame) -> Option<Recognised<Self>> {
+    /// Recognises a frame towards a module by its selectors, whatever its length; where layouts differ, by the number of
+    /// the device model.
+    fn request(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         None
     }
 
-    /// Recognises a frame towards the controller by its selectors, whatever its length.
-    fn reply(_: &Frame) -> Option<Recognised<Self>> {
+    /// Recognises a frame towards the controller by its selectors, whatever its length; where layouts differ, by the
+    /// number of the device model.
+    fn reply(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         None
     }
 
@@ -91,15 +93,16 @@ impl<M: Protocol> Recognised<M> {
         Self { exchange, kind: Kind::Report, message }
     }
 
-    /// Returns the other one if the frame's length and then its addresses fit that one better.
+    /// Returns the other one if the frame's length, then the device model, and then the addresses fit that one better.
     #[must_use]
-    pub fn or(self, other: Self, frame: &Frame) -> Self {
-        if other.rank(frame) > self.rank(frame) { other } else { self }
+    pub fn or(self, other: Self, frame: &Frame, model: Option<u8>) -> Self {
+        if other.rank(frame, model) > self.rank(frame, model) { other } else { self }
     }
 
-    fn rank(&self, frame: &Frame) -> (bool, Option<Rank>) {
+    fn rank(&self, frame: &Frame, model: Option<u8>) -> (bool, bool, Option<Rank>) {
         let addressing = self.exchange.addressing(M::MODES, self.kind, frame.raw_id());
-        (self.has_length_of(frame), addressing.map(|addressing| addressing.rank()))
+        let is_of_model = self.exchange.is_of(model);
+        (self.has_length_of(frame), is_of_model, addressing.map(|addressing| addressing.rank()))
     }
 
     fn has_length_of(&self, frame: &Frame) -> bool {
@@ -109,6 +112,8 @@ impl<M: Protocol> Recognised<M> {
 
 /// Why a frame is not recognised, in the order of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Problem {
     /// It is no classic data frame.
     Frame,
@@ -143,22 +148,42 @@ pub struct Received<P: Protocol> {
     content: P,
     exchange: &'static Exchange,
     kind: Kind,
+    model: Option<u8>,
     frame: Frame,
 }
 
 impl<P: Protocol> Received<P> {
-    /// Recognises a frame.
+    /// Recognises a frame; of messages that look the same, as the first one that the spec lists.
     ///
     /// # Errors
     ///
     /// Says why the frame is not recognised; the tests come in the order of [`Problem`], except that selectors in the
     /// data are looked at once the length is known to be right.
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
+        Self::decode_by(None, frame)
+    }
+
+    /// Recognises a frame of a device model; of messages that look the same, as the one that the model has.
+    ///
+    /// # Errors
+    ///
+    /// As [`decode`](Self::decode).
+    pub fn decode_for(model: impl Into<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
+        Self::decode_by(Some(model.into()), frame)
+    }
+
+    fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         let frame = classic(frame).ok_or(Problem::Frame)?;
         let is_request = is_to_module::<P>(&frame)?;
-        let Recognised { exchange, kind, message } = recognise::<P>(is_request, &frame)?;
-        let identifier = P::Identifier::from_raw(frame.raw_id());
-        Ok(Self { identifier, content: message, exchange, kind, frame })
+        match if is_request { P::request(&frame, model) } else { P::reply(&frame, model) } {
+            Some(recognised) if recognised.has_length_of(&frame) => Ok(Self::new(recognised, model, frame)),
+            _ => Err(problem::<P>(is_request, &frame)),
+        }
+    }
+
+    fn new(recognised: Recognised<P>, model: Option<u8>, frame: Frame) -> Self {
+        let Recognised { exchange, kind, message: content } = recognised;
+        Self { identifier: P::Identifier::from_raw(frame.raw_id()), content, exchange, kind, model, frame }
     }
 
     /// Returns what a request asks for.
@@ -257,24 +282,22 @@ impl<P: Protocol> Received<P> {
     /// # Errors
     ///
     /// Refuses what the signals cannot hold and identifiers of another message; in a request also values outside their
-    /// limits, addressing modes that the message does not have, and addresses that the document does not name.
+    /// limits, messages that the device model does not have, addressing modes that the message does not have, and
+    /// addresses that the document does not name.
     pub fn encode(&self) -> Result<Frame, Error> {
         let id = self.identifier.to_raw();
         let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());
-        let again = Self::decode(&frame).ok().filter(|again| again.identifier == self.identifier);
-        let again = again
-            .filter(|again| again.is_like(self))
-            .ok_or(Error::Identifier { message: self.exchange().message(), id })?;
-        if self.kind() == Kind::Request {
-            again.check_addressing(id)?;
+        match Self::decode_by(self.model, &frame) {
+            Ok(again) if again.is_like(self) => again.check_request(id).map(|()| frame),
+            _ => Err(Error::Identifier { message: self.exchange().message(), id }),
         }
-        Ok(frame)
     }
 
-    /// Tests whether this is the same kind of frame of the same message.
+    /// Tests whether this is the same kind of frame of the same message under the same identifier.
     fn is_like(&self, other: &Self) -> bool {
         let is_same_variant = discriminant(&self.content) == discriminant(&other.content);
-        is_same_variant && self.kind == other.kind && self.exchange.is(other.exchange)
+        let is_same_frame = is_same_variant && self.kind == other.kind && self.exchange.is(other.exchange);
+        is_same_frame && self.identifier == other.identifier
     }
 
     /// Writes the signals over the frame as it was received.
@@ -283,9 +306,20 @@ impl<P: Protocol> Received<P> {
         let data = signals.fold(self.frame.bytes(), |data, signal| cleared(data, signal.place()));
         let is_request = self.kind() == Kind::Request;
         let new = if is_request { Payload::within_limits } else { Payload::new };
-        let mut payload = new(self.exchange().message(), data);
+        let mut payload = new(self.exchange().message(), data).for_model(self.model);
         self.content.layout().encode(&mut payload)?;
         Ok(*payload.data())
+    }
+
+    /// Refuses a request in another addressing mode, to an address that the document does not name, or that the device
+    /// model does not have.
+    fn check_request(&self, id: u32) -> Result<(), Error> {
+        if self.kind != Kind::Request {
+            return Ok(());
+        }
+        self.check_addressing(id)?;
+        let is_of_model = self.exchange.is_of(self.model);
+        if is_of_model { Ok(()) } else { Err(Error::Model { message: self.exchange.message() }) }
     }
 
     fn check_addressing(&self, id: u32) -> Result<(), Error> {
@@ -314,12 +348,6 @@ pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
         }
         _ => Err(Problem::Identifier),
     }
-}
-
-/// Finds the message, and tests the length.
-fn recognise<P: Protocol>(is_request: bool, frame: &Frame) -> Result<Recognised<P>, Problem> {
-    let recognised = if is_request { P::request(frame) } else { P::reply(frame) };
-    recognised.filter(|recognised| recognised.has_length_of(frame)).ok_or_else(|| problem::<P>(is_request, frame))
 }
 
 /// Says whether the length is wrong, or the selectors are.

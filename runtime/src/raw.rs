@@ -1,6 +1,8 @@
 //! The Rust types of raw values.
 
-use crate::{Number, PackedText, StatusBit};
+use core::fmt;
+
+use crate::{Number, PackedText, StatusBit, status};
 
 /// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text or a packed value.
 pub trait Raw: Copy {
@@ -50,10 +52,34 @@ pub enum Meaning<'a> {
     Text(&'a str),
     /// The text of a packed value.
     Packed(PackedText),
-    /// The set bits of a status word, and what they stand for.
+    /// The bits of a status word, and what each bit of it stands for that has a name, set or not.
     Status(u64, &'static [StatusBit]),
     /// Nothing: a value without a name, no finite number, or a text that would not give these bits.
     None,
+}
+
+impl fmt::Display for Meaning<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(formatter),
+            Self::Name(text) | Self::Text(text) => formatter.write_str(text),
+            Self::Packed(text) => text.fmt(formatter),
+            Self::Status(bits, known) => write_status(*bits, known, formatter),
+            Self::None => formatter.write_str("?"),
+        }
+    }
+}
+
+/// Writes the names of the set bits, and those without a name as a number.
+fn write_status(bits: u64, known: &'static [StatusBit], formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let mut names = formatter.debug_set();
+    for bit in status::set_bits(bits, known) {
+        names.entry(&format_args!("{}", bit.name));
+    }
+    match status::unknown(bits, known) {
+        0 => names.finish(),
+        unknown => names.entry(&format_args!("{unknown:#X}")).finish(),
+    }
 }
 
 macro_rules! unsigned {

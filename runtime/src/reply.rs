@@ -37,6 +37,8 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
 
 /// Why a reply has no values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
     /// The device answers with an error code, in the identifier or in a selector.
     Error,

@@ -1,6 +1,7 @@
 //! Requests: how they are built, and which frames answer them.
 
 use core::marker::PhantomData;
+use core::ptr;
 
 use crate::address::{AddressType, Addressing, Kind, Mode, Pattern, Who};
 use crate::reply::answer;
@@ -37,14 +38,26 @@ impl<T: Destination> Route<T> {
         Self { target, sender: Some(sender) }
     }
 
-    fn mode(&self) -> Option<&'static Mode> {
-        T::Protocol::MODES.get(self.target.mode())
+    /// Forgets the protocol, so that messages share the code behind.
+    fn choice(&self) -> Choice {
+        let mode = T::Protocol::MODES.get(self.target.mode());
+        Choice { index: self.target.mode(), mode, target: self.target.number(), sender: self.sender }
     }
+}
 
+/// The mode and the addresses that a route chooses.
+struct Choice {
+    index: usize,
+    mode: Option<&'static Mode>,
+    target: Option<i32>,
+    sender: Option<i32>,
+}
+
+impl Choice {
     /// Returns the number that a kind of address has in a request.
     fn number(&self, kind: &AddressType) -> i32 {
-        let chosen =
-            if self.mode().is_some_and(|mode| mode.target == Some(kind)) { self.target.number() } else { self.sender };
+        let target = self.mode.and_then(|mode| mode.target);
+        let chosen = if target.is_some_and(|target| target.is(kind)) { self.target } else { self.sender };
         chosen.unwrap_or(kind.sent_number())
     }
 }
@@ -56,6 +69,7 @@ pub struct Exchange {
     access: &'static str,
     length: u8,
     answers: &'static [Option<Who>],
+    models: &'static [u8],
     request: Option<Filter>,
     reply: Option<Filter>,
     report: Option<Filter>,
@@ -64,13 +78,19 @@ pub struct Exchange {
 impl Exchange {
     /// Returns an exchange without frames; `answers` says who answers, mode by mode.
     pub const fn new(message: &'static str, access: &'static str, answers: &'static [Option<Who>]) -> Self {
-        Self { message, access, length: 8, answers, request: None, reply: None, report: None }
+        Self { message, access, length: 8, answers, models: &[], request: None, reply: None, report: None }
     }
 
     /// Sets how many data bytes its frames have.
     #[must_use]
     pub const fn length(self, length: u8) -> Self {
         Self { length, ..self }
+    }
+
+    /// Sets which device models have the message, by number; without them every model has it.
+    #[must_use]
+    pub const fn models(self, models: &'static [u8]) -> Self {
+        Self { models, ..self }
     }
 
     /// Adds what a request shows.
@@ -115,9 +135,28 @@ impl Exchange {
         self.access
     }
 
+    /// Tests whether a device model has the message; every message is one of a model that nobody knows.
+    pub(crate) fn is_of(&self, model: Option<u8>) -> bool {
+        self.models.is_empty() || model.is_none_or(|model| self.models.contains(&model))
+    }
+
+    /// Tests what a request carries against the limits of a device model; generated code calls it.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a message that the model does not have, and values outside its limits.
+    #[doc(hidden)]
+    pub fn within(&self, model: impl Into<u8>, message: &impl Layout) -> Result<(), Error> {
+        let model = Some(model.into());
+        if !self.is_of(model) {
+            return Err(Error::Model { message: self.message });
+        }
+        message.encode(&mut Payload::within_limits(self.message, [0; 8]).for_model(model))
+    }
+
     /// Tests whether this is the same access to the same message.
     pub(crate) fn is(&self, other: &Self) -> bool {
-        (self.message, self.access) == (other.message, other.access)
+        ptr::eq(self, other) || (self.message, self.access) == (other.message, other.access)
     }
 
     /// Returns the addressing mode that an identifier shows.
@@ -137,21 +176,34 @@ impl Exchange {
         route: impl Into<Route<T>>,
         message: &impl Layout,
     ) -> Result<Request<T::Protocol, R>, Error> {
-        let route = route.into();
-        let (mode, who, pattern, request) = self.way(&route)?;
-        for address in pattern.addresses {
-            address.kind().documented(route.number(address.kind()))?;
-        }
-        let filter = pattern.narrow(request, |kind| Some(route.number(kind)));
-        let frame = self.fill(filter, Payload::within_limits(self.message, filter.data_value()), message)?;
-        let replies = self.replies(mode, who, |kind| pattern.has(kind).then(|| route.number(kind)));
-        Ok(Request { frame, replies, reply: PhantomData })
+        let choice = route.into().choice();
+        self.built(&choice, &|payload| message.encode(payload)).map(|built| Request { built, reply: PhantomData })
     }
 
-    fn way<T: Destination>(&self, route: &Route<T>) -> Result<(&'static Mode, Who, Pattern, Filter), Error> {
-        let mode = route.mode();
-        let who = self.answers.get(route.target.mode()).copied().flatten();
-        match (mode, who, mode.and_then(|mode| mode.request), self.request) {
+    /// Builds a request whose values `encode` writes; all messages share this code.
+    fn built(&self, choice: &Choice, encode: &dyn Fn(&mut Payload) -> Result<(), Error>) -> Result<Built, Error> {
+        let (filter, replies) = self.addressed(choice)?;
+        let mut payload = Payload::within_limits(self.message, filter.data_value());
+        encode(&mut payload)?;
+        let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), self.length);
+        Ok(Built { frame, replies })
+    }
+
+    /// Returns what the request and its replies show.
+    fn addressed(&self, choice: &Choice) -> Result<(Filter, Replies), Error> {
+        let (mode, who, pattern, request) = self.way(choice)?;
+        for address in pattern.addresses {
+            address.kind().documented(choice.number(address.kind()))?;
+        }
+        let filter = pattern.narrow(request, |kind| Some(choice.number(kind)));
+        let replies = self.replies(mode, who, |kind| pattern.has(kind).then(|| choice.number(kind)));
+        Ok((filter, replies))
+    }
+
+    fn way(&self, choice: &Choice) -> Result<(&'static Mode, Who, &'static Pattern, &Filter), Error> {
+        let mode = choice.mode;
+        let who = self.answers.get(choice.index).copied().flatten();
+        match (mode, who, mode.and_then(|mode| mode.request.as_ref()), &self.request) {
             (Some(mode), Some(who), Some(pattern), Some(request)) => Ok((mode, who, pattern, request)),
             _ => Err(self.no_mode(mode)),
         }
@@ -161,13 +213,8 @@ impl Exchange {
         Error::Mode { message: self.message, access: self.access, mode: mode.map(|mode| mode.name) }
     }
 
-    fn fill(&self, filter: Filter, mut payload: Payload, message: &impl Layout) -> Result<Frame, Error> {
-        message.encode(&mut payload)?;
-        Ok(Frame::new_raw(filter.frame(self.length).raw_id(), filter.is_extended(), *payload.data(), self.length))
-    }
-
     fn replies(&self, mode: &Mode, who: Who, number: impl Fn(&AddressType) -> Option<i32>) -> Replies {
-        let filter = self.reply.zip(mode.reply(who)).map(|(reply, pattern)| pattern.narrow(reply, number));
+        let filter = self.reply.as_ref().zip(mode.reply(who)).map(|(reply, pattern)| pattern.narrow(reply, number));
         match (who, filter) {
             (Who::One, Some(filter)) => Replies::One(filter),
             (Who::Each, Some(filter)) => Replies::Each(filter),
@@ -200,12 +247,18 @@ impl Replies {
     }
 }
 
+/// What requests of all messages have.
+#[derive(Clone, Copy, Debug)]
+struct Built {
+    frame: Frame,
+    replies: Replies,
+}
+
 /// A request ready to be sent, whose replies carry `R`.
 #[derive(Debug)]
 #[must_use = "a request is only a frame; send it"]
 pub struct Request<P, R> {
-    frame: Frame,
-    replies: Replies,
+    built: Built,
     reply: PhantomData<fn() -> (P, R)>,
 }
 
@@ -213,24 +266,24 @@ impl<P: Protocol, R: Layout> Request<P, R> {
     /// Returns the frame to send.
     #[must_use]
     pub const fn frame(&self) -> &Frame {
-        &self.frame
+        &self.built.frame
     }
 
     /// Returns which replies it gets.
     pub const fn replies(&self) -> &Replies {
-        &self.replies
+        &self.built.replies
     }
 
     /// Decodes a frame if it answers this request, be it with an error; returns `None` for somebody else's frame.
     pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>> {
-        let filter = self.replies.filter()?;
+        let filter = self.built.replies.filter()?;
         let frame = answer::<P>(filter, frame)?;
-        Some(Reply::decode(filter.data_selectors(), self.frame.length(), frame))
+        Some(Reply::decode(filter.data_selectors(), self.built.frame.length(), frame))
     }
 
     /// Tests whether a frame answers this request, be it with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
-        self.replies.filter().is_some_and(|filter| answer::<P>(filter, frame).is_some())
+        self.built.replies.filter().is_some_and(|filter| answer::<P>(filter, frame).is_some())
     }
 }
 

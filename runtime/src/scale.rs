@@ -45,21 +45,47 @@ impl Scale {
     ///
     /// Sum and product are exact as long as their size stays below 2⁵³, so that the division is the only rounding.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    #[inline]
     pub const fn physical(self, raw: i64) -> f64 {
-        let sum = raw.saturating_mul(self.numerator).saturating_mul(self.factor).saturating_add(self.offset);
-        sum as f64 / self.common_denominator()
+        self.sum(raw) as f64 / self.common_denominator() as f64
     }
 
     /// Returns the raw value nearest to a physical value, ties away from zero, or `None` for what 64 bits cannot hold.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
     pub const fn raw(self, physical: f64) -> Option<i64> {
-        let offset = self.offset as f64 / self.common_denominator();
+        let offset = self.offset as f64 / self.common_denominator() as f64;
         nearest((physical - offset) * self.denominator as f64 / self.numerator as f64)
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
-    const fn common_denominator(self) -> f64 {
-        self.denominator.saturating_mul(self.factor) as f64
+    /// Returns the single nearest to the physical value of `raw`, without arithmetic in double precision.
+    ///
+    /// Sum and product are exact as long as their size stays below 2²⁴, so that the division is the only rounding.
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
+    #[inline]
+    pub const fn physical_f32(self, raw: i64) -> f32 {
+        self.sum(raw) as f32 / self.common_denominator() as f32
+    }
+
+    /// Returns the raw value nearest to a physical value as [`raw`](Self::raw) does, without arithmetic in double
+    /// precision.
+    ///
+    /// The sum is calculated back before the offset is taken off: one rounding less than the other way round, so that
+    /// every raw value survives whose sum stays below 2²².
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
+    pub const fn raw_f32(self, physical: f32) -> Option<i64> {
+        let sum = physical * self.common_denominator() as f32;
+        nearest_f32((sum - self.offset as f32) / self.numerator.saturating_mul(self.factor) as f32)
+    }
+
+    /// Returns the physical value of `raw` as numerator over the common denominator.
+    #[inline]
+    const fn sum(self, raw: i64) -> i64 {
+        raw.saturating_mul(self.numerator).saturating_mul(self.factor).saturating_add(self.offset)
+    }
+
+    #[inline]
+    const fn common_denominator(self) -> i64 {
+        self.denominator.saturating_mul(self.factor)
     }
 }
 
@@ -79,6 +105,18 @@ pub const fn nearest(value: f64) -> Option<i64> {
     } else {
         whole
     })
+}
+
+/// Returns the integer nearest to `value`, ties away from zero, or `None` for what 64 bits cannot hold.
+#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the limits are tested first")]
+const fn nearest_f32(value: f32) -> Option<i64> {
+    const LIMIT: f32 = 9_223_372_036_854_775_808.0;
+    if !(value >= -LIMIT && value < LIMIT) {
+        return None;
+    }
+    let whole = value as i64;
+    let rest = value - whole as f32;
+    Some(whole.saturating_add((rest >= 0.5) as i64).saturating_sub((rest <= -0.5) as i64))
 }
 
 /// Euclid's algorithm; 1 for two zeros, so that it can always divide.
@@ -156,6 +194,20 @@ mod tests {
         let extended_group = Scale::new(-1, 1).offset(0xFD, 1);
         assert_eq!(extended_group.physical(0xF8), 5.0);
         assert_eq!(extended_group.raw(5.0), Some(0xF8));
+    }
+
+    #[test]
+    fn single_precision_rounds_the_same_way() {
+        let thousandths = Scale::new(1, 1000);
+        assert_eq!(
+            [0.0625, 0.1875, -0.0625, 0.0624].map(|volts| thousandths.raw_f32(volts)),
+            [63, 188, -63, 62].map(Some)
+        );
+        assert_eq!((thousandths.physical_f32(299_977), thousandths.raw_f32(299.977)), (299.977, Some(299_977)));
+        assert_eq!(thousandths.raw_f32(f32::NAN), None);
+        assert_eq!(Scale::ONE.raw_f32(9_223_372_036_854_775_808.0), None);
+        let half_degrees = Scale::new(1, 2).offset(-40, 1);
+        assert_eq!((half_degrees.physical_f32(110), half_degrees.raw_f32(15.0)), (15.0, Some(110)));
     }
 
     #[test]

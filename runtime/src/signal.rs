@@ -1,10 +1,12 @@
 //! Signals: named bit ranges of the data with all that the document says of them.
 
+use core::fmt;
 use core::marker::PhantomData;
 
-use crate::{Data, Error, Integer, Meaning, Number, Payload, Place, Raw, Scale};
+use crate::{Data, Error, Integer, Meaning, Number, Payload, Physical, Place, Raw, Scale};
 
-/// A named bit range of a message's data, whose raw value has the type `R`.
+/// A named bit range of a message's data, whose raw value has the type `R` and whose physical value, if that is
+/// scaled from it, the type `F`.
 ///
 /// [`get`](Self::get) and [`put`](Self::put) deal in raw values, without floating-point arithmetic unless limits are
 /// checked; [`decode`](Self::decode) and [`encode`](Self::encode) in physical values.
@@ -25,20 +27,21 @@ use crate::{Data, Error, Integer, Meaning, Number, Payload, Place, Raw, Scale};
 /// # Ok::<(), canspec_runtime::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Signal<R: 'static> {
+pub struct Signal<R: 'static, F: 'static = f64> {
     name: &'static str,
     place: Place,
     unit: Option<&'static str>,
     scale: Option<Scale>,
-    limits: Option<(f64, f64)>,
+    limits: Option<(F, F)>,
+    model_limits: &'static [(u8, F, F)],
     specials: &'static [(i64, &'static str)],
     raw: PhantomData<R>,
 }
 
-impl<R: Raw> Signal<R> {
+impl<R: Raw, F: Physical> Signal<R, F> {
     /// Returns a signal that carries its raw value as it is.
     pub const fn new(name: &'static str, place: Place) -> Self {
-        Self { name, place, unit: None, scale: None, limits: None, specials: &[], raw: PhantomData }
+        Self { name, place, unit: None, scale: None, limits: None, model_limits: &[], specials: &[], raw: PhantomData }
     }
 
     /// Adds the unit of the physical value.
@@ -49,8 +52,14 @@ impl<R: Raw> Signal<R> {
 
     /// Adds the documented limits of the physical value, both legal.
     #[must_use]
-    pub const fn limits(self, minimum: f64, maximum: f64) -> Self {
+    pub const fn limits(self, minimum: F, maximum: F) -> Self {
         Self { limits: Some((minimum, maximum)), ..self }
+    }
+
+    /// Adds the limits of device models that have their own: number of the model, minimum and maximum.
+    #[must_use]
+    pub const fn model_limits(self, model_limits: &'static [(u8, F, F)]) -> Self {
+        Self { model_limits, ..self }
     }
 
     /// Adds raw values that are legal outside the limits, with their names.
@@ -65,8 +74,15 @@ impl<R: Raw> Signal<R> {
     }
 
     /// Returns the documented limits of the physical value, both legal.
-    pub const fn documented_limits(&self) -> Option<(f64, f64)> {
+    pub const fn documented_limits(&self) -> Option<(F, F)> {
         self.limits
+    }
+
+    /// Returns the documented limits of the physical value for a device model, both legal.
+    pub fn limits_for(&self, model: impl Into<u8>) -> Option<(F, F)> {
+        let model = model.into();
+        let own = self.model_limits.iter().find(|(known, ..)| *known == model);
+        own.map(|(_, minimum, maximum)| (*minimum, *maximum)).or(self.limits)
     }
 
     /// Returns the raw value.
@@ -84,14 +100,15 @@ impl<R: Raw> Signal<R> {
             return Err(self.meaningless(payload));
         }
         if payload.keeps_limits() && self.is_limited(raw) {
-            self.check(self.physical(raw), Some(raw.to_bits()), payload)?;
+            let number = self.physical(raw);
+            self.check(F::nearest(number), number, Some(raw.to_bits()), payload)?;
         }
         self.store(raw.to_bits(), || self.physical(raw), payload)
     }
 
     /// Tests whether some raw values are legal and others are not.
     fn is_limited(&self, raw: R) -> bool {
-        self.limits.is_some() || matches!(raw.number(), Number::Float(_))
+        self.limits.is_some() || !self.model_limits.is_empty() || matches!(raw.number(), Number::Float(_))
     }
 
     fn bits(&self, data: Data) -> u64 {
@@ -112,26 +129,26 @@ impl<R: Raw> Signal<R> {
     /// Returns what limits apply to.
     fn physical(&self, raw: R) -> Number {
         match self.scale {
-            Some(scale) => Number::Float(scale.physical(raw.to_bits().cast_signed())),
+            Some(scale) => F::scaled(raw.to_bits().cast_signed(), scale).number(),
             None => raw.number(),
         }
     }
 
     /// Tests a physical value against the limits; a special raw value is legal outside.
-    fn check(&self, number: Number, bits: Option<u64>, payload: &Payload) -> Result<(), Error> {
-        let value = number.to_f64();
+    fn check(&self, value: F, number: Number, bits: Option<u64>, payload: &Payload) -> Result<(), Error> {
         if !payload.keeps_limits() {
             return Ok(());
         }
         if !value.is_finite() {
             return Err(self.not_finite(payload));
         }
-        let Some((minimum, maximum)) = self.limits else { return Ok(()) };
+        let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
+        let Some((minimum, maximum)) = limits else { return Ok(()) };
         let is_special = bits.is_some_and(|bits| self.special(bits).is_some());
-        if is_special || (R::limit(minimum)..=R::limit(maximum)).contains(&value) {
+        if is_special || (minimum.limit::<R>()..=maximum.limit::<R>()).contains(&value) {
             return Ok(());
         }
-        Err(self.outside(number, Number::Float(minimum), Number::Float(maximum), payload))
+        Err(self.outside(number, minimum.number(), maximum.number(), payload))
     }
 
     fn meaningless(&self, payload: &Payload) -> Error {
@@ -151,12 +168,12 @@ impl<R: Raw> Signal<R> {
         let highest = self.place.max().wrapping_shr(R::SIGNED.into());
         let lowest = if R::SIGNED { !highest } else { 0 };
         let [one, other] = [lowest, highest].map(|bits| self.physical(R::from_bits(bits)));
-        let (minimum, maximum) = if one.to_f64() <= other.to_f64() { (one, other) } else { (other, one) };
+        let (minimum, maximum) = if F::nearest(one) <= F::nearest(other) { (one, other) } else { (other, one) };
         self.outside(value, minimum, maximum, payload)
     }
 }
 
-impl<R: Raw> Signal<R> {
+impl<R: Raw, F: Physical> Signal<R, F> {
     /// Returns the name of a special raw value.
     fn special(&self, bits: u64) -> Option<&'static str> {
         self.specials.iter().find(|(raw, _)| raw.cast_unsigned() == bits).map(|(_, name)| *name)
@@ -182,7 +199,7 @@ impl<R: Raw> Signal<R> {
     }
 }
 
-impl<R: Integer> Signal<R> {
+impl<R: Integer, F: Physical> Signal<R, F> {
     /// Adds the scale: physical = raw × `numerator` / `denominator`.
     #[must_use]
     pub const fn scale(self, numerator: i64, denominator: i64) -> Self {
@@ -196,9 +213,9 @@ impl<R: Integer> Signal<R> {
         Self { scale: Some(scale), ..self }
     }
 
-    /// Returns the physical value: the double nearest to the true one.
-    pub fn decode(&self, data: &Data) -> f64 {
-        self.exact_scale().physical(self.bits(*data).cast_signed())
+    /// Returns the physical value: the number of its type nearest to the true one.
+    pub fn decode(&self, data: &Data) -> F {
+        F::scaled(self.bits(*data).cast_signed(), self.exact_scale())
     }
 
     /// Writes the raw value nearest to a physical value, ties away from zero.
@@ -206,17 +223,22 @@ impl<R: Integer> Signal<R> {
     /// # Errors
     ///
     /// Refuses what the signal's bits cannot hold, and what lies outside the limits if `payload` keeps to them.
-    pub fn encode(&self, physical: f64, payload: &mut Payload) -> Result<(), Error> {
+    pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
         encode_scaled(self, self.exact_scale(), physical, payload)
     }
 }
 
-#[expect(clippy::float_cmp, reason = "a special value must be met exactly")]
-fn encode_scaled<R: Raw>(signal: &Signal<R>, scale: Scale, physical: f64, payload: &mut Payload) -> Result<(), Error> {
-    let number = Number::Float(physical);
-    let raw = scale.raw(physical);
-    let exact = raw.filter(|raw| scale.physical(*raw) == physical).map(i64::cast_unsigned);
-    signal.check(number, exact, payload)?;
+fn encode_scaled<R: Raw, F: Physical>(
+    signal: &Signal<R, F>,
+    scale: Scale,
+    physical: F,
+    payload: &mut Payload,
+) -> Result<(), Error> {
+    let number = physical.number();
+    let raw = physical.raw(scale);
+    let is_exact = |raw: &i64| !signal.specials.is_empty() && F::scaled(*raw, scale) == physical;
+    let exact = raw.filter(is_exact).map(i64::cast_unsigned);
+    signal.check(physical, number, exact, payload)?;
     match raw {
         Some(raw) if R::SIGNED || raw >= 0 => signal.store(raw.cast_unsigned(), || number, payload),
         _ if physical.is_nan() => Err(signal.not_finite(payload)),
@@ -236,6 +258,16 @@ pub struct Reading<'a> {
     pub raw: Number,
     /// What it means.
     pub meaning: Meaning<'a>,
+}
+
+impl fmt::Display for Reading<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} {}", self.name, self.meaning)?;
+        match (self.meaning, self.unit) {
+            (Meaning::Number(_), Some(unit)) => write!(formatter, " {unit}"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A signal for code that does not know its type.
@@ -261,7 +293,7 @@ pub trait AnySignal {
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error>;
 }
 
-impl<R: Raw> AnySignal for Signal<R> {
+impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -288,13 +320,13 @@ impl<R: Raw> AnySignal for Signal<R> {
 
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
         if let Some(raw) = self.special_value(meaning).or_else(|| self.unscaled(meaning)) {
-            if let Meaning::Number(number @ Number::Float(_)) = meaning {
-                self.check(number, Some(raw.to_bits()), payload)?;
+            if let Meaning::Number(number @ (Number::Single(_) | Number::Float(_))) = meaning {
+                self.check(F::nearest(number), number, Some(raw.to_bits()), payload)?;
             }
             return self.put(raw, payload);
         }
         match meaning {
-            Meaning::Number(number) => encode_scaled(self, self.exact_scale(), number.to_f64(), payload),
+            Meaning::Number(number) => encode_scaled(self, self.exact_scale(), F::nearest(number), payload),
             _ => Err(self.meaningless(payload)),
         }
     }
@@ -375,6 +407,20 @@ mod tests {
     fn a_float_meets_a_limit_as_precisely_as_it_can() {
         assert_eq!(FREQUENCY.put(65.7, &mut request()), Ok(()));
         assert!(FREQUENCY.put(65.700_01, &mut request()).is_err());
+        // The float nearest to 65.3 lies above it.
+        let upper = FREQUENCY.limits(45.0, 65.3);
+        assert_eq!(upper.put(65.3, &mut request()), Ok(()));
+        assert!(upper.put(65.300_01, &mut request()).is_err());
+    }
+
+    #[test]
+    fn a_device_model_can_have_limits_of_its_own() {
+        const SPEED: Signal<u16> =
+            Signal::new("speed", Place::bytes(0, 1)).limits(0.0, 6000.0).model_limits(&[(3, 300.0, 3000.0)]);
+        let takes = |model, speed| SPEED.put(speed, &mut request().for_model(model)).is_ok();
+        assert_eq!([299, 300, 3000, 3001].map(|speed| takes(Some(3), speed)), [false, true, true, false]);
+        assert_eq!([0, 6000, 6001].map(|speed| takes(Some(1), speed)), [true, true, false]);
+        assert_eq!([0, 6000, 6001].map(|speed| takes(None, speed)), [true, true, false]);
     }
 
     #[test]

@@ -4,8 +4,8 @@ use std::string::ToString;
 
 use crate::{
     Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Failure, Filter, Frame,
-    IdentifierFields, Kind, Layout, Mode, Pattern, Payload, Place, Problem, Protocol, Received, Recognised, Replies,
-    Request, Route, Selector, Signal, Who,
+    IdentifierFields, Kind, Layout, Meaning, Mode, Number, Pattern, Payload, Place, Problem, Protocol, Reading,
+    Received, Recognised, Replies, Request, Route, Selector, Signal, StatusBit, Who,
 };
 
 const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -156,19 +156,19 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME.id(ERROR, 0);
     const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
             (0x07, 0x01) => Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))),
             (0x08, _) => Recognised::request(&Heat::READ, Self::ReadHeat),
             (0x0A, _) => Recognised::request(&Heat::READ, Self::ReadHeat)
-                .or(Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))), frame)
-                .or(Recognised::request(&Heat::PROBE, Self::ReadHeat), frame),
+                .or(Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))), frame, model)
+                .or(Recognised::request(&Heat::PROBE, Self::ReadHeat), frame, model),
             _ => return None,
         })
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
             (0x07, 0x02) => Recognised::reply(&Heat::SET, Self::Heat(Layout::decode(data))),
@@ -379,6 +379,20 @@ fn of_several_messages_the_length_and_then_the_addresses_choose_and_the_first_wi
 }
 
 #[test]
+fn a_sender_is_the_usual_one_or_else_the_first_one() {
+    let host = AddressType::new("host", 0xE0, 0xE3);
+    assert_eq!([host, host.default_number(0xE2)].map(|host| host.sent_number()), [0xE0, 0xE2]);
+}
+
+#[test]
+fn a_message_of_some_device_models_is_refused_for_the_others() {
+    const BOOST: Exchange = Exchange::new("boost", "set", &[None; 3]).length(4).models(&[1, 4]);
+    let refused = Err(Error::Model { message: "boost" });
+    assert_eq!([0, 1, 2, 4].map(|model: u8| BOOST.within(model, &HEAT)), [refused, Ok(()), refused, Ok(())]);
+    assert_eq!(Heat::SET.within(2_u8, &HEAT), Ok(()));
+}
+
+#[test]
 fn the_addressing_mode_is_the_one_that_fits_best() {
     assert_eq!(mode_of(0x0107_03F0, [1, 0, 0, 0]), Some(("single", true, true)));
     assert_eq!(mode_of(0x0107_30F0, [1, 0, 0, 0]), Some(("single", true, false)));
@@ -418,4 +432,15 @@ fn a_frame_takes_other_values_but_not_another_message() {
     let other = received.with_content(Message::Heat(Heat { power_w: 1000.0 })).encode().expect("a legal reply");
     assert_eq!(other.to_string(), "0107F003#02F00064");
     assert!(matches!(received.with_content(Message::ReadHeat).encode(), Err(Error::Identifier { .. })));
+}
+
+#[test]
+fn what_a_frame_says_can_be_written_without_knowing_the_message() {
+    const KNOWN: &[StatusBit] = &[StatusBit::fault(0, "fan_fault", "Fan"), StatusBit::new(7, "cold", "Cold")];
+    let reading = |unit, meaning| Reading { name: "x", unit, raw: Number::Unsigned(0), meaning }.to_string();
+    assert_eq!(reading(Some("V"), Meaning::Number(Number::Float(52.5))), "x 52.5 V");
+    assert_eq!(reading(Some("s"), Meaning::Name("never")), "x never");
+    assert_eq!(reading(None, Meaning::Status(0b1000_0011, KNOWN)), "x {fan_fault, cold, 0x2}");
+    assert_eq!(reading(None, Meaning::Status(0, KNOWN)), "x {}");
+    assert_eq!(reading(None, Meaning::None), "x ?");
 }

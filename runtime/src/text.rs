@@ -16,6 +16,11 @@ impl<const N: usize> Text<N> {
         (text.len() <= N && text.bytes().all(is_printable)).then_some(Self(bytes))
     }
 
+    #[cfg(feature = "serde")]
+    pub(crate) const fn from_bytes(bytes: [u8; N]) -> Self {
+        Self(bytes)
+    }
+
     /// Returns the bytes as they stand in the frame.
     pub const fn as_bytes(&self) -> &[u8; N] {
         &self.0

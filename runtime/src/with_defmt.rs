@@ -1,0 +1,47 @@
+//! `defmt` of words, texts and frames; generated code calls it. Behind the feature `defmt`.
+
+use defmt::{Display2Format, Format, Formatter, write};
+
+use crate::{Frame, Meaning, Raw, StatusBit, Text, Word, status};
+
+/// Writes a named value by its name, a status word by the names of its set bits, a packed value by its text.
+///
+/// What has no name is written as a hexadecimal number.
+pub fn format<W: Word>(word: W, formatter: Formatter<'_>) {
+    match word.meaning() {
+        Meaning::Name(name) => write!(formatter, "{=str}", name),
+        Meaning::Packed(text) => write!(formatter, "{}", Display2Format(&text)),
+        Meaning::Status(raw, bits) => set_bits(raw, bits, formatter),
+        _ => write!(formatter, "{=u64:#X}", word.to_bits()),
+    }
+}
+
+/// Writes `dc_off | hot | 0x80`.
+fn set_bits(raw: u64, bits: &'static [StatusBit], formatter: Formatter<'_>) {
+    let unknown = status::unknown(raw, bits);
+    for (index, bit) in status::set_bits(raw, bits).enumerate() {
+        write!(formatter, "{=str}{=str}", if index == 0 { "" } else { " | " }, bit.name);
+    }
+    match (raw, unknown) {
+        (0, _) => write!(formatter, "none"),
+        (_, 0) => {}
+        (raw, unknown) if raw == unknown => write!(formatter, "{=u64:#X}", unknown),
+        _ => write!(formatter, " | {=u64:#X}", unknown),
+    }
+}
+
+impl<const N: usize> Format for Text<N> {
+    fn format(&self, formatter: Formatter<'_>) {
+        if let Some(text) = self.as_str() {
+            write!(formatter, "{=str}", text);
+        } else {
+            write!(formatter, "{=[u8]:#04X}", self.as_bytes().as_slice());
+        }
+    }
+}
+
+impl Format for Frame {
+    fn format(&self, formatter: Formatter<'_>) {
+        write!(formatter, "{}", Display2Format(self));
+    }
+}
