@@ -1,16 +1,22 @@
 //! Compiles specs from a build script.
 
-use std::ffi::OsStr;
-use std::fmt::Display;
+mod cargo;
+mod generated;
+mod inputs;
+mod list;
+#[cfg(test)]
+mod tests;
+
 use std::path::{Path, PathBuf};
-use std::{env, fs, io};
+use std::{env, io};
 
-use crate::diagnostic::{Diagnostics, Severity};
-use crate::model::Protocol;
-use crate::source::Source;
-use crate::{compile, emit};
+use crate::diagnostic::Diagnostics;
+use crate::emit::{Float, Options, Switch};
+use crate::files;
+pub use generated::{Generated, generate};
+use inputs::Inputs;
 
-/// Compiles specs into `OUT_DIR`, where `lib.rs` includes them.
+/// Compiles specs into `OUT_DIR`, where the crate includes them.
 ///
 /// ```no_run
 /// // build.rs
@@ -18,7 +24,14 @@ use crate::{compile, emit};
 /// ```
 ///
 /// ```ignore
-/// // lib.rs: one module a protocol
+/// // lib.rs: the module of one protocol
+/// pub mod heater {
+///     canspec_runtime::include_protocol!("heater");
+/// }
+/// ```
+///
+/// ```ignore
+/// // or a module for each protocol
 /// include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 /// ```
 ///
@@ -27,6 +40,8 @@ use crate::{compile, emit};
 pub struct Builder {
     folders: Vec<PathBuf>,
     specs: Vec<PathBuf>,
+    out_dir: Option<PathBuf>,
+    options: Options,
 }
 
 impl Builder {
@@ -35,7 +50,7 @@ impl Builder {
         Self::default()
     }
 
-    /// Adds one spec, by its path from the crate's root.
+    /// Adds one spec, by its path from the crate's root; a file that is added twice counts once.
     #[must_use]
     pub fn spec(mut self, path: impl Into<PathBuf>) -> Self {
         self.specs.push(path.into());
@@ -43,92 +58,106 @@ impl Builder {
     }
 
     /// Adds every `*.yaml` of a folder, by its path from the crate's root; a folder without any is fine.
+    ///
+    /// Hidden files do not count, nor do folders in the folder. A `*.yml` is an error that asks for another name.
     #[must_use]
     pub fn folder(mut self, path: impl Into<PathBuf>) -> Self {
         self.folders.push(path.into());
         self
     }
 
+    /// Sets where to write instead of `OUT_DIR`, by the path from the crate's root.
+    ///
+    /// A builder needs a folder of its own: it replaces the `protocols.rs` there, and removes the protocols that were listed
+    /// in it and are gone.
+    #[must_use]
+    pub fn out_dir(self, path: impl Into<PathBuf>) -> Self {
+        Self { out_dir: Some(path.into()), ..self }
+    }
+
+    /// Sets all that can be chosen about the generated code.
+    #[must_use]
+    pub fn options(self, options: Options) -> Self {
+        Self { options, ..self }
+    }
+
+    /// Sets the type of scaled values.
+    #[must_use]
+    pub fn float(mut self, float: Float) -> Self {
+        self.options.float = float;
+        self
+    }
+
+    /// Sets whether generated types implement `serde::Serialize` and `serde::Deserialize`.
+    #[must_use]
+    pub fn serde(mut self, switch: Switch) -> Self {
+        self.options.serde = switch;
+        self
+    }
+
+    /// Sets whether generated types implement `defmt::Format`.
+    #[must_use]
+    pub fn defmt(mut self, switch: Switch) -> Self {
+        self.options.defmt = switch;
+        self
+    }
+
+    /// Sets whether generated types implement `arbitrary::Arbitrary`.
+    #[must_use]
+    pub fn arbitrary(mut self, switch: Switch) -> Self {
+        self.options.arbitrary = switch;
+        self
+    }
+
     /// Compiles the specs and writes `PROTOCOL.rs` for each and `protocols.rs` for all of them.
     ///
-    /// Errors are printed for cargo, which then fails the build.
-    pub fn build(self) {
-        match self.compiled() {
-            Ok(protocols) => {
-                let written = env::var_os("OUT_DIR")
-                    .ok_or_else(|| io::Error::other("OUT_DIR is not set: this is for build scripts"))
-                    .and_then(|out| write(Path::new(&out), &protocols));
-                if let Err(error) = written {
-                    tell("error", format_args!("the generated code cannot be written: {error}"));
-                }
+    /// Errors and warnings are printed for cargo, which fails the build if there is an error. Nothing is written before all
+    /// specs are compiled, and a file that would not change is left alone.
+    #[expect(clippy::print_stdout, reason = "cargo reads what a build script prints")]
+    pub fn build(&self) {
+        self.run().iter().for_each(|line| println!("{line}"));
+    }
+
+    /// Compiles the specs and writes nothing.
+    ///
+    /// # Errors
+    ///
+    /// A spec or folder cannot be read, a spec has errors, or two specs have one protocol name.
+    pub fn compile(&self) -> Result<Vec<Generated>, Vec<Diagnostics>> {
+        generated::all(self.inputs(), &self.options)
+    }
+
+    /// Does what [`Builder::build`] does, and returns what cargo should be told.
+    fn run(&self) -> Vec<String> {
+        let inputs = self.inputs();
+        let mut lines = cargo::rerun(self.folders.iter().chain(&inputs.specs));
+        match generated::all(inputs, &self.options) {
+            Ok(generated) => {
+                lines.extend(generated.iter().flat_map(|one| cargo::diagnostics(&one.warnings)));
+                lines.extend(self.write(&generated).err().map(|error| cargo::unwritten(&error)));
             }
-            Err(lines) => lines.iter().for_each(|line| tell("error", line)),
+            Err(refused) => lines.extend(refused.iter().flat_map(cargo::diagnostics)),
         }
+        lines
     }
 
-    /// Compiles every spec; returns the errors of all of them.
-    fn compiled(self) -> Result<Vec<Protocol>, Vec<String>> {
-        let (mut protocols, mut errors) = (Vec::new(), Vec::new());
-        for path in self.paths().map_err(|error| vec![error])? {
-            tell("rerun-if-changed", path.display());
-            match compile_file(&path) {
-                Ok(protocol) => protocols.push(protocol),
-                Err(diagnostics) => errors.extend(diagnostics.concise().lines().map(str::to_owned)),
-            }
-        }
-        if errors.is_empty() { Ok(protocols) } else { Err(errors) }
+    fn inputs(&self) -> Inputs {
+        inputs::find(&self.specs, &self.folders)
     }
 
-    /// Returns every spec, in order.
-    fn paths(&self) -> Result<Vec<PathBuf>, String> {
-        let mut paths = self.specs.clone();
-        for folder in &self.folders {
-            tell("rerun-if-changed", folder.display());
-            let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-            let files = entries.flatten().map(|entry| entry.path());
-            paths.extend(files.filter(|path| path.extension() == Some(OsStr::new("yaml"))));
-        }
-        paths.sort();
-        Ok(paths)
+    fn write(&self, generated: &[Generated]) -> io::Result<()> {
+        let folder = self.out_dir.clone().or_else(|| env::var_os("OUT_DIR").map(PathBuf::from));
+        let folder = folder.ok_or_else(|| io::Error::other("OUT_DIR is not set: this is for build scripts"))?;
+        write(&folder, generated)
     }
 }
 
-/// Compiles one spec; its warnings are printed for cargo.
-fn compile_file(path: &Path) -> Result<Protocol, Diagnostics> {
-    let outcome = compile(Source::read(path)?);
-    match outcome.protocol {
-        Some(protocol) => {
-            let warnings = outcome.diagnostics.located().filter(|known| known.severity == Severity::Warning);
-            warnings.for_each(|warning| tell("warning", warning.message));
-            Ok(protocol)
-        }
-        None => Err(outcome.diagnostics),
-    }
-}
-
-/// Gives cargo an instruction.
-#[expect(clippy::print_stdout, reason = "cargo reads what a build script prints")]
-fn tell(instruction: &str, text: impl Display) {
-    println!("cargo::{instruction}={text}");
-}
-
-/// Writes a file for each protocol, and one that includes them all as modules.
-fn write(out: &Path, protocols: &[Protocol]) -> io::Result<()> {
-    for protocol in protocols {
-        write_changed(&out.join(format!("{}.rs", protocol.name)), &emit::rust(protocol))?;
-    }
-    let modules: Vec<_> = protocols.iter().map(module).collect();
-    write_changed(&out.join("protocols.rs"), &modules.concat())
-}
-
-/// Returns the module that includes the file of a protocol.
-fn module(protocol: &Protocol) -> String {
-    let (name, title) = (&protocol.name, format!("{}.", protocol.title));
-    format!("#[doc = {title:?}]\npub mod {name} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\"));\n}}\n")
-}
-
-/// Leaves a file alone that has the text already, so that nothing is built again.
-fn write_changed(path: &Path, text: &str) -> io::Result<()> {
-    let known = fs::read(path).is_ok_and(|known| known == text.as_bytes());
-    if known { Ok(()) } else { fs::write(path, text) }
+/// Replaces the protocols of a folder.
+fn write(folder: &Path, generated: &[Generated]) -> io::Result<()> {
+    let mut files: Vec<_> = generated.iter().map(|one| one.file_in(folder)).collect();
+    files.push(list::file_in(folder, generated));
+    let gone = list::listed(folder).into_iter().filter(|path| files.iter().all(|file| file.path() != path));
+    let gone: Vec<_> = gone.collect();
+    files::write(&files)?;
+    files::remove(&gone)
 }

@@ -6,6 +6,7 @@ mod direction;
 mod erratum;
 mod example;
 mod grid;
+mod model_range;
 mod outside_frame;
 mod overlap;
 mod range_width;
@@ -15,6 +16,7 @@ mod section;
 mod special_value;
 
 pub use example::Counts;
+pub use grid::fits;
 
 use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;
@@ -23,11 +25,12 @@ use crate::model::Protocol;
 type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what the protocol is, in order.
-const RULES: [Check; 11] = [
+const RULES: [Check; 12] = [
     outside_frame::check,
     overlap::check,
     grid::check,
     range_width::check,
+    model_range::check,
     special_value::check,
     default_value::check,
     direction::check,

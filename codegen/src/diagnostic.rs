@@ -140,6 +140,13 @@ impl Diagnostics {
         }
     }
 
+    /// Adds a diagnostic, unless its rule is broken at that place already; many fields can break a rule by one key of a type.
+    pub fn push_first(&mut self, item: Diagnostic) {
+        if !self.items.iter().any(|known| known.rule == item.rule && known.at == item.at) {
+            self.items.push(item);
+        }
+    }
+
     /// Returns the text of the spec.
     pub fn source(&self) -> &Source {
         &self.source

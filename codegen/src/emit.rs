@@ -1,6 +1,8 @@
 //! Emitters: from the checked model to other languages. They cannot fail.
 
+mod options;
 mod rust;
 
-pub(crate) use rust::camel_case;
-pub use rust::rust;
+pub use options::{Float, Options, Switch};
+pub(crate) use rust::{camel_case, member};
+pub use rust::{rust, tokens};

@@ -9,7 +9,7 @@ mod value;
 pub use decode::decode;
 pub use encode::encode;
 pub use request::{Target, parse_input, request};
-pub use value::{physical, raw_of};
+pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
@@ -102,14 +102,14 @@ pub enum Value {
 /// Something about a recognised frame that the document does not foresee.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// `error_code`, `reserved_bit`, `unknown_value`, `unknown_bit`, `address`, `addressing`, `access`, `out_of_range`, `not_finite`, `constant`.
+    /// One of [`NOTES`].
     pub rule: &'static str,
     /// What was found, in one sentence without a full stop.
     pub text: String,
 }
 
 /// The rules of notes.
-pub const NOTES: [&str; 8] = [
+pub const NOTES: [&str; 9] = [
     "error_code",
     "addressing",
     "address",
@@ -118,6 +118,7 @@ pub const NOTES: [&str; 8] = [
     "out_of_range",
     "not_finite",
     "reserved_bit",
+    "model_dependent",
 ];
 
 /// A frame that is not recognised, as far as it could be split.

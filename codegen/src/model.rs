@@ -15,7 +15,8 @@ pub use example::{Example, Failure, Meaning, ValueExample};
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use message::{Access, Kind, Message, MessageAccess, Shape, Who};
 pub use signal::{
-    Encoding, Enumeration, NamedValue, Piece, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit,
+    Encoding, Enumeration, NamedValue, OfModel, Piece, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit,
+    raw_limits,
 };
 
 /// A whole protocol.

@@ -41,6 +41,7 @@ struct Tables {
     words: Vec<model::Doc>,
     /// Types that a field names.
     used_types: Vec<String>,
+    models: Vec<model::DeviceModel>,
 }
 
 impl Resolver<'_> {
@@ -49,7 +50,7 @@ impl Resolver<'_> {
         let name = self.protocol_name();
         let bit_rates = self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone());
         let timing = self.timing();
-        let device_models = self.models();
+        self.tables.models = self.models();
         let procedures = self.procedures();
         let errata = self.errata();
         let identifier = self.identifier()?;
@@ -77,7 +78,6 @@ impl Resolver<'_> {
             accesses,
             foreign,
             messages,
-            models: device_models,
             timing,
             procedures,
             examples,
@@ -85,6 +85,7 @@ impl Resolver<'_> {
             sequences: self.sequences(),
             types: self.type_docs(),
             errata,
+            models: self.tables.models,
             words: self.tables.words,
             selectors: self.tables.selectors,
             enumerations: self.tables.enumerations,

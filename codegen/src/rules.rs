@@ -10,7 +10,7 @@ pub struct Rule {
 }
 
 /// Every rule, in the order of the stages.
-pub const RULES: [Rule; 41] = [
+pub const RULES: [Rule; 42] = [
     rule("file", "the file cannot be read"),
     rule("encoding", "the text is not UTF-8, or holds a character that has no place in a spec"),
     rule("yaml", "the text is not YAML, or uses a part of YAML that a spec does without"),
@@ -43,6 +43,7 @@ pub const RULES: [Rule; 41] = [
     rule("overlap", "two signals of one frame share bits"),
     rule("grid", "a scale cannot be computed exactly"),
     rule("range_width", "a range exceeds what the raw value can hold"),
+    rule("model_range", "a device model has limits beyond the general ones, or limits that never count"),
     rule("special_value", "a special value lies inside the range"),
     rule("default_value", "a default lies outside the range"),
     rule("direction", "an identifier does not show whether it is a request or a reply"),

@@ -195,6 +195,7 @@ fn forbidden_character(span: Range<usize>, character: char, what: &str) -> Diagn
     Diagnostic::error("encoding", span, message).help("remove it")
 }
 
-fn refused(name: String, text: String, problem: Diagnostic) -> Diagnostics {
+/// Reports a problem with a file that is not read any further.
+pub(crate) fn refused(name: String, text: String, problem: Diagnostic) -> Diagnostics {
     Diagnostics::new(Source::index(name, text)).with([problem])
 }

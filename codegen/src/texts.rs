@@ -1,14 +1,36 @@
 //! Physical values as texts, both ways: what a spec writes after `means`, what a packed value reads like.
 
-use crate::model::{Encoding, Enumeration, Piece, Signal, StatusWord};
+use crate::model::{Encoding, Enumeration, Piece, Signal, StatusWord, Unit, raw_limits};
+use crate::multiples;
 use crate::number::Rational;
+
+/// Why a text is no value of a signal.
+#[derive(Debug)]
+pub struct Misfit {
+    /// What is wrong, in one sentence.
+    pub why: String,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl From<String> for Misfit {
+    fn from(why: String) -> Self {
+        Self { why, help: None }
+    }
+}
+
+impl Misfit {
+    fn with_help(why: String, help: impl Into<String>) -> Self {
+        Self { why, help: Some(help.into()) }
+    }
+}
 
 /// Returns the raw bits of a physical value as a spec writes it, with its unit if `unit` says so.
 ///
 /// # Errors
 ///
-/// Says in one sentence what is wrong: no such name, not a number, the wrong unit, off the grid, too large.
-pub fn raw_of_text(enumerations: &[Enumeration], signal: &Signal, text: &str, unit: bool) -> Result<u64, String> {
+/// Says what is wrong: no such name, not a number, the wrong unit, off the grid, too large.
+pub fn raw_of_text(enumerations: &[Enumeration], signal: &Signal, text: &str, unit: bool) -> Result<u64, Misfit> {
     match &signal.encoding {
         Encoding::Number { signed, scale, offset } => {
             if let Some(special) = signal.specials.iter().find(|special| special.name == text) {
@@ -23,11 +45,11 @@ pub fn raw_of_text(enumerations: &[Enumeration], signal: &Signal, text: &str, un
         Encoding::Float => float_bits(signal, text, unit),
         Encoding::Named(index) => named_bits(&enumerations[*index], signal, text),
         Encoding::Status(_) => {
-            Err(format!("`{}` is a status word; write the names of its set bits as a list", signal.name))
+            Err(format!("`{}` is a status word; write the names of its set bits as a list", signal.name).into())
         }
-        Encoding::Text => text_bits(signal, text),
+        Encoding::Text => text_bits(signal, text).map_err(Misfit::from),
         Encoding::Packed { pieces, parts } => parse_packed(pieces, parts, signal, text)
-            .ok_or_else(|| format!("`{text}` is not of the form of `{}`", signal.name)),
+            .ok_or_else(|| format!("`{text}` is not of the form of `{}`", signal.name).into()),
     }
 }
 
@@ -44,22 +66,39 @@ pub fn raw_of_bits(word: &StatusWord, names: &[String]) -> Result<u64, String> {
 }
 
 /// Splits the unit off and reads the number.
-fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational, String> {
-    let number = match signal.unit.filter(|_| with_unit) {
-        Some(unit) => {
-            let number = text.strip_suffix(unit.symbol).and_then(|number| Rational::parse(number.trim_end()));
-            let written = text.trim_end_matches(|letter: char| !letter.is_ascii_digit());
-            let symbol = unit.symbol;
-            return number.ok_or_else(|| {
-                format!("`{text}` is not a number of {symbol} for `{}`; write it as `{written} {symbol}`", signal.name)
-            });
-        }
-        None => text,
+fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational, Misfit> {
+    let Some(unit) = signal.unit.filter(|_| with_unit) else {
+        return Rational::parse(text).ok_or_else(|| format!("`{text}` is not a number for `{}`", signal.name).into());
     };
-    Rational::parse(number).ok_or_else(|| format!("`{number}` is not a number for `{}`", signal.name))
+    let number = text.strip_suffix(unit.symbol).and_then(|number| Rational::parse(number.trim_end()));
+    number.ok_or_else(|| {
+        let why = format!("`{text}` is not a number of {} for `{}`", unit.symbol, signal.name);
+        let help =
+            converted(text, unit).map_or_else(|| what_fits(signal, unit), |value| format!("write it as `{value}`"));
+        Misfit::with_help(why, help)
+    })
 }
 
-fn float_bits(signal: &Signal, text: &str, unit: bool) -> Result<u64, String> {
+/// Writes a value in the unit of its signal, if it stands without a unit or in a multiple of it.
+fn converted(text: &str, unit: Unit) -> Option<String> {
+    let is_of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '.' | '/');
+    let (number, symbol) = text.split_at(text.find(|letter| !is_of_number(letter)).unwrap_or(text.len()));
+    let factor = match symbol.trim_start() {
+        "" => Rational::ONE,
+        symbol => multiples::factor(symbol, unit)?,
+    };
+    let value = Rational::parse(number)?.times(factor)?;
+    Some(format!("{value} {}", unit.symbol))
+}
+
+/// Says which values a signal has.
+fn what_fits(signal: &Signal, unit: Unit) -> String {
+    let numbers = format!("values of `{}` are numbers in {}", signal.name, unit.symbol);
+    let names = signal.specials.iter().map(|special| format!(" or `{}`", special.name));
+    std::iter::once(numbers).chain(names).collect()
+}
+
+fn float_bits(signal: &Signal, text: &str, unit: bool) -> Result<u64, Misfit> {
     let value = quantity(signal, text, unit)?;
     let single: Option<f32> = value.to_string().parse().ok();
     let single = single.unwrap_or({
@@ -70,7 +109,7 @@ fn float_bits(signal: &Signal, text: &str, unit: bool) -> Result<u64, String> {
     Ok(u64::from(single.to_bits()))
 }
 
-fn named_bits(enumeration: &Enumeration, signal: &Signal, text: &str) -> Result<u64, String> {
+fn named_bits(enumeration: &Enumeration, signal: &Signal, text: &str) -> Result<u64, Misfit> {
     let named = enumeration.values.iter().find(|value| value.name == text).map(|value| value.raw);
     let raw = named.or_else(|| Rational::parse(text).and_then(Rational::to_integer));
     raw_bits(signal, raw.ok_or_else(|| unnamed(enumeration, signal, text))?, false)
@@ -83,12 +122,13 @@ pub fn unnamed(enumeration: &Enumeration, signal: &Signal, text: &str) -> String
 }
 
 /// Returns a raw number as bits of the signal's width.
-fn raw_bits(signal: &Signal, raw: i128, signed: bool) -> Result<u64, String> {
+fn raw_bits(signal: &Signal, raw: i128, signed: bool) -> Result<u64, Misfit> {
     let width = signal.place.width();
-    let (first, last) =
-        if signed { (-(1_i128 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1_i128 << width) - 1) };
+    let (first, last) = raw_limits(width, signed);
     if !(first..=last).contains(&raw) {
-        return Err(format!("the raw value {raw} does not fit the {width} bits of `{}`", signal.name));
+        let why = format!("the raw value {raw} does not fit the {width} bits of `{}`", signal.name);
+        let help = (raw < 0 && !signed).then(|| "numbers below 0 need `as: signed` or an `offset`".to_owned());
+        return Err(Misfit { why, help });
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the mask keeps the bits that fit")]
     let bits = raw as u64;

@@ -1,6 +1,7 @@
 //! `ambiguous`: one frame fits two messages, or two kinds of frames of one message.
 //!
-//! Whoever decodes the bus would have to guess. Give one of the two another constant, or addressing modes of its own.
+//! Whoever decodes the bus would have to guess. Give one of the two another constant, or addressing modes of its own. Messages that no
+//! device model has together may look the same.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, Kind, Message, Protocol, Shape, Who};
@@ -28,7 +29,7 @@ fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape
         format!("the {} of `{}` by `{access}`", shape.kind.name(), message.name)
     };
     let text = format!("a frame can be {} and {}", name(other), name(one));
-    let help = "give one of the two another constant, or addressing modes of its own";
+    let help = "give one of the two another constant, addressing modes of its own, or `models` of its own";
     let mut diagnostic = Diagnostic::error("ambiguous", one.0.doc.path.at_key(), text).help(help);
     if one.0.name != other.0.name {
         diagnostic = diagnostic.other(other.0.doc.path.at_key(), "the other message");
@@ -39,6 +40,7 @@ fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape
 fn both_fit(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> bool {
     let same_direction = (one.1.kind == Kind::Request) == (other.1.kind == Kind::Request);
     same_direction
+        && !one.0.is_apart_from(other.0)
         && one.0.length == other.0.length
         && agree(one.1, other.1)
         && patterns(protocol, one)

@@ -1,26 +1,36 @@
-//! `default_value`: a default that lies outside the signal's range.
+//! `default_value`: a default that lies outside the signal's range, or outside that of a device model.
 //!
 //! A default is sent where the caller leaves the signal out, so it must be a value that a request may carry.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Encoding, Protocol};
-use crate::number::Rational;
+use crate::model::{Encoding, Message, Protocol, Signal};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let models = 0..protocol.models.len();
     for message in &protocol.messages {
         for signal in &message.signals {
-            let Encoding::Number { scale, offset, .. } = signal.encoding else { continue };
-            let (Some(range), Some(raw)) = (signal.range, signal.default) else { continue };
-            let value = Rational::integer(raw).times(scale).and_then(|value| value.plus(offset));
-            let special = signal.specials.iter().any(|special| special.raw == raw);
-            if !special && value.is_none_or(|value| value < range.minimum || value > range.maximum) {
-                let value = value.map_or_else(|| raw.to_string(), |value| value.to_string());
-                let text = format!(
-                    "the default {value} of `{}.{}` lies outside its range {}..{}",
-                    message.name, signal.name, range.minimum, range.maximum
-                );
-                diagnostics.push(Diagnostic::error("default_value", signal.doc.path.key("default").at_value(), text));
-            }
+            check_for(None, message, signal, diagnostics);
+            models.clone().for_each(|model| check_for(Some(model), message, signal, diagnostics));
         }
+    }
+}
+
+/// Tests the default that holds for a device model, or where none is chosen.
+fn check_for(model: Option<usize>, message: &Message, signal: &Signal, diagnostics: &mut Diagnostics) {
+    if !matches!(signal.encoding, Encoding::Number { .. }) {
+        return;
+    }
+    let (Some(range), Some(raw)) = (signal.range_for(model), signal.default_for(model)) else { return };
+    let value = signal.encoding.value_of(raw);
+    let special = signal.specials.iter().any(|special| special.raw == raw);
+    if !special && value.is_none_or(|value| value < range.minimum || value > range.maximum) {
+        let value = value.map_or_else(|| raw.to_string(), |value| value.to_string());
+        let text = format!(
+            "the default {value} of `{}.{}` lies outside its range {}..{}",
+            message.name, signal.name, range.minimum, range.maximum
+        );
+        let own = signal.model_defaults.iter().find(|own| Some(own.model) == model);
+        let at = own.map_or(&signal.default_path, |own| &own.path).at_value();
+        diagnostics.push_first(Diagnostic::error("default_value", at, text));
     }
 }

@@ -48,7 +48,7 @@ struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     fn run(&self) -> Checked {
-        let outcome = decode(self.protocol, &self.frame());
+        let outcome = decode(self.protocol, self.example.model, &self.frame());
         match (self.example.fails, outcome) {
             (Some(failure), outcome) => self.fails(failure, outcome),
             (None, Err(problem)) => Err(self.unreadable(&problem)),
@@ -164,7 +164,7 @@ impl<'a> Checker<'a> {
     fn encodes_back(&self, decoded: &Decoded) -> Checked {
         let content = Content::of(self.protocol, decoded);
         let frame = self.frame();
-        match encode(self.protocol, &content) {
+        match encode(self.protocol, self.example.model, &content) {
             Ok(encoded) if encoded == frame => Ok(()),
             Ok(encoded) => {
                 let text =

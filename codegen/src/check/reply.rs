@@ -32,7 +32,7 @@ fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
     if example.fails.is_some() {
         return None;
     }
-    decode(protocol, &Frame::of(protocol, example)).ok()
+    decode(protocol, example.model, &Frame::of(protocol, example)).ok()
 }
 
 /// Says why a reply does not answer a request.

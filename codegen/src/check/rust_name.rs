@@ -3,33 +3,17 @@
 //! `output_1` and `output1` are two messages but one struct. Rename one of the two; a vendor's word can stand in the title.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::emit::camel_case;
+use crate::emit::{camel_case, member};
 use crate::model::{Doc, Protocol};
 use crate::syntax::tree::Path;
-
-/// Types that every generated module has.
-const TAKEN: [&str; 12] = [
-    "Access",
-    "Addressing",
-    "Error",
-    "Frame",
-    "Identifier",
-    "Kind",
-    "Message",
-    "Problem",
-    "Received",
-    "Request",
-    "Route",
-    "Target",
-];
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     check_types(protocol, diagnostics);
     let module = Doc { path: Path::default().key("protocol"), ..Doc::default() };
     check_names("module", std::iter::once((protocol.name.clone(), protocol.name.as_str(), &module)), diagnostics);
     for message in &protocol.messages {
-        let names = message.signals.iter().map(|signal| (signal.name.clone(), signal.name.as_str(), &signal.doc));
-        check_names("signal", names, diagnostics);
+        let names = message.signals.iter().map(|signal| (member(signal), signal.name.as_str(), &signal.doc));
+        check_names("member", names, diagnostics);
     }
     let accesses = protocol.accesses.iter().map(|access| (access.name.clone(), access.name.as_str(), &access.doc));
     check_names("access", accesses, diagnostics);
@@ -40,12 +24,6 @@ fn check_types(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let enumerations = protocol.enumerations.iter().map(|known| (known.name.as_str(), &known.doc));
     let words = protocol.status_words.iter().map(|word| (word.name.as_str(), &word.doc));
     let types: Vec<_> = messages.chain(enumerations).chain(words).collect();
-    for (name, doc) in &types {
-        if TAKEN.contains(&camel_case(name).as_str()) {
-            let text = format!("every generated module has its own `{}`", camel_case(name));
-            diagnostics.push(Diagnostic::error("rust_name", doc.path.at_key(), text).help("choose another name"));
-        }
-    }
     let names = types.iter().map(|(name, doc)| (camel_case(name), *name, *doc));
     check_names("type", names, diagnostics);
 }

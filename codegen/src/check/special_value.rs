@@ -3,26 +3,36 @@
 //! A raw value either counts or has a name. Take it out of the range, or drop the name.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Encoding, Protocol};
-use crate::number::Rational;
+use crate::model::{Protocol, Range, Signal};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         for signal in &message.signals {
-            let Encoding::Number { scale, offset, .. } = signal.encoding else { continue };
-            let Some(range) = signal.range else { continue };
-            for special in &signal.specials {
-                let value = Rational::integer(special.raw).times(scale).and_then(|value| value.plus(offset));
-                if value.is_some_and(|value| range.minimum <= value && value <= range.maximum) {
-                    let text = format!(
-                        "the special value `{}` of `{}.{}` lies inside its range {}..{}",
-                        special.name, message.name, signal.name, range.minimum, range.maximum
-                    );
-                    let help = "take it out of the range, or drop its name";
-                    let at = signal.doc.path.key("range").at_value();
-                    diagnostics.push(Diagnostic::error("special_value", at, text).help(help));
+            for (range, path) in signal.ranges() {
+                let names = names_inside(signal, range);
+                if names.is_empty() {
+                    continue;
                 }
+                let (values, lie) = if names.len() == 1 { ("value", "lies") } else { ("values", "lie") };
+                let text = format!(
+                    "the special {values} {} of `{}.{}` {lie} inside its range {}..{}",
+                    names.join(" and "),
+                    message.name,
+                    signal.name,
+                    range.minimum,
+                    range.maximum
+                );
+                let help = "take it out of the range, or drop its name";
+                diagnostics.push_first(Diagnostic::error("special_value", path.at_value(), text).help(help));
             }
         }
     }
+}
+
+/// Returns the special values that are also ordinary ones.
+fn names_inside(signal: &Signal, range: Range) -> Vec<String> {
+    let inside =
+        |raw| signal.encoding.value_of(raw).is_some_and(|value| range.minimum <= value && value <= range.maximum);
+    let specials = signal.specials.iter().filter(|special| inside(special.raw));
+    specials.map(|special| format!("`{}`", special.name)).collect()
 }

@@ -6,14 +6,17 @@ use super::value::{extended, float, in_range, named, physical};
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal, mode_name};
 use crate::model::{AddressPattern, Direction, Encoding, Kind, Message, Protocol, SelectorPlace, Shape, Signal, Who};
 
-/// Decodes a frame.
+/// Decodes a frame that goes to a device `model`, an index into [`Protocol::models`], or comes from one.
+///
+/// Without a model, messages that look the same are decoded as the first one listed, and limits that depend on the model
+/// do not count.
 ///
 /// # Errors
 ///
 /// Says why a frame is not recognised; the tests come in the order of [`Problem`]'s variants, except that a sub-command is
 /// looked for after the length is known to be right.
-pub fn decode(protocol: &Protocol, frame: &Frame) -> Result<Decoded, Unrecognised> {
-    Decoder { protocol, frame, data: padded(&frame.data) }.decode()
+pub fn decode(protocol: &Protocol, model: Option<usize>, frame: &Frame) -> Result<Decoded, Unrecognised> {
+    Decoder { protocol, model, frame, data: padded(&frame.data) }.decode()
 }
 
 /// Returns the data bytes, filled up with zeros.
@@ -28,6 +31,7 @@ type Candidate<'a> = (usize, &'a Message, &'a Shape);
 
 struct Decoder<'a> {
     protocol: &'a Protocol,
+    model: Option<usize>,
     frame: &'a Frame,
     data: [u8; 8],
 }
@@ -61,8 +65,10 @@ impl<'a> Decoder<'a> {
         let candidates = self.candidates(to_module);
         let candidates = self.by_identifier(&candidates)?;
         let candidates = self.by_length(&candidates)?;
-        let (message, shape) = self.by_payload(&candidates)?;
-        Ok(self.decoded(message, shape))
+        let (best, candidates) = self.by_payload(&candidates)?;
+        let mut decoded = self.decoded(best.0, best.2);
+        decoded.notes.extend(self.model_note(best, &candidates));
+        Ok(decoded)
     }
 
     fn form(&self) -> Option<&'static str> {
@@ -152,7 +158,10 @@ impl<'a> Decoder<'a> {
         let chosen = |(_, _, shape): &Candidate| shape.constants.iter().all(|constant| fits(&constant));
         let left: Vec<_> = candidates.iter().copied().filter(chosen).collect();
         if left.is_empty() {
-            let text = format!("no message has {}", self.identifier_selectors(candidates));
+            let text = match self.identifier_selectors(candidates).as_str() {
+                "" => "no message goes this way".to_owned(),
+                selectors => format!("no message has {selectors}"),
+            };
             return Err(self.unrecognised(Problem::UnknownMessage, text, true, &[]));
         }
         Ok(left)
@@ -181,24 +190,46 @@ impl<'a> Decoder<'a> {
         Ok(left)
     }
 
-    /// Finds the message whose constants and addresses fit best.
-    fn by_payload(&self, candidates: &[Candidate<'a>]) -> Result<(usize, &'a Shape), Unrecognised> {
+    /// Returns the candidate that fits best, and all that have the frame's constants.
+    fn by_payload(&self, candidates: &[Candidate<'a>]) -> Result<(Candidate<'a>, Vec<Candidate<'a>>), Unrecognised> {
         let fits = |(selector, value): &(usize, u64)| match self.protocol.selectors[*selector].place {
             SelectorPlace::Identifier(_) => true,
             SelectorPlace::Payload(place) => place.get(&self.data) == *value,
         };
-        let left = candidates.iter().filter(|(_, _, shape)| shape.constants.iter().all(fits));
-        let best = left.min_by_key(|(_, message, shape)| {
-            let addressing = self.addressing(message, shape);
-            (addressing.fit, Reverse(addressing.constants))
-        });
-        best.map(|(index, _, shape)| (*index, *shape)).ok_or_else(|| {
+        let left: Vec<_> =
+            candidates.iter().copied().filter(|(_, _, shape)| shape.constants.iter().all(fits)).collect();
+        let Some(best) = left.iter().min_by_key(|candidate| self.rank(candidate)).copied() else {
             let mut selectors = self.selectors(candidates);
             selectors.retain(|(index, _)| chooses(candidates, *index));
             let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
             let text = format!("no message has {}", shown.join(", "));
-            self.unrecognised(Problem::UnknownMessage, text, true, candidates)
-        })
+            return Err(self.unrecognised(Problem::UnknownMessage, text, true, candidates));
+        };
+        Ok((best, left))
+    }
+
+    /// Puts a candidate that the device model has first, then one whose addresses fit better.
+    fn rank(&self, (_, message, shape): &Candidate) -> (Reverse<bool>, Fit, Reverse<usize>) {
+        let addressing = self.addressing(message, shape);
+        let is_of_model = self.model.is_none_or(|model| message.is_of(model));
+        (Reverse(is_of_model), addressing.fit, Reverse(addressing.constants))
+    }
+
+    /// Says that the device model has no such message, or that the frame may be another message on another model.
+    fn model_note(&self, best: Candidate, candidates: &[Candidate]) -> Option<Note> {
+        let (_, message, _) = best;
+        let text = match self.model {
+            Some(model) if message.is_of(model) => return None,
+            Some(model) => format!("{} has no message `{}`", self.protocol.models[model].name, message.name),
+            None => {
+                let is_equal =
+                    |other: &&Candidate| message.is_apart_from(other.1) && self.rank(other) == self.rank(&best);
+                let (_, other, _) = candidates.iter().find(is_equal)?;
+                let models = other.models.iter().map(|model| self.protocol.models[*model].name.as_str());
+                format!("it is `{}` if the model is {}", other.name, models.collect::<Vec<_>>().join(" or "))
+            }
+        };
+        Some(Note { rule: "model_dependent", text })
     }
 
     fn selector_text(&self, (index, value): (usize, u64)) -> String {
@@ -289,7 +320,8 @@ impl<'a> Decoder<'a> {
         let reserved = self.reserved(message, shape);
         let mut notes = self.error_notes(shape, &selectors);
         notes.extend(self.address_notes(message, shape, &addressing));
-        notes.extend(signals.iter().filter_map(|reading| signal_note(&message.signals[reading.signal], reading)));
+        let note = |reading: &Reading| signal_note(&message.signals[reading.signal], self.model, reading);
+        notes.extend(signals.iter().filter_map(note));
         if reserved != [0; 8] {
             let bits = hex(&reserved[..self.frame.data.len()]);
             notes.push(Note { rule: "reserved_bit", text: format!("bits are set that the document reserves: {bits}") });
@@ -362,7 +394,7 @@ impl<'a> Decoder<'a> {
     }
 }
 
-fn signal_note(signal: &Signal, reading: &Reading) -> Option<Note> {
+fn signal_note(signal: &Signal, model: Option<usize>, reading: &Reading) -> Option<Note> {
     let name = &signal.name;
     let note = |rule, text| Some(Note { rule, text });
     match (&signal.encoding, &reading.value) {
@@ -375,15 +407,15 @@ fn signal_note(signal: &Signal, reading: &Reading) -> Option<Note> {
         (Encoding::Number { signed, .. }, Value::Integer(_)) => {
             #[allow(clippy::cast_precision_loss, reason = "ranges of unscaled signals lie below 2^53")]
             let value = extended(signal, reading.bits, *signed) as f64;
-            range_note(signal, value)
+            range_note(signal, model, value)
         }
-        (_, Value::Number(value)) => range_note(signal, *value),
+        (_, Value::Number(value)) => range_note(signal, model, *value),
         _ => None,
     }
 }
 
-fn range_note(signal: &Signal, value: f64) -> Option<Note> {
-    let range = signal.range.filter(|range| !in_range(signal, range, value))?;
+fn range_note(signal: &Signal, model: Option<usize>, value: f64) -> Option<Note> {
+    let range = signal.range_for(model).filter(|range| !in_range(signal, range, value))?;
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let text = format!("{} {value}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
     Some(Note { rule: "out_of_range", text })

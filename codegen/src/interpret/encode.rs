@@ -1,25 +1,30 @@
 //! From a message with its values to a frame.
 
 use super::decode::coverage;
-use super::value::raw_of;
+use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Refusal, decode};
 use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape};
 
-/// Makes the frame that shows `content`.
+/// Notes that a request does not get: it is refused.
+const FORBIDDEN: [&str; 3] = ["address", "addressing", "model_dependent"];
+
+/// Makes the frame that shows `content`, for a device `model` (an index into [`Protocol::models`]) or for any.
 ///
 /// # Errors
 ///
 /// Refuses unknown names, missing and superfluous fields and signals, values that do not fit, a message that contradicts the
-/// identifier or the selectors, foreign identifiers; in requests also values outside their range, and addresses and addressing
-/// modes that the document does not have.
-pub fn encode(protocol: &Protocol, content: &Content) -> Result<Frame, Refusal> {
+/// identifier or the selectors, foreign identifiers; in requests also values outside their range, messages that the model
+/// does not have, and addresses and addressing modes that the document does not have.
+pub fn encode(protocol: &Protocol, model: Option<usize>, content: &Content) -> Result<Frame, Refusal> {
     let message = find_message(protocol, &content.message)?;
     let id = identifier(protocol, content)?;
     let shape = shape(protocol, message, content, id)?;
-    let data = payload(protocol, message, shape, content)?;
+    let limits = Limits::of(shape.kind, model);
+    let data = payload(protocol, message, shape, content, limits)?;
     let frame = frame(protocol, message, id, data);
-    let decoded = decode(protocol, &frame).map_err(|problem| refuse(message, &problem.text))?;
-    confirm(protocol, message, shape, &decoded)?;
+    let one_that_has_it = model.or_else(|| message.models.first().copied());
+    let decoded = decode(protocol, one_that_has_it, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    confirm(protocol, message, shape, &decoded, model)?;
     Ok(frame)
 }
 
@@ -35,6 +40,11 @@ pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<&'a Messag
 
 pub fn refuse(message: &Message, why: &str) -> Refusal {
     Refusal(format!("{}: {why}", message.name))
+}
+
+/// Refuses a message that a device model does not have.
+pub fn not_of(protocol: &Protocol, message: &Message, model: usize) -> Refusal {
+    refuse(message, &format!("{} has no such message", protocol.models[model].name))
 }
 
 /// Returns a frame of a message.
@@ -94,15 +104,21 @@ fn shape<'a>(protocol: &Protocol, message: &'a Message, content: &Content, id: u
     }
     let bare =
         Frame { id, extended: protocol.identifier.extended, data: vec![0; message.length.into()], form: Form::Data };
-    let kind = decode(protocol, &bare).map(|decoded| decoded.kind);
+    let kind = decode(protocol, None, &bare).map(|decoded| decoded.kind);
     let all = std::iter::once(first).chain(fitting).collect::<Vec<_>>();
     Ok(all.iter().find(|shape| Ok(shape.kind) == kind).copied().unwrap_or(first))
 }
 
-fn payload(protocol: &Protocol, message: &Message, shape: &Shape, content: &Content) -> Result<[u8; 8], Refusal> {
+fn payload(
+    protocol: &Protocol,
+    message: &Message,
+    shape: &Shape,
+    content: &Content,
+    limits: Limits,
+) -> Result<[u8; 8], Refusal> {
     let mut data = [0; 8];
     put_selectors(protocol, message, shape, content, &mut data)?;
-    put_signals(protocol, message, shape, content, &mut data)?;
+    put_signals(protocol, message, shape, content, limits, &mut data)?;
     put_reserved(protocol, message, shape, content, &mut data)?;
     Ok(data)
 }
@@ -138,6 +154,7 @@ fn put_signals(
     message: &Message,
     shape: &Shape,
     content: &Content,
+    limits: Limits,
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
     let carried = |name: &str| shape.signals.iter().any(|index| message.signals[*index].name == name);
@@ -148,7 +165,7 @@ fn put_signals(
         let signal = &message.signals[*index];
         let given = content.signals.iter().find(|(name, _)| *name == signal.name);
         let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;
-        let bits = raw_of(protocol, message, signal, input, shape.kind == Kind::Request)?;
+        let bits = raw_of(protocol, message, signal, input, limits)?;
         signal.place.put(data, bits);
     }
     Ok(())
@@ -177,9 +194,19 @@ fn put_reserved(
     Ok(())
 }
 
-/// Tests that the frame decodes to what was asked for, and that a request keeps to the documented addresses.
-fn confirm(protocol: &Protocol, message: &Message, shape: &Shape, decoded: &Decoded) -> Result<(), Refusal> {
+/// Tests that the frame decodes to what was asked for, and that a request keeps to the documented addresses and to the
+/// messages of the model.
+fn confirm(
+    protocol: &Protocol,
+    message: &Message,
+    shape: &Shape,
+    decoded: &Decoded,
+    model: Option<usize>,
+) -> Result<(), Refusal> {
     let shown = &protocol.messages[decoded.message];
+    if let Some(model) = model.filter(|model| shown.name != message.name && !message.is_of(*model)) {
+        return Err(not_of(protocol, message, model));
+    }
     if shown.name != message.name
         || decoded.kind != shape.kind
         || decoded.access != message.accesses[shape.access].access
@@ -188,7 +215,7 @@ fn confirm(protocol: &Protocol, message: &Message, shape: &Shape, decoded: &Deco
         let text = format!("the identifier and the selectors show a {found} of `{}`, not this {wanted}", shown.name);
         return Err(refuse(message, &text));
     }
-    let forbidden = decoded.notes.iter().find(|note| matches!(note.rule, "address" | "addressing" | "access"));
+    let forbidden = decoded.notes.iter().find(|note| FORBIDDEN.contains(&note.rule));
     match forbidden.filter(|_| decoded.kind == Kind::Request) {
         Some(note) => Err(refuse(message, &note.text)),
         None => Ok(()),

@@ -1,7 +1,7 @@
 //! A request by name: `set_output` to `module:3`.
 
-use super::encode::{find_message, frame, refuse};
-use super::value::raw_of;
+use super::encode::{find_message, frame, not_of, refuse};
+use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
 use crate::model::{AddressType, Encoding, Kind, Message, Mode, Protocol, SelectorPlace, Shape, Signal};
 use crate::number::Rational;
@@ -32,13 +32,15 @@ impl Target {
     }
 }
 
-/// Makes the frame of a request; a signal that is left out takes its default.
+/// Makes the frame of a request to a device `model` (an index into [`Protocol::models`]) or to any; a signal that is left
+/// out takes its default.
 ///
 /// # Errors
 ///
 /// Refuses what [`super::encode()`] refuses in requests, and a signal that has neither a value nor a default.
 pub fn request(
     protocol: &Protocol,
+    model: Option<usize>,
     access: Option<&str>,
     message: &str,
     target: &Target,
@@ -46,6 +48,9 @@ pub fn request(
     signals: &[(String, String)],
 ) -> Result<Frame, Refusal> {
     let message = find_message(protocol, message)?;
+    if let Some(model) = model.filter(|model| !message.is_of(*model)) {
+        return Err(not_of(protocol, message, model));
+    }
     let shape = request_shape(protocol, message, access)?;
     let mode = mode(protocol, message, shape, target)?;
     let id = identifier(protocol, message, shape, mode, target, source)?;
@@ -55,9 +60,9 @@ pub fn request(
             place.put(&mut data, *value);
         }
     }
-    put_signals(protocol, message, shape, signals, &mut data)?;
+    put_signals(protocol, message, shape, signals, model, &mut data)?;
     let frame = frame(protocol, message, id, data);
-    decode(protocol, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
     Ok(frame)
 }
 
@@ -69,10 +74,10 @@ fn request_shape<'a>(protocol: &Protocol, message: &'a Message, access: Option<&
         requests.into_iter().filter(|shape| access.is_none_or(|access| name(shape) == access)).collect();
     match (fitting.as_slice(), access) {
         ([shape], _) => Ok(shape),
-        ([], None) => Err(refuse(message, "nobody requests it")),
-        ([], Some(access)) => {
+        ([], Some(access)) if !names.is_empty() => {
             Err(refuse(message, &format!("it has no request of the access `{access}`; it has {}", names.join(", "))))
         }
+        ([], _) => Err(refuse(message, "nobody requests it")),
         (_, _) => Err(refuse(message, &format!("say which access: {}", names.join(", ")))),
     }
 }
@@ -125,6 +130,9 @@ fn identifier(
     if mode.target.is_some() != target.number.is_some() {
         return Err(refuse(message, &format!("write the target as `{}`", written(protocol, mode))));
     }
+    if source.is_some() && pattern.addresses.iter().all(|address| Some(address.address_type) == mode.target) {
+        return Err(refuse(message, &format!("the mode `{}` has no address for a source", mode.name)));
+    }
     for address in &pattern.addresses {
         let address_type = &protocol.address_types[address.address_type];
         let number =
@@ -154,6 +162,7 @@ fn put_signals(
     message: &Message,
     shape: &Shape,
     given: &[(String, String)],
+    model: Option<usize>,
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
     let carried: Vec<_> = shape.signals.iter().map(|index| &message.signals[*index]).collect();
@@ -171,10 +180,12 @@ fn put_signals(
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
             Some((_, text)) => parse_input(signal, text),
             None => Input::Raw(
-                signal.default.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?,
+                signal
+                    .default_for(model)
+                    .ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?,
             ),
         };
-        signal.place.put(data, raw_of(protocol, message, signal, &input, true)?);
+        signal.place.put(data, raw_of(protocol, message, signal, &input, Limits::Range(model))?);
     }
     Ok(())
 }

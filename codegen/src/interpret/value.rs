@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use canspec_runtime::{Scale, nearest};
 
 use super::{Input, Refusal, Value};
-use crate::model::{Encoding, Enumeration, Message, NamedValue, Protocol, Range, Signal};
+use crate::model::{Encoding, Enumeration, Kind, Message, NamedValue, Protocol, Range, Signal, raw_limits};
 use crate::number::Rational;
 use crate::texts::{parse_packed, raw_of_bits, text_bits, text_of_bits, unnamed, write_packed};
 
@@ -78,6 +78,22 @@ pub fn in_range(signal: &Signal, range: &Range, value: f64) -> bool {
     value >= limit(range.minimum) && value <= limit(range.maximum)
 }
 
+/// What a value to send must keep to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limits {
+    /// What the bits hold, as in a reply.
+    Bits,
+    /// The range too, as in a request: that of a device model (an index into [`Protocol::models`]), if one is chosen.
+    Range(Option<usize>),
+}
+
+impl Limits {
+    /// Returns what holds in a kind of frame.
+    pub fn of(kind: Kind, model: Option<usize>) -> Self {
+        if kind == Kind::Request { Self::Range(model) } else { Self::Bits }
+    }
+}
+
 /// Returns the raw bits of a value to send; a request also refuses what lies outside the range and what is not finite.
 ///
 /// # Errors
@@ -88,9 +104,9 @@ pub fn raw_of(
     message: &Message,
     signal: &Signal,
     input: &Input,
-    request: bool,
+    limits: Limits,
 ) -> Result<u64, Refusal> {
-    Encoder { protocol, signal, request }
+    Encoder { protocol, signal, limits }
         .raw(input)
         .map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
 }
@@ -99,7 +115,7 @@ pub fn raw_of(
 struct Encoder<'a> {
     protocol: &'a Protocol,
     signal: &'a Signal,
-    request: bool,
+    limits: Limits,
 }
 
 impl Encoder<'_> {
@@ -196,16 +212,16 @@ impl Encoder<'_> {
     }
 
     fn check_float(&self, value: f64) -> Result<(), String> {
-        if self.request && !value.is_finite() {
+        if self.limits != Limits::Bits && !value.is_finite() {
             return Err(format!("{value} is not a finite number"));
         }
         self.check_range(value)
     }
 
     fn check_range(&self, value: f64) -> Result<(), String> {
-        let Some(range) = self.signal.range.filter(|range| self.request && !in_range(self.signal, range, value)) else {
-            return Ok(());
-        };
+        let Limits::Range(model) = self.limits else { return Ok(()) };
+        let range = self.signal.range_for(model).filter(|range| !in_range(self.signal, range, value));
+        let Some(range) = range else { return Ok(()) };
         let unit = self.unit();
         Err(format!("{value}{unit} is outside {}..{}{unit}", range.minimum, range.maximum))
     }
@@ -216,23 +232,19 @@ impl Encoder<'_> {
 
     /// Says what the bits can hold.
     fn misfit(&self, value: f64) -> String {
-        let Encoding::Number { signed, scale, offset } = self.signal.encoding else {
-            return format!("{value}{} does not fit a floating-point number of 32 bits", self.unit());
-        };
-        let width = u32::from(self.signal.place.width());
-        let (first, last) =
-            if signed { (-(1_i128 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1_i128 << width) - 1) };
-        let ends = [first, last].map(|raw| scale.times(Rational::integer(raw)).and_then(|value| value.plus(offset)));
-        let [Some(one), Some(other)] = ends else { return format!("{value}{} does not fit", self.unit()) };
-        let unit = self.unit();
-        format!("{value}{unit} does not fit {width} bits, which hold {}..{}{unit}", one.min(other), one.max(other))
+        let (unit, width) = (self.unit(), self.signal.place.width());
+        self.signal.held().map_or_else(
+            || format!("{value}{unit} does not fit a floating-point number of 32 bits"),
+            |Range { minimum, maximum }| {
+                format!("{value}{unit} does not fit {width} bits, which hold {minimum}..{maximum}{unit}")
+            },
+        )
     }
 
     /// Returns a raw number as bits of the signal's width.
     fn bits(&self, raw: i128, signed: bool) -> Result<u64, String> {
-        let width = u32::from(self.signal.place.width());
-        let (first, last) =
-            if signed { (-(1_i128 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1_i128 << width) - 1) };
+        let width = self.signal.place.width();
+        let (first, last) = raw_limits(width, signed);
         if !(first..=last).contains(&raw) {
             return Err(format!("raw {raw} does not fit {width} bits, which hold {first}..{last}"));
         }

@@ -19,6 +19,8 @@ pub struct Example {
     pub data: Option<Vec<u8>>,
     /// Index into [`Protocol::messages`](crate::model::Protocol::messages); `None` for a frame that is none of them.
     pub message: Option<usize>,
+    /// Index into [`Protocol::models`](crate::model::Protocol::models): the device model that the frame is of.
+    pub model: Option<usize>,
     /// Raw values of the message's signals (indices into [`Message::signals`](crate::model::Message::signals)), and the text that says so.
     pub means: Vec<Meaning>,
     /// Rules of the notes that decoding must report.

@@ -76,6 +76,21 @@ pub struct Message {
     pub shapes: Vec<Shape>,
     /// Index into [`Protocol::timing`](crate::model::Protocol::timing): how often its report comes, if not as its access says.
     pub every: Option<usize>,
+    /// The only device models that have it, by [`Protocol::models`](crate::model::Protocol::models); empty if every
+    /// model has it.
+    pub models: Vec<usize>,
+}
+
+impl Message {
+    /// Tests whether a device model has the message.
+    pub fn is_of(&self, model: usize) -> bool {
+        self.models.is_empty() || self.models.contains(&model)
+    }
+
+    /// Tests whether no device model has this message and the other one.
+    pub fn is_apart_from(&self, other: &Self) -> bool {
+        !self.models.is_empty() && !other.models.is_empty() && !self.models.iter().any(|model| other.is_of(*model))
+    }
 }
 
 /// An access as one message has it.

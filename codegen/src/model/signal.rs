@@ -4,6 +4,7 @@ use canspec_runtime::Place;
 
 use crate::model::{Doc, Kind};
 use crate::number::Rational;
+use crate::syntax::tree::Path;
 
 /// Named values of a signal.
 #[derive(Clone, Debug)]
@@ -102,12 +103,68 @@ pub struct Signal {
     pub unit: Option<Unit>,
     /// Physical limits.
     pub range: Option<Range>,
+    /// Place of the limits in the spec: of the signal itself or of one of its types.
+    pub range_path: Path,
     /// Named raw values that are legal outside the range.
     pub specials: Vec<NamedValue>,
     /// Raw value that the device starts with.
     pub default: Option<i128>,
+    /// Place of that value in the spec.
+    pub default_path: Path,
+    /// Physical limits of device models that have their own.
+    pub model_ranges: Vec<OfModel<Range>>,
+    /// Raw values that device models start with which have their own.
+    pub model_defaults: Vec<OfModel<i128>>,
     /// The only kinds of frames that have it; empty if the access decides.
     pub kinds: Vec<Kind>,
+}
+
+/// What one device model has of its own.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct OfModel<T> {
+    /// Index into [`Protocol::models`](crate::model::Protocol::models).
+    pub model: usize,
+    /// What it has.
+    pub value: T,
+    /// Place in the spec.
+    pub path: Path,
+}
+
+impl Signal {
+    /// Returns the physical limits that hold for a device model, or where none is chosen.
+    pub fn range_for(&self, model: Option<usize>) -> Option<Range> {
+        own(&self.model_ranges, model).or(self.range)
+    }
+
+    /// Returns the raw value that a device model starts with, or a device of which the model is not known.
+    pub fn default_for(&self, model: Option<usize>) -> Option<i128> {
+        own(&self.model_defaults, model).or(self.default)
+    }
+
+    /// Returns the physical limits of what the bits hold; `None` of what is no number.
+    pub fn held(&self) -> Option<Range> {
+        let Encoding::Number { signed, .. } = self.encoding else { return None };
+        let (first, last) = raw_limits(self.place.width(), signed);
+        let (one, other) = (self.encoding.value_of(first)?, self.encoding.value_of(last)?);
+        Some(Range { minimum: one.min(other), maximum: one.max(other) })
+    }
+
+    /// Returns all physical limits, each with its place in the spec.
+    pub fn ranges(&self) -> impl Iterator<Item = (Range, Path)> {
+        let general = self.range.map(|range| (range, self.range_path.clone()));
+        general.into_iter().chain(self.model_ranges.iter().map(|own| (own.value, own.path.clone())))
+    }
+}
+
+/// Returns the least and the greatest raw value of a width.
+pub fn raw_limits(width: u8, signed: bool) -> (i128, i128) {
+    if signed { (-(1 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1 << width) - 1) }
+}
+
+/// Returns what a device model has of its own.
+fn own<T: Copy>(known: &[OfModel<T>], model: Option<usize>) -> Option<T> {
+    known.iter().find(|own| Some(own.model) == model).map(|own| own.value)
 }
 
 /// What a signal's bits mean.
@@ -141,6 +198,12 @@ pub enum Encoding {
 }
 
 impl Encoding {
+    /// Returns the exact physical value of a raw number; `None` of what is no number, and on overflow.
+    pub fn value_of(&self, raw: i128) -> Option<Rational> {
+        let Self::Number { scale, offset, .. } = self else { return None };
+        Rational::integer(raw).times(*scale)?.plus(*offset)
+    }
+
     /// Tests whether the physical value is a raw integer.
     pub fn is_unscaled(&self) -> bool {
         matches!(self, Self::Number { scale, offset, .. } if *scale == Rational::ONE && *offset == Rational::ZERO)

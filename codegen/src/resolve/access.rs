@@ -85,7 +85,7 @@ impl Resolver<'_> {
     /// Finds the time of a cyclic report.
     pub fn every(&mut self, path: &Path, name: Option<&str>, timing: &[Timing]) -> Option<usize> {
         let names = timing.iter().map(|known| known.name.as_str());
-        self.lookup(&path.key("every"), "timing", name?, names)
+        self.lookup_or(&path.key("every"), "timing", name?, names, "add the time to `timing` and write its name")
     }
 }
 

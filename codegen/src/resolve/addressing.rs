@@ -99,6 +99,12 @@ impl Resolver<'_> {
         let each = pattern("each", &mode.each);
         let coordinator = pattern("coordinator", &mode.coordinator);
         let target = request.as_ref().and_then(|request| self.target(&path.key("request"), request, types));
+        let is_whole = |one: &AddressPattern, written: &Pattern| one.constants + one.addresses.len() == written.len();
+        if let (Some(target), Some(one), Some(written)) = (target, &one, &mode.one)
+            && is_whole(one, written)
+        {
+            self.check_answerer(path, name, target, one, types);
+        }
         Mode { name: name.to_owned(), doc: remarks!(mode).doc(path, None), request, one, each, coordinator, target }
     }
 
@@ -131,10 +137,21 @@ impl Resolver<'_> {
         resolved
     }
 
+    /// Warns of a reply that does not show whether the module that was asked sends it.
+    fn check_answerer(&mut self, path: &Path, mode: &str, target: usize, one: &AddressPattern, types: &[AddressType]) {
+        if one.addresses.iter().any(|address| address.address_type == target) {
+            return;
+        }
+        let name = &types[target].name;
+        let text = format!("`{mode}` asks one `{name}`, but its `one` does not say which `{name}` answers");
+        let help = format!("name `{name}` in `one` for the field that holds the sender, or any reply will do");
+        self.diagnostics.push(Diagnostic::warning("addressing", path.key("one").at_key(), text).help(help));
+    }
+
     /// Finds an address type; nothing is said of one that was refused before.
     fn lookup_address_type(&mut self, at: &Path, name: &str, types: &[AddressType]) -> Option<usize> {
-        let spec = self.spec;
-        self.lookup(at, "address type", name, spec.types.keys().map(String::as_str))?;
+        let names = self.spec.types.keys().map(String::as_str);
+        self.lookup_or(at, "address type", name, names, "write its number")?;
         types.iter().position(|known| known.name == name)
     }
 

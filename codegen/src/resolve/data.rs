@@ -120,6 +120,7 @@ impl Resolver<'_> {
     }
 
     fn model(&mut self, path: &Path, name: &str, model: &ast::DeviceModel) -> DeviceModel {
+        self.check_document_name(path, name);
         let doc = remarks!(model).doc(path, None);
         let parallel = model.max_parallel.as_ref();
         let types =
@@ -134,6 +135,11 @@ impl Resolver<'_> {
             types,
             doc,
         }
+    }
+
+    /// Finds a device model by name.
+    pub fn device_model(&mut self, path: &Path, name: &str) -> Option<usize> {
+        self.lookup(path, "model", name, self.spec.models.keys().map(String::as_str))
     }
 
     fn facts(&mut self, path: &Path, facts: &ast::Map<String>) -> Vec<(String, Quantity)> {

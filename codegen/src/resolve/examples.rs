@@ -81,6 +81,7 @@ impl Resolver<'_> {
         let printed = self.printed(&path.key(kind.name()), text)?;
         let known = message.map(|index| &messages[index]);
         let means = known.map(|known| self.meanings(&path.key("means"), example.means.as_ref(), known));
+        let model = example.model.as_ref().and_then(|name| self.device_model(&path.key("model"), name));
         Some(Example {
             doc: example_remarks(example).doc(path, Some(outer)),
             kind,
@@ -88,6 +89,7 @@ impl Resolver<'_> {
             extended: printed.extended,
             data: printed.data,
             message,
+            model: model.or_else(|| known?.models.first().copied()),
             means: means.unwrap_or_default(),
             notes: self.notes(&path.key("notes"), &example.notes),
             fails: example.fails.as_ref().and_then(|word| self.failure(&path.key("fails"), word)),
@@ -134,6 +136,12 @@ impl Resolver<'_> {
         let number = (extended || id.len() == 3).then(|| u32::from_str_radix(id, 16).ok()).flatten();
         let number = number.filter(|number| *number <= if extended { 0x1FFF_FFFF } else { 0x7FF });
         let bytes = data.map(|data| hex_bytes(data).filter(|bytes| bytes.len() <= 8));
+        if number.is_none() && matches!(id.len(), 8 | 3) && u32::from_str_radix(id, 16).is_ok() {
+            let (bits, digits) = if extended { (29, "0 or 1") } else { (11, "0 to 7") };
+            let message = format!("the identifier `{id}` has more than {bits} bits");
+            self.error_with_help("example", path.at_value(), message, format!("its first digit is {digits}"));
+            return None;
+        }
         match (number, bytes) {
             (Some(id), None) => Some(Printed { id, extended, data: None }),
             (Some(id), Some(Some(bytes))) => Some(Printed { id, extended, data: Some(bytes) }),

@@ -19,8 +19,8 @@ impl Role {
         Self { name: "a field of the identifier", keys: &["bits", "const", "send", "normal", "values"] };
     pub const ADDRESS: Self =
         Self { name: "an address type", keys: &["range", "scale", "offset", "outside", "send", "examples"] };
-    pub const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields"] };
-    pub const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in"] };
+    pub const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields", "reply"] };
+    pub const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in", "reply"] };
     pub const CONSTANT: Self = Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
     pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
 
@@ -29,17 +29,20 @@ impl Role {
         match encoding {
             Encoding::Number { .. } => Self {
                 name: "a number",
-                keys: &["bytes", "bits", "as", "scale", "offset", "unit", "range", "values", "default", "in", "normal"],
+                keys: &[
+                    "bytes", "bits", "as", "scale", "offset", "unit", "range", "values", "default", "in", "normal",
+                    "reply",
+                ],
             },
             Encoding::Float => {
-                Self { name: "a float", keys: &["bytes", "bits", "as", "unit", "range", "default", "in"] }
+                Self { name: "a float", keys: &["bytes", "bits", "as", "unit", "range", "default", "in", "reply"] }
             }
             Encoding::Named(_) => Self {
                 name: "a signal of named values",
-                keys: &["bytes", "bits", "as", "values", "default", "in", "normal"],
+                keys: &["bytes", "bits", "as", "values", "default", "in", "normal", "reply"],
             },
-            Encoding::Status(_) => Self { name: "a status word", keys: &["bytes", "bits", "status", "in"] },
-            Encoding::Text => Self { name: "a text", keys: &["bytes", "bits", "as", "default", "in"] },
+            Encoding::Status(_) => Self { name: "a status word", keys: &["bytes", "bits", "status", "in", "reply"] },
+            Encoding::Text => Self { name: "a text", keys: &["bytes", "bits", "as", "default", "in", "reply"] },
             Encoding::Packed { .. } => Self::PACKED,
         }
     }
@@ -59,6 +62,9 @@ impl Resolver<'_> {
         let in_header = field.ancestors().any(|outer| *outer == Path::default().key("header"));
         if merged.field.normal.is_some() && !in_header && role.keys.contains(&"in") {
             self.misplaced(&merged.path(self.diagnostics, "normal"), "normal", role);
+        }
+        if !merged.field.reply.is_empty() && in_header {
+            self.misplaced(&merged.path(self.diagnostics, "reply"), "reply", role);
         }
     }
 
@@ -96,6 +102,7 @@ fn written(field: &Field) -> impl Iterator<Item = &'static str> + use<> {
         ("default", field.default.is_some()),
         ("outside", field.outside.is_some()),
         ("in", !field.kinds.is_empty()),
+        ("reply", !field.reply.is_empty()),
     ];
     keys.into_iter().filter(|(_, is_written)| *is_written).map(|(key, _)| key)
 }

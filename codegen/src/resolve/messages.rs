@@ -45,16 +45,50 @@ impl Resolver<'_> {
         let accesses = self.message_accesses(path, message, surroundings);
         let matched = self.constants(&path.key("match"), &message.pattern, surroundings.identifier);
         let fixed: Vec<_> = leaves.constants.into_iter().map(|(signal, value)| self.fixed(signal, value)).collect();
+        let replies = self.reply_constants(&leaves.replies, surroundings.identifier);
         let mut shapes = Vec::new();
         for (index, access) in accesses.iter().enumerate() {
             for kind in &surroundings.accesses[access.access].kinds {
-                let constants = [matched.clone(), self.access_constants(access.access, *kind, surroundings)].concat();
+                let mut constants =
+                    [matched.clone(), self.access_constants(access.access, *kind, surroundings)].concat();
+                if *kind == Kind::Reply {
+                    constants.extend(&replies);
+                }
                 shapes.push(self.shape(path, (index, *kind), constants, &fixed, &leaves.signals, access, surroundings));
             }
         }
         let every = self.every(path, message.every.as_deref(), surroundings.timing);
         let length = length.unwrap_or(surroundings.length);
-        Message { name: name.to_owned(), doc, length, signals: leaves.signals, accesses, shapes, every }
+        let models = self.message_models(&path.key("models"), &message.models);
+        Message { name: name.to_owned(), doc, length, signals: leaves.signals, accesses, shapes, every, models }
+    }
+
+    /// Finds the device models that have a message.
+    fn message_models(&mut self, path: &Path, names: &[String]) -> Vec<usize> {
+        let mut models = Vec::new();
+        for (index, name) in names.iter().enumerate() {
+            let at = path.index(index);
+            let Some(model) = self.device_model(&at, name) else { continue };
+            if models.contains(&model) {
+                self.error("name", at.at_value(), format!("the model `{name}` is named twice"));
+            } else {
+                models.push(model);
+            }
+        }
+        models
+    }
+
+    /// Returns what a reply shows because of the message's fields.
+    fn reply_constants(&mut self, patterns: &[(Path, ast::Pattern)], identifier: &Identifier) -> Vec<Constant> {
+        let mut constants: Vec<Constant> = Vec::new();
+        for (path, pattern) in patterns {
+            for constant in self.constants(path, pattern, identifier) {
+                if !constants.contains(&constant) {
+                    constants.push(constant);
+                }
+            }
+        }
+        constants
     }
 
     /// Resolves `fields` or `value`.

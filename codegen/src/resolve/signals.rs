@@ -6,11 +6,12 @@ use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
 use super::types::Merged;
-use crate::model::{Doc, Encoding, Kind, Piece, Signal};
+use crate::diagnostic::Diagnostic;
+use crate::model::{Doc, Encoding, Kind, OfModel, Piece, Signal, TypeOfModel};
 use crate::number::Rational;
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
-use crate::texts::raw_of_text;
+use crate::texts::{Misfit, raw_of_text};
 
 /// What the fields of a message come to.
 #[derive(Default)]
@@ -18,6 +19,8 @@ pub struct Leaves {
     pub signals: Vec<Signal>,
     /// Constant fields of the payload and their values.
     pub constants: Vec<(Signal, u64)>,
+    /// What a reply shows because of the fields, each with its place in the spec.
+    pub replies: Vec<(Path, ast::Pattern)>,
 }
 
 /// What a field stands in.
@@ -77,6 +80,7 @@ impl Resolver<'_> {
         let merged = self.merged(path, field)?;
         let doc = remarks!(field).doc(path, Some(outer.doc));
         let doc = Doc { title: merged.field.title.clone(), ..doc };
+        leaves.replies.push((merged.path(self.diagnostics, "reply"), merged.field.reply.clone()));
         if merged.field.format.is_some() {
             self.check_keys(&merged, Role::PACKED);
             leaves.signals.push(self.packed(name, &merged, doc, outer)?);
@@ -142,8 +146,11 @@ impl Resolver<'_> {
         let values = merged.path(self.diagnostics, "values");
         let named = matches!(encoding, Encoding::Named(_));
         let specials = if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
-        let unit = field.unit.as_ref().and_then(|text| self.unit(&merged.path(self.diagnostics, "unit"), text));
-        let range = field.range.as_ref().and_then(|text| self.range(&merged.path(self.diagnostics, "range"), text));
+        let unit = field.unit.as_ref();
+        let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, "unit"), text, field));
+        let (range_path, default_path) =
+            (merged.path(self.diagnostics, "range"), merged.path(self.diagnostics, "default"));
+        let range = field.range.as_ref().and_then(|text| self.range(&range_path, text));
         let kinds = self.kinds(&merged.path(self.diagnostics, "in"), &field.kinds);
         let mut signal = Signal {
             name: name.to_owned(),
@@ -153,14 +160,80 @@ impl Resolver<'_> {
             encoding,
             unit,
             range,
+            range_path,
             specials,
             default: None,
+            default_path: default_path.clone(),
+            model_ranges: Vec::new(),
+            model_defaults: Vec::new(),
             kinds,
         };
         if let Some(text) = &field.default {
-            signal.default = self.default(&merged.path(self.diagnostics, "default"), &signal, text);
+            signal.default = self.default(&default_path, &signal, text);
         }
+        self.add_what_models_change(merged, &mut signal);
         Some(signal)
+    }
+
+    /// Adds the limits and defaults that device models have in place of those of the signal's types.
+    fn add_what_models_change(&mut self, merged: &Merged, signal: &mut Signal) {
+        self.warn_of_hidden(merged, "range", |known| known.range.is_some());
+        self.warn_of_hidden(merged, "default", |known| known.default.is_some());
+        for model in 0..self.tables.models.len() {
+            if let Some(known) = self.changed(merged, model, "range", |known| known.range.is_some()) {
+                let path = known.doc.path.key("range");
+                signal.model_ranges.extend(known.range.map(|value| OfModel { model, value, path }));
+            }
+            if let Some(known) = self.changed(merged, model, "default", |known| known.default.is_some()) {
+                let path = known.doc.path.key("default");
+                let text = known.default.map(|value| value.to_string()).unwrap_or_default();
+                let raw = self.default(&path, signal, &text);
+                signal.model_defaults.extend(raw.map(|value| OfModel { model, value, path }));
+            }
+        }
+    }
+
+    /// Finds what a device model changes of the type from which a field would take a key.
+    fn changed(
+        &self,
+        merged: &Merged,
+        model: usize,
+        key: &str,
+        has: impl Fn(&TypeOfModel) -> bool,
+    ) -> Option<TypeOfModel> {
+        let writes = |source: &Path| self.diagnostics.tree().is_some_and(|tree| tree.get(&source.key(key)).is_some());
+        if writes(&merged.sources[0]) {
+            return None;
+        }
+        for (name, source) in merged.types.iter().zip(&merged.sources[1..]) {
+            let known = self.tables.models[model].types.iter().find(|known| known.name == *name && has(known));
+            if known.is_some() || writes(source) {
+                return known.cloned();
+            }
+        }
+        None
+    }
+
+    /// Warns of a key that keeps device models from changing it in one of the field's types.
+    fn warn_of_hidden(&mut self, merged: &Merged, key: &str, has: impl Fn(&TypeOfModel) -> bool + Copy) {
+        for name in &merged.types {
+            let models = self.hidden(merged, name, key, has).join(", ");
+            if !models.is_empty() {
+                let text = format!("this {key} hides that of {models} for `{name}`");
+                let at = merged.path(self.diagnostics, key).at_value();
+                let help =
+                    format!("put the general {key} into the type `{name}`, or take a type that no model changes");
+                self.diagnostics.push(Diagnostic::warning("model_range", at, text).help(help));
+            }
+        }
+    }
+
+    /// Names the device models that change a key of a type without an effect on the field.
+    fn hidden(&self, merged: &Merged, name: &str, key: &str, has: impl Fn(&TypeOfModel) -> bool + Copy) -> Vec<&str> {
+        let models = self.tables.models.iter().enumerate();
+        let changing = models.filter(|(_, model)| model.types.iter().any(|known| known.name == name && has(known)));
+        let hidden = changing.filter(|(index, _)| self.changed(merged, *index, key, has).is_none());
+        hidden.map(|(_, model)| model.name.as_str()).collect()
     }
 
     fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {
@@ -175,8 +248,8 @@ impl Resolver<'_> {
     pub fn raw_text(&mut self, path: &Path, signal: &Signal, text: &str, unit: bool) -> Option<u64> {
         match raw_of_text(&self.tables.enumerations, signal, text, unit) {
             Ok(bits) => Some(bits),
-            Err(why) => {
-                self.error("value", path.at_value(), why);
+            Err(Misfit { why, help }) => {
+                self.diagnostics.push_first(Diagnostic { help, ..Diagnostic::error("value", path.at_value(), why) });
                 None
             }
         }
@@ -246,6 +319,7 @@ impl Resolver<'_> {
         self.check_pieces(&at, &pieces, &parts);
         let place = self.packed_place(&at, &parts)?;
         let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, "in"), &merged.field.kinds);
+        let (range_path, default_path) = (doc.path.key("range"), doc.path.key("default"));
         Some(Signal {
             name: name.to_owned(),
             doc,
@@ -254,8 +328,12 @@ impl Resolver<'_> {
             encoding: Encoding::Packed { pieces, parts },
             unit: None,
             range: None,
+            range_path,
             specials: Vec::new(),
             default: None,
+            default_path,
+            model_ranges: Vec::new(),
+            model_defaults: Vec::new(),
             kinds,
         })
     }

@@ -7,8 +7,9 @@ use canspec_runtime::Place;
 use super::Resolver;
 use crate::diagnostic::At;
 use crate::model::{Doc, Kind, Quantity, Range, Unit};
+use crate::multiples;
 use crate::number::Rational;
-use crate::syntax::ast::Names;
+use crate::syntax::ast::{Field, Names};
 use crate::syntax::tree::Path;
 
 /// The keys that say something about an item rather than to the codec.
@@ -121,10 +122,25 @@ impl Resolver<'_> {
 
     /// Reads a unit of the language.
     pub fn unit(&mut self, path: &Path, symbol: &str) -> Option<Unit> {
+        let in_known = |(unit, _): (Unit, Rational)| format!("write the value in {}", unit.symbol);
+        self.unit_or(path, symbol, || multiples::prefixed(symbol).map_or_else(known_units, in_known))
+    }
+
+    /// Reads the unit of a field.
+    pub fn unit_of_field(&mut self, path: &Path, symbol: &str, field: &Field) -> Option<Unit> {
+        self.unit_or(path, symbol, || {
+            let otherwise = || format!("{}; for another leave `unit` out and say it in `title`", known_units());
+            scaled_unit(symbol, field).unwrap_or_else(otherwise)
+        })
+    }
+
+    fn unit_or(&mut self, path: &Path, symbol: &str, help: impl Fn() -> String) -> Option<Unit> {
         let unit = Unit::find(symbol);
         if unit.is_none() {
-            let known: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
-            let help = format!("the units are {}", known.join(" "));
+            let help = match multiples::respelled(symbol) {
+                Some(unit) => format!("did you mean `{}`?", unit.symbol),
+                None => help(),
+            };
             self.error_with_help("unit", path.at_value(), format!("there is no unit `{symbol}`"), help);
         }
         unit
@@ -147,7 +163,19 @@ impl Resolver<'_> {
         name: &str,
         names: impl Iterator<Item = &'n str> + Clone,
     ) -> Option<usize> {
-        self.find(path.at_value(), what, name, names)
+        self.find(path.at_value(), what, name, names, None)
+    }
+
+    /// Finds the name that stands at `path` as a value; `otherwise` says what else can be written.
+    pub fn lookup_or<'n>(
+        &mut self,
+        path: &Path,
+        what: &str,
+        name: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+        otherwise: &str,
+    ) -> Option<usize> {
+        self.find(path.at_value(), what, name, names, Some(otherwise))
     }
 
     /// Finds the name that stands at `path` as a key.
@@ -158,7 +186,7 @@ impl Resolver<'_> {
         name: &str,
         names: impl Iterator<Item = &'n str> + Clone,
     ) -> Option<usize> {
-        self.find(path.at_key(), what, name, names)
+        self.find(path.at_key(), what, name, names, None)
     }
 
     fn find<'n>(
@@ -167,11 +195,18 @@ impl Resolver<'_> {
         what: &str,
         name: &str,
         names: impl Iterator<Item = &'n str> + Clone,
+        otherwise: Option<&str>,
     ) -> Option<usize> {
         let found = names.clone().position(|known| known == name);
         if found.is_none() {
             let message = format!("there is no {what} `{name}`");
-            self.error_with_help("name", at, message, suggestion(what, name, names));
+            let help = suggestion(what, name, names);
+            let help = match otherwise {
+                None => help,
+                Some(otherwise) if help.ends_with('?') => format!("{help} otherwise {otherwise}"),
+                Some(otherwise) => format!("{help}; otherwise {otherwise}"),
+            };
+            self.error_with_help("name", at, message, help);
         }
         found
     }
@@ -195,6 +230,24 @@ impl Resolver<'_> {
             self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
         }
     }
+}
+
+/// Names the units of the language.
+fn known_units() -> String {
+    let known: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
+    format!("the units are {}", known.join(" "))
+}
+
+/// Says how a field writes a multiple of a unit: with a scale, which a float cannot have.
+fn scaled_unit(symbol: &str, field: &Field) -> Option<String> {
+    let (unit, factor) = multiples::prefixed(symbol).filter(|_| field.format_of_number.as_deref() != Some("float"))?;
+    let step = field.scale.as_deref().map_or(Some(Rational::ONE), Rational::parse)?;
+    let scale = step.times(factor)?;
+    let scale = match (scale.numerator(), scale.denominator()) {
+        (1, denominator @ 2..) => format!("1/{denominator}"),
+        _ => scale.to_string(),
+    };
+    Some(format!("write `unit: {}, scale: {scale}`", unit.symbol))
 }
 
 /// Names the nearest of the known names, or all of them.

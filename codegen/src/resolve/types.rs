@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Doc, Enumeration, NamedValue, Severity, StatusBit, StatusWord};
+use crate::model::{Doc, Enumeration, NamedValue, Severity, StatusBit, StatusWord, raw_limits};
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
 
@@ -48,7 +48,7 @@ impl Resolver<'_> {
         let root = Path::default().key("types");
         let spec = self.spec;
         for (name, field) in &spec.types {
-            self.check_type_name(&root.key(name), name);
+            self.check_document_name(&root.key(name), name);
             let is_address =
                 super::addressing::patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
             if is_address || self.tables.used_types.contains(name) {
@@ -65,11 +65,11 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tests the name of a type, which may have capitals as documents have them.
-    fn check_type_name(&mut self, path: &Path, name: &str) {
+    /// Tests the name of a type or a device model, which may have capitals as documents have them.
+    pub fn check_document_name(&mut self, path: &Path, name: &str) {
         let plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !plain || !name.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
-            let help = "names of types are letters, digits and `_`, and start with a letter";
+            let help = "names of types and models are letters, digits and `_`, and start with a letter";
             self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
         }
     }
@@ -100,7 +100,7 @@ impl Resolver<'_> {
             self.tables.used_types.push(name.clone());
             let field = &mut merged.field;
             take!(field, other, bytes bits format_of_number scale offset unit range format constant send normal default outside title;
-                values fields status kinds);
+                values fields status kinds reply);
             self.merge_types(&source, &other.types.0, merged, &[outer, &[name.as_str()]].concat())?;
         }
         Some(())
@@ -144,7 +144,7 @@ impl Resolver<'_> {
 
     /// Reads `{raw: name}`.
     pub fn values(&mut self, path: &Path, values: &ast::Map<String>, width: u8, signed: bool) -> Vec<NamedValue> {
-        let (first, last) = limits(width, signed);
+        let (first, last) = raw_limits(width, signed);
         let mut named: Vec<NamedValue> = Vec::new();
         let mut places = Vec::new();
         for (raw, name) in values {
@@ -223,13 +223,25 @@ impl Resolver<'_> {
         Some(StatusBit {
             name: name.to_owned(),
             doc: remarks!(bit).doc(path, Some(outer)),
-            bit: self.integer(&path.key("bit"), &bit.bit, 0, width - 1)?,
+            bit: self.bit(&path.key("bit"), &bit.bit, width)?,
             severity: severity.map(|index| SEVERITIES[index].1),
             set_when: bit.set_when.clone(),
             clear_when: bit.clear_when.clone(),
             effect: bit.effect.clone(),
             led: bit.led.clone(),
         })
+    }
+
+    /// Reads the number of a bit of a word.
+    fn bit(&mut self, path: &Path, text: &str, width: u8) -> Option<u8> {
+        let number = self.integer(path, text, 0, u8::MAX)?;
+        if number >= width {
+            let help = format!("its bits are 0 to {}; correct the bit, or the place of the word", width - 1);
+            let message = format!("there is no bit {number} in this word of {width} bits");
+            self.error_with_help("number", path.at_value(), message, help);
+            return None;
+        }
+        Some(number)
     }
 
     fn check_status_bits(&mut self, bits: &[StatusBit]) {
@@ -239,9 +251,4 @@ impl Resolver<'_> {
             self.diagnostics.push(diagnostic.other(pair[0].doc.path.at_key(), "the other name"));
         }
     }
-}
-
-/// Returns the least and the greatest raw value of a width.
-pub fn limits(width: u8, signed: bool) -> (i128, i128) {
-    if signed { (-(1 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1 << width) - 1) }
 }

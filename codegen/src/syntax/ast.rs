@@ -156,6 +156,10 @@ pub struct Field {
     /// What a number outside the `range` of an address type is: with `refused` something else than such an address. If
     /// absent, it is accepted with the note `address`.
     pub outside: Option<String>,
+    /// Raw values that fields of the identifier and the header have in every reply of a message with this field:
+    /// `{result_type: 0x41}`; none if absent.
+    #[serde(default)]
+    pub reply: Pattern,
     /// The only kinds of frames that have the field, of `request`, `reply` and `report`: `[request]`; if absent, those
     /// that the access says.
     #[serde(rename = "in", default)]
@@ -312,6 +316,9 @@ pub struct Message {
     pub answers: Map<String>,
     /// Data bytes of its frames, 0 to 8, which never choose the message: `4`; the protocol's `length` if absent.
     pub length: Option<String>,
+    /// The only device models that have the message, a list: `[SM_750]`; every model has it if absent.
+    #[serde(default)]
+    pub models: Vec<String>,
     /// Entry of `timing` that says how often its report comes: `cycle`; as its access says if absent.
     pub every: Option<String>,
     /// Fields by name that the message carries: `{voltage: {bytes: 0..1, scale: 1/10, unit: V}}`; none if absent.
@@ -352,6 +359,9 @@ pub struct Example {
     /// Value of every signal in the frame with its unit: `{voltage: 500 V, alarms: [fan_fault]}`, or `500 V` if there
     /// is only one. Absent where there are no signals or no data.
     pub means: Option<Means>,
+    /// Device model that the frame comes from or goes to: `SM_750`; if absent, the first one that has the message, or
+    /// none if every model has it.
+    pub model: Option<String>,
     /// Rules of all notes that decoding gives, a list: `[reserved_bit]`; no note if absent.
     #[serde(default)]
     pub notes: Vec<String>,

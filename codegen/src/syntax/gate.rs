@@ -165,8 +165,13 @@ impl Gate<'_> {
             Some(key) => (key.span.clone(), format!("`{}` has no value", key.name)),
             None => (span.start..span.start, "this item of the list has no value".to_owned()),
         };
-        Diagnostic::error("wrong_kind", span, message)
-            .help("write it, write `\"\"` for an empty text, or remove the line")
+        let help = match key {
+            Some(key) if !is_key && key.name.contains(' ') => {
+                "quote the text that holds a comma: inside `{}` and `[]` a comma ends it"
+            }
+            _ => "write it, write `\"\"` for an empty text, or remove the line",
+        };
+        Diagnostic::error("wrong_kind", span, message).help(help)
     }
 
     fn alias(&mut self, span: Range<usize>) -> Result<(), Stopped> {

@@ -3,6 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
+use super::derives::Derives;
 use super::doc;
 use super::identifier::field_place;
 use super::literal::{decimal, hexadecimal};
@@ -146,7 +147,8 @@ struct Variant<'a> {
 }
 
 /// Emits `Target`, unless nobody sends requests.
-pub fn target(protocol: &Protocol, names: &Names) -> Option<TokenStream> {
+pub fn target(protocol: &Protocol, names: &Names, derives: Derives) -> Option<TokenStream> {
+    let optional = derives.variants();
     let modes = protocol.modes.iter().zip(&names.targets).enumerate();
     let modes = modes.filter(|(_, (mode, _))| mode.request.is_some());
     let variants: Vec<_> = modes
@@ -162,6 +164,7 @@ pub fn target(protocol: &Protocol, names: &Names) -> Option<TokenStream> {
         quote! {
             /// Whom a request addresses.
             #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+            #optional
             pub enum Target { #(#definitions),* }
             #sender
             #destination

@@ -81,8 +81,8 @@ impl Direction<'_> {
         let otherwise = match (next, rest) {
             (None, None) => quote!(return None),
             (None, Some(rest)) => rest.clone(),
-            (Some(next), None) => quote!(return Self::#next(frame)),
-            (Some(next), Some(rest)) => quote!(Self::#next(frame).unwrap_or_else(|| #rest)),
+            (Some(next), None) => quote!(return Self::#next(frame, model)),
+            (Some(next), Some(rest)) => quote!(Self::#next(frame, model).unwrap_or_else(|| #rest)),
         };
         if let ([Arm { sets, body }], None, None) = (arms, rest, next) {
             let condition = condition(self.protocol, &sets[0]);
@@ -92,11 +92,11 @@ impl Direction<'_> {
         if arms.is_empty() { quote!(Some(#choice)) } else { quote!(let recognised = #choice; Some(recognised)) }
     }
 
-    /// Takes the message out of frames that show these constants; several are told apart by length and addresses.
+    /// Takes the message out of frames that show these constants; several are told apart by length, model and addresses.
     fn decoded(&self, row: &Constants) -> TokenStream {
         let mut decoded = self.known.iter().filter(|known| implies(row, &known.constants())).map(Known::decoded);
         let first = decoded.next();
-        quote!(#first #(.or(#decoded, frame))*)
+        quote!(#first #(.or(#decoded, frame, model))*)
     }
 
     /// Emits the functions that say how long frames are that show some constants in the identifier.
@@ -146,8 +146,8 @@ fn recognising(name: &Ident, found: &TokenStream) -> TokenStream {
     let id = mentions(found, "id").then(|| quote!(let id = frame.raw_id();));
     let data = mentions(found, "data").then(|| quote!(let data = &frame.bytes();));
     let body = quote!(#id #data #found);
-    let frame = argument("frame", &body);
-    quote!(fn #name(#frame: &Frame) -> Option<Recognised<Self>> { #body })
+    let (frame, model) = (argument("frame", &body), argument("model", &body));
+    quote!(fn #name(#frame: &Frame, #model: Option<u8>) -> Option<Recognised<Self>> { #body })
 }
 
 fn measuring(name: &Ident, lengths: &TokenStream) -> TokenStream {

@@ -3,6 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
+use super::derives::Derives;
 use super::doc;
 use super::literal::hexadecimal;
 use super::names::{Names, ident, screaming};
@@ -10,7 +11,8 @@ use super::word::integer;
 use crate::model::{Direction, FieldTest, Foreign, Identifier, IdentifierField, Protocol};
 
 /// Emits the struct of the identifier and its fields' places.
-pub fn identifier(protocol: &Protocol, names: &Names) -> TokenStream {
+pub fn identifier(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {
+    let optional = derives.structure();
     let Identifier { extended, fields, .. } = &protocol.identifier;
     let comment = doc::line(format!("The {}-bit identifier of a frame.", if *extended { 29 } else { 11 }));
     let members = fields.iter().map(|field| member(protocol, names, field));
@@ -19,6 +21,7 @@ pub fn identifier(protocol: &Protocol, names: &Names) -> TokenStream {
     quote! {
         #comment
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #optional
         pub struct Identifier { #(#members),* }
         impl Identifier { #(#places)* }
         #split

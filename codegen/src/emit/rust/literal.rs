@@ -4,6 +4,7 @@ use canspec_runtime::Data;
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
 
+use crate::emit::Float;
 use crate::number::Rational;
 
 /// Writes a field of so many bits in hexadecimal.
@@ -17,9 +18,21 @@ pub fn decimal(value: impl Into<i128>) -> TokenStream {
     signed(&value.into().to_string())
 }
 
-/// Writes the double nearest to a number.
-pub fn float(value: Rational) -> TokenStream {
-    let text = value.to_f64().to_string();
+/// Returns the type of scaled values.
+pub fn physical_type(float: Float) -> TokenStream {
+    match float {
+        Float::F64 => quote!(f64),
+        Float::F32 => quote!(f32),
+    }
+}
+
+/// Writes the double or the single nearest to a number.
+pub fn physical(value: Rational, float: Float) -> TokenStream {
+    let text = match float {
+        Float::F64 => value.to_f64().to_string(),
+        #[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is wanted")]
+        Float::F32 => (value.to_f64() as f32).to_string(),
+    };
     signed(&if text.contains('.') { text } else { format!("{text}.0") })
 }
 
@@ -92,10 +105,12 @@ mod tests {
 
     #[test]
     fn a_double_has_a_point() {
-        let float = |text| float(Rational::parse(text).unwrap_or(Rational::ZERO)).to_string();
+        let literal = |text, float| physical(Rational::parse(text).unwrap_or(Rational::ZERO), float).to_string();
+        let float = |text| literal(text, Float::F64);
         assert_eq!(float("750"), "750.0");
         assert_eq!(float("25.7"), "25.7");
         assert_eq!(float("1/3"), "0.333_333_333_333_333_3");
         assert_eq!(float("100000"), "100_000.0");
+        assert_eq!(literal("1/3", Float::F32), "0.333_333_34");
     }
 }

@@ -5,11 +5,14 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::address::{answers_list, answers_name};
+use super::derives::Derives;
 use super::doc;
-use super::literal::{data, decimal, float, hexadecimal};
+use super::literal::{data, decimal, hexadecimal, physical, physical_type};
+use super::model::{model_limits, models_of};
 use super::names::{MessageNames, Names, Struct, screaming};
 use super::place::Written;
 use super::word::{integer, text_type};
+use crate::emit::Float;
 use crate::model::{Access, Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal, Who};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
@@ -20,6 +23,8 @@ pub struct Emitter<'a> {
     pub all: &'a Names,
     pub names: &'a MessageNames,
     pub message: &'a Message,
+    pub derives: Derives<'a>,
+    pub float: Float,
 }
 
 impl Emitter<'_> {
@@ -29,7 +34,8 @@ impl Emitter<'_> {
         let structs = structs.map(|(index, known)| {
             let (definition, constants, layout) =
                 (self.definition(known), self.constants(index, known), self.layout(known));
-            quote!(#definition #constants #layout)
+            let optional = self.derives.message(&known.name, known.signals.is_empty());
+            quote!(#definition #constants #layout #optional)
         });
         quote!(#(#structs)*)
     }
@@ -50,16 +56,18 @@ impl Emitter<'_> {
         let exact = known.signals.iter().all(|index| is_exact(&self.message.signals[*index]));
         let eq = exact.then(|| quote!(, Eq, Hash));
         let body = if known.signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
-        quote!(#comment #[derive(Clone, Copy, Debug, PartialEq #eq)] pub struct #name #body)
+        let optional = self.derives.structure();
+        quote!(#comment #[derive(Clone, Copy, Debug, PartialEq #eq)] #optional pub struct #name #body)
     }
 
     fn member(&self, index: usize) -> TokenStream {
         let signal = &self.message.signals[index];
         let (name, kind) = (&self.names.fields[index], self.field_type(index));
         let paragraphs =
-            doc::paragraphs(self.protocol, &signal.doc, &self.member_sentence(signal), Some(&self.message.doc));
+            doc::paragraphs(self.protocol, &signal.doc, &Self::member_sentence(signal), Some(&self.message.doc));
         let comment = doc::comment(paragraphs.into_iter().chain(self.type_notes(signal)));
-        quote!(#comment pub #name: #kind)
+        let float = matches!(signal.encoding, Encoding::Float).then(|| self.derives.float());
+        quote!(#comment #float pub #name: #kind)
     }
 
     /// Returns the notes of a signal's types, except of one that is a type in Rust too.
@@ -75,22 +83,18 @@ impl Emitter<'_> {
         docs.filter_map(|doc| Some(doc::sentence_of(&doc::plain(doc.note.as_ref()?))))
     }
 
-    fn member_sentence(&self, signal: &Signal) -> String {
+    fn member_sentence(signal: &Signal) -> String {
         let title = doc::title(&signal.doc, &signal.name);
         let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
         let facts = [Some(Written::new(signal.place).text()), step(signal), range(signal), specials(signal)];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
-        let model = if self.depends_on_model(signal) { " The limits depend on the device model." } else { "" };
+        let depends = !signal.model_ranges.is_empty();
+        let model = if depends { " The limits depend on the device model." } else { "" };
         format!("{}{model}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
     }
 
-    fn depends_on_model(&self, signal: &Signal) -> bool {
-        let types = self.protocol.models.iter().flat_map(|model| &model.types);
-        types.filter(|known| known.range.is_some()).any(|known| signal.types.contains(&known.name))
-    }
-
     fn field_type(&self, index: usize) -> TokenStream {
-        if is_scaled(&self.message.signals[index]) { quote!(f64) } else { self.raw_type(index) }
+        if is_scaled(&self.message.signals[index]) { physical_type(self.float) } else { self.raw_type(index) }
     }
 
     fn raw_type(&self, index: usize) -> TokenStream {
@@ -114,8 +118,36 @@ impl Emitter<'_> {
         let reserved = self.reserved(known);
         let exchanges = (0..self.message.accesses.len()).filter(|_| is_home).map(|access| self.exchange(access));
         let requests = self.message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
-        let methods = requests.filter(|shape| self.host(shape) == name).map(|shape| self.method(shape));
-        quote!(impl #name { #(#signals)* #reserved #(#exchanges)* #(#methods)* })
+        let requests: Vec<_> = requests.filter(|shape| self.host(shape) == name).collect();
+        let within = requests.first().and_then(|shape| self.within(shape));
+        let methods = requests.iter().map(|shape| self.method(shape));
+        quote!(impl #name { #(#signals)* #reserved #(#exchanges)* #within #(#methods)* })
+    }
+
+    /// Emits the method that tests values against a device model, if anything depends on it.
+    fn within(&self, shape: &Shape) -> Option<TokenStream> {
+        let own = |index: &usize| !self.message.signals[*index].model_ranges.is_empty();
+        let depends = !self.message.models.is_empty() || shape.signals.iter().any(own);
+        let exchange = self.exchange_path(shape);
+        (depends && !shape.signals.is_empty()).then(|| {
+            quote! {
+                /// Returns the values if a device model takes them.
+                ///
+                /// # Errors
+                ///
+                /// Refuses a model that does not have the message, and values outside its limits.
+                pub fn within(self, model: Model) -> Result<Self, Error> {
+                    #exchange.within(model, &self)?;
+                    Ok(self)
+                }
+            }
+        })
+    }
+
+    /// Returns the path to the exchange by which a kind of frame travels, from the struct that hosts its method.
+    fn exchange_path(&self, shape: &Shape) -> TokenStream {
+        let (exchange, home) = (&self.names.exchanges[shape.access], self.home());
+        if self.host(shape) == home { quote!(Self::#exchange) } else { quote!(#home::#exchange) }
     }
 
     /// Returns the struct that has the method which builds a request.
@@ -128,9 +160,17 @@ impl Emitter<'_> {
         let (name, raw) = (&self.names.constants[index], self.raw_type(index));
         let (text, place) = (&signal.name, Written::new(signal.place).expression());
         let comment = doc::line(format!("The signal `{text}`."));
-        let refinements = [unit(signal), scale(signal), limits(signal), special_list(signal)].into_iter().flatten();
+        let refinements = [
+            unit(signal),
+            scale(signal),
+            limits(signal, self.float),
+            model_limits(self.all, signal),
+            special_list(signal),
+        ];
+        let refinements = refinements.into_iter().flatten();
         let values = signal.specials.iter().map(|special| self.special(index, special));
-        quote!(#comment pub const #name: Signal<#raw> = Signal::new(#text, #place) #(#refinements)*; #(#values)*)
+        let physical = (self.float == Float::F32).then(|| quote!(, f32));
+        quote!(#comment pub const #name: Signal<#raw #physical> = Signal::new(#text, #place) #(#refinements)*; #(#values)*)
     }
 
     /// Emits the physical value that stands for a special raw value.
@@ -140,9 +180,8 @@ impl Emitter<'_> {
         let kind = self.field_type(index);
         let comment = doc::line(format!("The value of `{}` that stands for `{}`.", signal.name, special.name));
         let value = match &signal.encoding {
-            Encoding::Number { scale, offset, .. } if is_scaled(signal) => {
-                let value = scale.times(Rational::integer(special.raw)).and_then(|value| value.plus(*offset));
-                float(value.unwrap_or(Rational::ZERO))
+            encoding if is_scaled(signal) => {
+                physical(encoding.value_of(special.raw).unwrap_or(Rational::ZERO), self.float)
             }
             _ => decimal(special.raw),
         };
@@ -172,12 +211,13 @@ impl Emitter<'_> {
             let length = decimal(self.message.length);
             quote!(.length(#length))
         });
+        let models = models_of(self.protocol, self.message);
         let shapes = self.message.shapes.iter().filter(|shape| shape.access == index);
         let filters = shapes.map(|shape| {
             let (kind, filter) = (super::names::ident(shape.kind.name()), self.filter(shape));
             quote!(.#kind(#filter))
         });
-        quote!(#comment pub const #constant: Exchange = Exchange::new(#message, #name, #answers) #length #(#filters)*;)
+        quote!(#comment pub const #constant: Exchange = Exchange::new(#message, #name, #answers) #length #models #(#filters)*;)
     }
 
     /// Says how often a report comes.
@@ -218,17 +258,14 @@ impl Emitter<'_> {
 
     fn method(&self, shape: &Shape) -> TokenStream {
         let known = &self.protocol.accesses[self.message.accesses[shape.access].access];
-        let (method, exchange, home) =
-            (&self.names.methods[shape.access], &self.names.exchanges[shape.access], self.home());
+        let (method, exchange) = (&self.names.methods[shape.access], self.exchange_path(shape));
         let reply = self.message.shapes.iter().find(|other| other.access == shape.access && other.kind == Kind::Reply);
         let reply = reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name);
-        let is_own = self.host(shape) == home;
         let reply_type = match reply {
             None => quote!(()),
             Some(name) if name == self.host(shape) => quote!(Self),
             Some(name) => quote!(#name),
         };
-        let exchange = if is_own { quote!(Self::#exchange) } else { quote!(#home::#exchange) };
         let carries = self.names.carried(shape).is_some();
         let comment = doc::comment(self.method_comment(shape, known, carries));
         let (receiver, content) = if carries { (Some(quote!(&self,)), quote!(self)) } else { (None, quote!(&())) };
@@ -331,9 +368,9 @@ fn scale(signal: &Signal) -> Option<TokenStream> {
     Some(quote!(#scale #offset))
 }
 
-fn limits(signal: &Signal) -> Option<TokenStream> {
+fn limits(signal: &Signal, float: Float) -> Option<TokenStream> {
     let range = signal.range?;
-    let (minimum, maximum) = (float(range.minimum), float(range.maximum));
+    let (minimum, maximum) = (physical(range.minimum, float), physical(range.maximum, float));
     Some(quote!(.limits(#minimum, #maximum)))
 }
 

@@ -2,10 +2,11 @@
 
 use proc_macro2::{Ident, Span};
 
+use super::model::{Limits, limits};
 use crate::model::{Encoding, Kind, Message, Protocol, Shape, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 68] = [
+const TAKEN: [&str; 73] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -39,9 +40,12 @@ const TAKEN: [&str; 68] = [
     "Layout",
     "Legend",
     "Message",
+    "Meaning",
     "Mode",
+    "Model",
     "Named",
     "None",
+    "Number",
     "Ok",
     "Option",
     "Packed",
@@ -53,6 +57,7 @@ const TAKEN: [&str; 68] = [
     "Problem",
     "Protocol",
     "Raw",
+    "Reading",
     "Received",
     "Recognised",
     "Replies",
@@ -64,6 +69,7 @@ const TAKEN: [&str; 68] = [
     "Selector",
     "Self",
     "Send",
+    "Severity",
     "Signal",
     "Some",
     "StatusBit",
@@ -77,8 +83,21 @@ const TAKEN: [&str; 68] = [
 ];
 
 /// Methods and constants that every message has.
-const OF_MESSAGES: [&str; 12] =
-    ["RESERVED", "decode", "encode", "signals", "clone", "eq", "hash", "fmt", "from", "into", "clone_from", "borrow"];
+const OF_MESSAGES: [&str; 13] = [
+    "RESERVED",
+    "decode",
+    "encode",
+    "signals",
+    "within",
+    "clone",
+    "eq",
+    "hash",
+    "fmt",
+    "from",
+    "into",
+    "clone_from",
+    "borrow",
+];
 
 /// Gives every name once.
 #[derive(Default)]
@@ -129,6 +148,23 @@ pub fn variants<'a>(names: impl Iterator<Item = &'a str>) -> (Vec<Ident>, Ident)
     (variants, pool.take("Unknown".to_owned(), "Value"))
 }
 
+/// Names a variant for each device model: `SM_750_30A` becomes `Sm750_30a`.
+pub fn model_variants(protocol: &Protocol) -> Vec<Ident> {
+    let mut variants = Pool::default();
+    protocol.models.iter().map(|model| variants.take(model_variant(&model.name), "_")).collect()
+}
+
+/// Keeps `_` between two digits alone.
+fn model_variant(name: &str) -> String {
+    let words = name.split('_').filter(|word| !word.is_empty());
+    words.fold(String::new(), |known, word| {
+        let word = camel_case(&word.to_ascii_lowercase());
+        let digits = known.ends_with(|last: char| last.is_ascii_digit())
+            && word.starts_with(|first: char| first.is_ascii_digit());
+        format!("{known}{}{word}", if digits { "_" } else { "" })
+    })
+}
+
 /// Converts `set_output` to `SET_OUTPUT`.
 pub fn screaming(name: &str) -> Ident {
     ident(&name.to_ascii_uppercase())
@@ -141,6 +177,8 @@ pub struct Names {
     pub messages: Vec<MessageNames>,
     /// Variants of `Target`, by mode.
     pub targets: Vec<Ident>,
+    /// Limits by device model.
+    pub limits: Vec<Limits>,
 }
 
 /// The names of a message's items.
@@ -187,7 +225,13 @@ impl Names {
         let messages = protocol.messages.iter().zip(structs);
         let messages =
             messages.map(|(message, structs)| message_names(protocol, message, structs, &mut types, &mut variants));
-        Self { enumerations, status_words, messages: messages.collect(), targets: targets(protocol) }
+        Self {
+            enumerations,
+            status_words,
+            messages: messages.collect(),
+            targets: targets(protocol),
+            limits: limits(protocol),
+        }
     }
 }
 
@@ -219,7 +263,7 @@ fn message_names(
     let (mut members, mut fields) = (Pool::new(&OF_MESSAGES), Pool::default());
     let constants =
         message.signals.iter().map(|signal| members.take(signal.name.to_ascii_uppercase(), "_SIGNAL")).collect();
-    let fields = message.signals.iter().map(|signal| fields.take(field(signal), "_")).collect();
+    let fields = message.signals.iter().map(|signal| fields.take(member(signal), "_")).collect();
     let packed = message.signals.iter().map(|signal| packed(message, signal, types)).collect();
     let accesses = message.accesses.iter().map(|access| protocol.accesses[access.access].name.as_str());
     let exchanges = accesses.clone().map(|access| members.take(access.to_ascii_uppercase(), "_EXCHANGE")).collect();
@@ -229,14 +273,9 @@ fn message_names(
     names
 }
 
-/// Puts the unit into the field's name.
-fn field(signal: &Signal) -> String {
-    match signal.unit {
-        Some(unit) if !signal.name.ends_with(&format!("_{}", unit.suffix)) => {
-            format!("{}_{}", signal.name, unit.suffix)
-        }
-        _ => signal.name.clone(),
-    }
+/// Names the member of a signal: with the unit behind it, if there is one.
+pub fn member(signal: &Signal) -> String {
+    signal.unit.map_or_else(|| signal.name.clone(), |unit| format!("{}_{}", signal.name, unit.suffix))
 }
 
 fn packed(message: &Message, signal: &Signal, types: &mut Pool) -> Option<Ident> {

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::address;
+use super::derives::Derives;
 use super::dispatch::dispatch;
 use super::doc;
 use super::identifier::unnamed;
@@ -62,9 +63,10 @@ fn selector(protocol: &Protocol, index: usize) -> Option<TokenStream> {
 }
 
 /// Emits `Message`, last in the file.
-pub fn protocol(protocol: &Protocol, names: &Names) -> TokenStream {
+pub fn protocol(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {
     let variants = Variants::new(protocol, names);
-    let definition = variants.definition();
+    let definition = variants.definition(derives);
+    let decode_for = decode_for(protocol);
     let functions: Vec<_> = dispatch(protocol, names).into_iter().chain([variants.layout()]).collect();
     let first = functions.iter().filter_map(|parts| parts.first());
     let implementation = implementation(protocol, first);
@@ -72,7 +74,7 @@ pub fn protocol(protocol: &Protocol, names: &Names) -> TokenStream {
     quote! {
         #definition
 
-        /// A recognised frame.
+        /// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
         pub type Received = canspec_runtime::Received<Message>;
 
         /// A request ready to be sent, whose replies carry `R`.
@@ -91,11 +93,29 @@ pub fn protocol(protocol: &Protocol, names: &Names) -> TokenStream {
                 Received::decode(frame)
             }
 
+            #decode_for
+
             #(#further)*
         }
 
         #implementation
     }
+}
+
+/// Emits how a frame of a device model is recognised, if anything depends on the model.
+fn decode_for(protocol: &Protocol) -> Option<TokenStream> {
+    (!protocol.models.is_empty()).then(|| {
+        quote! {
+            /// Recognises a frame of a device model: of messages that look the same, the one that it has.
+            ///
+            /// # Errors
+            ///
+            /// Says why the frame is not recognised.
+            pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
+                Received::decode_for(model, frame)
+            }
+        }
+    })
 }
 
 /// The variants of `Message`, each with its comment and the struct it carries.
@@ -123,7 +143,8 @@ impl<'a> Variants<'a> {
         Self { list, is_exact }
     }
 
-    fn definition(&self) -> TokenStream {
+    fn definition(&self, derives: Derives) -> TokenStream {
+        let optional = derives.variants();
         let eq = self.is_exact.then(|| quote!(, Eq, Hash));
         let variants = self.list.iter().map(|(name, comment, carried)| {
             let comment = doc::line(comment.clone());
@@ -133,6 +154,7 @@ impl<'a> Variants<'a> {
         quote! {
             /// Every message that a frame can carry.
             #[derive(Clone, Copy, Debug, PartialEq #eq)]
+            #optional
             pub enum Message { #(#variants),* }
         }
     }

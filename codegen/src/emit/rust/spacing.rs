@@ -37,7 +37,9 @@ fn indent(line: &str) -> usize {
 fn is_function(lines: &[&str]) -> bool {
     let item =
         lines.iter().map(|line| line.trim_start()).find(|line| !line.starts_with("///") && !line.starts_with("#["));
-    item.is_some_and(|item| item.starts_with("fn ") || item.starts_with("pub fn ") || item.starts_with("const fn "))
+    item.is_some_and(|item| {
+        ["fn ", "pub fn ", "const fn ", "pub const fn "].iter().any(|start| item.starts_with(start))
+    })
 }
 
 #[cfg(test)]

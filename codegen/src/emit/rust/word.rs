@@ -3,6 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::derives::Derives;
 use super::doc;
 use super::literal::{decimal, hexadecimal};
 use super::names::{ident, screaming, variants};
@@ -17,7 +18,8 @@ pub fn integer(width: u8, signed: bool) -> TokenStream {
 }
 
 /// Emits an enum with a variant a name, and one for all other values.
-pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration) -> TokenStream {
+pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration, derives: Derives) -> TokenStream {
+    let optional = derives.word(name);
     let sentence = doc::sentence_of(&doc::title(&enumeration.doc, &enumeration.name));
     let comment = doc::item(protocol, &enumeration.doc, &sentence, None);
     let (variants, unknown) = variants(enumeration.values.iter().map(|value| value.name.as_str()));
@@ -48,11 +50,14 @@ pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration)
         }
 
         impl Named for #name {}
+
+        #optional
     }
 }
 
 /// Emits a newtype with a constant a bit.
-pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord) -> TokenStream {
+pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord, derives: Derives) -> TokenStream {
+    let optional = derives.word(name);
     let comment = doc::item(protocol, &word.doc, &doc::sentence_of(&doc::title(&word.doc, &word.name)), None);
     let raw = integer(word.width, false);
     let constants = word.bits.iter().map(|bit| constant(protocol, word, bit));
@@ -86,6 +91,8 @@ pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord) -> Toke
                 self.union(other)
             }
         }
+
+        #optional
     }
 }
 
@@ -120,7 +127,13 @@ fn row(bit: &StatusBit) -> TokenStream {
 }
 
 /// Emits a struct of the parts of a packed value, with their text.
-pub fn packed(protocol: &Protocol, name: &Ident, message: &Message, signal: &Signal) -> Option<TokenStream> {
+pub fn packed(
+    protocol: &Protocol,
+    name: &Ident,
+    message: &Message,
+    signal: &Signal,
+    derives: Derives,
+) -> Option<TokenStream> {
     let Encoding::Packed { pieces, parts } = &signal.encoding else { return None };
     let titled = if signal.doc.title.is_some() { &signal.doc } else { &message.doc };
     let sentence = doc::sentence_of(&doc::title(titled, &signal.name));
@@ -130,6 +143,7 @@ pub fn packed(protocol: &Protocol, name: &Ident, message: &Message, signal: &Sig
     let first = first_byte(signal);
     let places = parts.iter().map(|part| Written::new(part.place).counted_from(first).expression());
     let word = packed_word(name, signal, pieces, parts);
+    let optional = derives.word(name);
     Some(quote! {
         #comment
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -146,6 +160,8 @@ pub fn packed(protocol: &Protocol, name: &Ident, message: &Message, signal: &Sig
                 self.write(formatter)
             }
         }
+
+        #optional
     })
 }
 

@@ -1,7 +1,7 @@
 //! What serde complains about, in words for people.
 
 use crate::diagnostic::Diagnostic;
-use crate::syntax::tree::{Node, Path, Step};
+use crate::syntax::tree::{Content, Node, Path, Step};
 
 /// An error of the reading.
 pub(super) enum Complaint {
@@ -48,7 +48,7 @@ impl Complaint {
         match self {
             Self::UnknownKey { key, allowed } => unknown_key(path, key, allowed),
             Self::MissingKey(key) => missing_key(path, key),
-            Self::WrongKind { allowed, .. } => wrong_kind(path, allowed, tree),
+            Self::WrongKind { allowed, expected } => wrong_kind(path, allowed, *expected, tree),
         }
     }
 }
@@ -76,12 +76,23 @@ fn missing_key(path: &Path, key: &str) -> Diagnostic {
     Diagnostic::error("missing_key", path.at_key(), message).help(format!("add `{key}`"))
 }
 
-fn wrong_kind(path: &Path, allowed: &str, tree: &Node) -> Diagnostic {
-    let found = tree.get(path).map_or_else(|| "nothing".to_owned(), Node::describe);
+fn wrong_kind(path: &Path, allowed: &str, expected: Kind, tree: &Node) -> Diagnostic {
+    let found = tree.get(path);
+    let found_text = found.map_or_else(|| "nothing".to_owned(), Node::describe);
     let whose = match path.split() {
         None => "the spec".to_owned(),
         Some((_, Step::Key(key))) => format!("`{key}`"),
         Some((list, Step::Index(_))) => format!("an item of `{list}`"),
     };
-    Diagnostic::error("wrong_kind", path.at_value(), format!("expected {allowed} for {whose}, found {found}"))
+    let message = format!("expected {allowed} for {whose}, found {found_text}");
+    let help = found.and_then(|found| in_brackets(found, expected));
+    Diagnostic { help, ..Diagnostic::error("wrong_kind", path.at_value(), message) }
+}
+
+/// Says how a text becomes a list of one item.
+fn in_brackets(found: &Node, expected: Kind) -> Option<String> {
+    match (&found.content, expected) {
+        (Content::Text(text), Kind::List) if !text.is_empty() => Some(format!("write `[{text}]`")),
+        _ => None,
+    }
 }

@@ -1,0 +1,76 @@
+//! The spec files that a builder compiles.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::source;
+
+/// What is to be compiled.
+pub struct Inputs {
+    /// Every spec once: those that are named, then those of each folder by name.
+    pub specs: Vec<PathBuf>,
+    /// What is wrong with the folders.
+    pub refused: Vec<Diagnostics>,
+}
+
+/// Finds the specs that are named, and those of folders.
+pub fn find(specs: &[PathBuf], folders: &[PathBuf]) -> Inputs {
+    let (mut specs, mut refused) = (specs.to_vec(), Vec::new());
+    for folder in folders {
+        match entries(folder) {
+            Ok(files) => {
+                let (right, wrong): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| ending(path) == "yaml");
+                specs.extend(right);
+                refused.extend(wrong.iter().map(|path| misnamed(path)));
+            }
+            Err(error) => refused.push(unreadable(folder, &error)),
+        }
+    }
+    Inputs { specs: distinct(specs), refused }
+}
+
+/// Returns the files of a folder that are specs by their ending, in whatever way that is written.
+fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+        if !hidden && !path.is_dir() && ["yaml", "yml"].contains(&ending(&path).to_lowercase().as_str()) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn ending(path: &Path) -> &str {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default()
+}
+
+/// Keeps the first one of the paths that lead to one file.
+fn distinct(mut paths: Vec<PathBuf>) -> Vec<PathBuf> {
+    let mut seen = BTreeSet::new();
+    paths.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
+    paths
+}
+
+fn misnamed(path: &Path) -> Diagnostics {
+    let name = path.with_extension("yaml");
+    let what = format!("the folder's specs end in `.yaml`, this file in `.{}`", ending(path));
+    refused(path, Diagnostic::error("file", At::File, what).help(format!("rename it to {}", name.display())))
+}
+
+fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
+    let what = match error.kind() {
+        io::ErrorKind::NotFound => "there is no such folder".to_owned(),
+        io::ErrorKind::NotADirectory => "this is a file, not a folder of specs".to_owned(),
+        _ => format!("the folder cannot be read: {error}"),
+    };
+    refused(folder, Diagnostic::error("file", At::File, what).help("check the path and the folder it starts from"))
+}
+
+fn refused(path: &Path, problem: Diagnostic) -> Diagnostics {
+    source::refused(path.display().to_string(), String::new(), problem)
+}

@@ -1,0 +1,32 @@
+//! `protocols.rs`, which has a module for each protocol of a folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::Generated;
+use crate::files::File;
+
+/// Name of the file without its ending, which therefore no protocol may have.
+pub const NAME: &str = "protocols";
+
+/// Returns the list of protocols.
+pub fn file_in(folder: &Path, generated: &[Generated]) -> File {
+    File::new(path_in(folder), generated.iter().map(module).collect())
+}
+
+/// Returns the files that the list of an earlier build includes.
+pub fn listed(folder: &Path) -> Vec<PathBuf> {
+    let list = fs::read_to_string(path_in(folder)).unwrap_or_default();
+    let names = list.lines().filter_map(|line| line.strip_prefix("    include!(\"")?.strip_suffix("\");"));
+    names.map(|name| folder.join(name)).collect()
+}
+
+fn path_in(folder: &Path) -> PathBuf {
+    folder.join(format!("{NAME}.rs"))
+}
+
+/// Returns the module that includes the file of a protocol, which stands beside the list.
+fn module(generated: &Generated) -> String {
+    let (name, title) = (&generated.name, format!("{}.", generated.title));
+    format!("#[doc = {title:?}]\npub mod {name} {{\n    include!(\"{name}.rs\");\n}}\n")
+}

@@ -1,0 +1,34 @@
+//! `model_range`: a device model has limits beyond the general ones.
+//!
+//! Limits that never count, because a field has its own, are found where fields take keys from types.
+//!
+//! The general range holds for a device whose model nobody names, so it must contain that of every model. Widen it, or take it out and
+//! give each model its own.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::Protocol;
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        for signal in &message.signals {
+            let Some(range) = signal.range else { continue };
+            for own in &signal.model_ranges {
+                if range.minimum <= own.value.minimum && own.value.maximum <= range.maximum {
+                    continue;
+                }
+                let text = format!(
+                    "the range {}..{} of {} exceeds the general {}..{} of `{}.{}`",
+                    own.value.minimum,
+                    own.value.maximum,
+                    protocol.models[own.model].name,
+                    range.minimum,
+                    range.maximum,
+                    message.name,
+                    signal.name
+                );
+                let help = "widen the general range, or take it out and give each model its own";
+                diagnostics.push_first(Diagnostic::error("model_range", own.path.at_value(), text).help(help));
+            }
+        }
+    }
+}

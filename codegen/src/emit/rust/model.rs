@@ -1,0 +1,119 @@
+//! Device models, and the limits that depend on them.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+use super::derives::Derives;
+use super::doc;
+use super::literal::{physical, physical_type};
+use super::names::{Names, model_variants};
+use crate::emit::Float;
+use crate::model::{Message, Protocol, Range, Signal};
+use crate::syntax::tree::Step;
+
+/// Limits by device model, which signals share.
+pub struct Limits {
+    pub name: Ident,
+    /// Index into [`Protocol::models`], and its limits.
+    ranges: Vec<(usize, Range)>,
+    of: String,
+}
+
+/// Returns every table of limits by device model once.
+pub fn limits(protocol: &Protocol) -> Vec<Limits> {
+    let mut known: Vec<Limits> = Vec::new();
+    for signal in protocol.messages.iter().flat_map(|message| &message.signals) {
+        let ranges = ranges(signal);
+        if ranges.is_empty() || known.iter().any(|limits| limits.ranges == ranges) {
+            continue;
+        }
+        let of = type_name(signal).unwrap_or(&signal.name).to_owned();
+        let mut name = format!("{}_LIMITS", of.to_ascii_uppercase());
+        while known.iter().any(|limits| limits.name == name) {
+            name.push('_');
+        }
+        known.push(Limits { name: format_ident!("{name}"), ranges, of });
+    }
+    known
+}
+
+fn ranges(signal: &Signal) -> Vec<(usize, Range)> {
+    signal.model_ranges.iter().map(|own| (own.model, own.value)).collect()
+}
+
+/// Returns the type that a model changes: the last step but one of `models.MODEL.types.TYPE.range`.
+fn type_name(signal: &Signal) -> Option<&str> {
+    let (changed, _) = signal.model_ranges.first()?.path.split()?;
+    match changed.split()? {
+        (_, Step::Key(name)) => Some(name),
+        _ => None,
+    }
+}
+
+/// Emits the enum of the device models, if there are any, and the tables of their limits.
+pub fn models(protocol: &Protocol, names: &Names, derives: Derives, float: Float) -> Option<TokenStream> {
+    let variants = model_variants(protocol);
+    let comments = protocol.models.iter().map(|model| {
+        let title = model.doc.title.as_ref().map_or_else(String::new, |title| format!(": {}", doc::plain(title)));
+        doc::item(protocol, &model.doc, &doc::sentence_of(&format!("`{}`{title}", model.name)), None)
+    });
+    let optional = derives.structure();
+    let serialized = protocol.models.iter().map(|model| derives.variant(&model.name));
+    let texts = protocol.models.iter().map(|model| &model.name);
+    let count = proc_macro2::Literal::usize_unsuffixed(variants.len());
+    let tables = names.limits.iter().map(|limits| table(limits, &variants, float));
+    (!variants.is_empty()).then(|| {
+        quote! {
+            /// A device model.
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+            #[repr(u8)]
+            #optional
+            pub enum Model { #(#comments #serialized #variants),* }
+
+            impl Model {
+                /// Every device model.
+                pub const ALL: [Self; #count] = [#(Self::#variants),*];
+
+                /// Returns the vendor's name.
+                #[must_use]
+                pub const fn name(self) -> &'static str {
+                    match self { #(Self::#variants => #texts),* }
+                }
+            }
+
+            impl From<Model> for u8 {
+                fn from(model: Model) -> Self {
+                    model as Self
+                }
+            }
+
+            #(#tables)*
+        }
+    })
+}
+
+fn table(limits: &Limits, variants: &[Ident], float: Float) -> TokenStream {
+    let name = &limits.name;
+    let comment = doc::line(format!("Limits of `{}` by device model.", limits.of));
+    let rows = limits.ranges.iter().map(|(model, range)| {
+        let [minimum, maximum] = [range.minimum, range.maximum].map(|limit| physical(limit, float));
+        let model = &variants[*model];
+        quote!((Model::#model as u8, #minimum, #maximum))
+    });
+    let kind = physical_type(float);
+    quote!(#comment const #name: &[(u8, #kind, #kind)] = &[#(#rows),*];)
+}
+
+/// Refers to the limits that a signal has by device model.
+pub fn model_limits(names: &Names, signal: &Signal) -> Option<TokenStream> {
+    let ranges = ranges(signal);
+    let name = names.limits.iter().find(|limits| limits.ranges == ranges).map(|limits| &limits.name)?;
+    Some(quote!(.model_limits(#name)))
+}
+
+/// Lists the device models that have a message, unless every model has it.
+pub fn models_of(protocol: &Protocol, message: &Message) -> Option<TokenStream> {
+    let variants = model_variants(protocol);
+    let models = message.models.iter().map(|model| &variants[*model]);
+    (!message.models.is_empty()).then(|| quote!(.models(&[#(Model::#models as u8),*])))
+}

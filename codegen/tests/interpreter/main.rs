@@ -1,0 +1,98 @@
+//! What the interpreter reads and writes: the frames of the documents, and frames calculated by hand.
+
+mod examples;
+mod reading;
+mod requests;
+mod writing;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use canspec_codegen::interpret::{Decoded, Form, Frame, Problem, Refusal, Target, Value, decode, request};
+use canspec_codegen::model::Protocol;
+use canspec_codegen::source::Source;
+use canspec_codegen::{Outcome, compile};
+
+/// Returns the specs of a folder of the workspace, in order.
+fn specs(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+    let entries = fs::read_dir(folder).expect("the folder exists").flatten().map(|entry| entry.path());
+    let mut specs: Vec<_> = entries.filter(|path| path.extension().is_some_and(|ending| ending == "yaml")).collect();
+    specs.sort();
+    specs
+}
+
+fn outcome(path: &Path) -> Outcome {
+    compile(Source::read(path).expect("the spec is a text"))
+}
+
+fn feature(name: &str) -> Protocol {
+    protocol(&format!("tests/specs/features/{name}.yaml"))
+}
+
+/// Compiles a spec of the workspace.
+fn protocol(path: &str) -> Protocol {
+    let Outcome { protocol, diagnostics, .. } = outcome(&Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path));
+    protocol.unwrap_or_else(|| panic!("{}", diagnostics.concise()))
+}
+
+/// Returns the index of a device model.
+fn model(protocol: &Protocol, name: &str) -> usize {
+    protocol.models.iter().position(|model| model.name == name).expect("the device model exists")
+}
+
+/// Reads a frame as documents print it.
+fn frame(text: &str) -> Frame {
+    let (id, data) = text.split_once('#').expect("an identifier and data");
+    let digits: Vec<_> = data.as_bytes().chunks(2).map(|byte| str::from_utf8(byte).expect("ASCII")).collect();
+    Frame {
+        id: u32::from_str_radix(id, 16).expect("hexadecimal digits"),
+        extended: id.len() == 8,
+        data: digits.iter().map(|byte| u8::from_str_radix(byte, 16).expect("hexadecimal digits")).collect(),
+        form: Form::Data,
+    }
+}
+
+fn printed(frame: &Frame) -> String {
+    let digits = if frame.extended { 8 } else { 3 };
+    frame.data.iter().fold(format!("{:0digits$X}#", frame.id), |text, byte| format!("{text}{byte:02X}"))
+}
+
+fn decoded(protocol: &Protocol, text: &str) -> Decoded {
+    decode(protocol, None, &frame(text)).expect("a frame of the protocol")
+}
+
+fn problem(protocol: &Protocol, text: &str) -> Option<Problem> {
+    decode(protocol, None, &frame(text)).err().map(|unrecognised| unrecognised.problem)
+}
+
+/// Returns the name of the message that a frame carries for a device model.
+fn message<'a>(protocol: &'a Protocol, model: Option<usize>, text: &str) -> &'a str {
+    let decoded = decode(protocol, model, &frame(text)).expect("a frame of the protocol");
+    &protocol.messages[decoded.message].name
+}
+
+/// Returns the values of a frame, by signal.
+fn values(protocol: &Protocol, text: &str) -> Vec<(String, Value)> {
+    let decoded = decoded(protocol, text);
+    let signals = &protocol.messages[decoded.message].signals;
+    decoded.signals.into_iter().map(|reading| (signals[reading.signal].name.clone(), reading.value)).collect()
+}
+
+/// Returns the rules of a frame's notes.
+fn notes(protocol: &Protocol, text: &str) -> Vec<&'static str> {
+    decoded(protocol, text).notes.iter().map(|note| note.rule).collect()
+}
+
+/// Makes a request of texts as a person types them.
+fn requested(
+    protocol: &Protocol,
+    model: Option<usize>,
+    message: &str,
+    to: &str,
+    signals: &[(&str, &str)],
+) -> Result<String, Refusal> {
+    let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    let made = request(protocol, model, None, message, &Target::parse(to)?, None, &signals)?;
+    Ok(printed(&made))
+}

@@ -1,0 +1,169 @@
+//! From frames to values.
+
+use canspec_codegen::compile;
+use canspec_codegen::interpret::{Problem, Value};
+use canspec_codegen::source::Source;
+
+use super::{decoded, feature, message, model, notes, problem, protocol, values};
+
+fn named(name: &str) -> Value {
+    Value::Name(name.to_owned())
+}
+
+fn all<const N: usize>(values: [(&str, Value); N]) -> Vec<(String, Value)> {
+    values.map(|(name, value)| (name.to_owned(), value)).to_vec()
+}
+
+#[test]
+fn numbers_are_scaled_and_keep_their_sign() {
+    // Low byte first: FEAA73 is -22 above 2675, and 2675 * 0.02 = 53.5; 6E is 110 half degrees above -40.
+    let expected = all([
+        ("voltage", Value::Number(53.5)),
+        ("current", Value::Number(-2.2)),
+        ("temperature", Value::Number(15.0)),
+        ("power", Value::Number(4500.0)),
+        ("output", Value::Integer(1)),
+        ("mode", Value::Integer(1)),
+        ("counter", Value::Integer(17)),
+    ]);
+    assert_eq!(values(&feature("little_endian"), "083#73AAFE6E28230311"), expected);
+    // 0xFFFA00 is -1536 of 1024 steps a volt, 0xFFFE is -2.
+    let expected = all([("drift", Value::Number(-1.5)), ("turns", Value::Integer(-2))]);
+    assert_eq!(values(&feature("short_frames"), "283#0000FAFFFEFF"), expected);
+}
+
+#[test]
+fn a_special_value_is_read_as_its_name() {
+    let values = values(&feature("little_endian"), "083#73AA0EFF28230311");
+    assert_eq!(values[2], ("temperature".to_owned(), named("broken")));
+}
+
+#[test]
+fn a_float_is_read_as_the_number_it_is() {
+    // 0x442F0000 is 700, 0x7FC00000 is no number.
+    let registers = feature("register_table");
+    assert_eq!(values(&registers, "413#41F00021442F0000"), all([("value", Value::Number(700.0))]));
+    assert_eq!(values(&registers, "413#41F000217FC00000"), all([("value", Value::None)]));
+    assert_eq!(notes(&registers, "413#41F000217FC00000"), ["not_finite"]);
+}
+
+#[test]
+fn on_and_off_are_read_as_their_names_and_other_values_as_none() {
+    let switches = feature("named_values");
+    assert_eq!(values(&switches, "5A3#000A0A0000000000"), all([("power", named("on")), ("lamp", named("dark"))]));
+    assert_eq!(values(&switches, "5A3#01F00F0000000000"), all([("power", named("off")), ("lamp", named("bright"))]));
+    assert_eq!(values(&switches, "5A3#020A0A0000000000")[0].1, Value::None);
+    assert_eq!(notes(&switches, "5A3#020A0A0000000000"), ["unknown_value"]);
+}
+
+#[test]
+fn a_status_word_shows_its_set_bits_by_number() {
+    // 0x8201: bit 15 has no name, bits 9 and 0 have one; 0x32 is red 3 and green 2.
+    let status = feature("status_word");
+    let state = Value::Status { set: vec![0, 9], unknown: 0x8000 };
+    let expected = all([("state", state), ("red", Value::Integer(3)), ("green", Value::Integer(2))]);
+    assert_eq!(values(&status, "443#0000820100320000"), expected);
+    assert_eq!(notes(&status, "443#0000820100320000"), ["unknown_bit"]);
+}
+
+#[test]
+fn set_bits_that_nothing_covers_are_reserved() {
+    // Of byte 5 the bits 5, 4, 1 and 0 are signals.
+    let decoded = decoded(&feature("status_word"), "443#0100000000FF0080");
+    assert_eq!(decoded.reserved, [1, 0, 0, 0, 0, 0xCC, 0, 0x80]);
+}
+
+#[test]
+fn a_frame_shows_its_addressing_mode() {
+    let levels = feature("addressing");
+    let mode = |text| decoded(&levels, text).addressing.map(|mode| levels.modes[mode].name.as_str());
+    assert_eq!(mode("004303F0#3200000000000000"), Some("single"));
+    assert_eq!(mode("008307F0#3200000000000000"), Some("group"));
+    assert_eq!(mode("00433FF0#3200000000000000"), Some("all"));
+    assert_eq!(mode("00C303F0#3200000000000000"), None);
+    assert_eq!(decoded(&levels, "0083F103#3200000000000000").identifier, [0, 2, 3, 0xF1, 3]);
+}
+
+#[test]
+fn an_address_beyond_the_last_one_gets_a_note() {
+    let levels = feature("addressing");
+    assert_eq!(notes(&levels, "00433BF0#3200000000000000"), [""; 0]);
+    assert_eq!(notes(&levels, "00433CF0#3200000000000000"), ["address"]);
+    assert_eq!(problem(&levels, "004303F9#3200000000000000"), Some(Problem::Identifier));
+}
+
+#[test]
+fn a_value_beyond_its_range_gets_a_note() {
+    let levels = feature("addressing");
+    assert_eq!(notes(&levels, "004303F0#6400000000000000"), [""; 0]);
+    assert_eq!(notes(&levels, "004303F0#6500000000000000"), ["out_of_range"]);
+}
+
+#[test]
+fn an_error_code_gets_a_note() {
+    assert_eq!(notes(&feature("addressing"), "0443F003#3200000000000000"), ["error_code"]);
+    let registers = feature("register_table");
+    assert_eq!(notes(&registers, "413#41F10021442F0000"), ["error_code"]);
+    assert_eq!(notes(&registers, "413#41F00021442F0000"), [""; 0]);
+}
+
+#[test]
+fn what_is_no_frame_of_the_protocol_is_named() {
+    let registers = feature("register_table");
+    assert_eq!(problem(&registers, "413#42F00021442F0000"), Some(Problem::UnknownMessage));
+    assert_eq!(problem(&registers, "413#41F00022442F0000"), Some(Problem::UnknownMessage));
+    assert_eq!(problem(&registers, "423#41F00021442F0000"), Some(Problem::UnknownMessage));
+    assert_eq!(problem(&registers, "413#41F00021442F00"), Some(Problem::Length));
+    assert_eq!(problem(&registers, "00000413#41F00021442F0000"), Some(Problem::Identifier));
+    let report = feature("little_endian");
+    assert_eq!(problem(&report, "003#73AA0E6E28230311"), Some(Problem::Foreign));
+    assert_eq!(problem(&report, "103#73AA0E6E28230311"), Some(Problem::Identifier));
+}
+
+#[test]
+fn each_fixed_bit_of_the_identifier_counts() {
+    // Bits 28 to 24 are 01011.
+    let winches = protocol("tests/downstream/specs/winch.yaml");
+    assert_eq!(problem(&winches, "0B211201#00000000"), None);
+    for id in ["1B211201", "03211201", "0F211201", "09211201", "0A211201"] {
+        assert_eq!(problem(&winches, &format!("{id}#00000000")), Some(Problem::Identifier), "{id}");
+    }
+}
+
+#[test]
+fn of_messages_that_look_the_same_the_device_model_chooses() {
+    let pumps = feature("model_layouts");
+    assert_eq!(message(&pumps, None, "003#12C0"), "supply_ac");
+    assert_eq!(message(&pumps, Some(model(&pumps, "P_10A")), "003#12C0"), "supply_ac");
+    assert_eq!(message(&pumps, Some(model(&pumps, "P_48V_DC")), "003#12C0"), "supply_dc");
+}
+
+/// Two device models, each of which reports from an end of its own.
+const ENDS: &str = r#"
+canspec: 1
+protocol: ends
+title: Two ends
+document: {title: Ends, version: "1"}
+length: 1
+identifier: {command: {bits: 10..2}, end: {bits: 1}, sender: {bits: 0}}
+addressing:
+  left:  {request: {end: 0, sender: 0}, one: {end: 0, sender: 1}}
+  right: {request: {end: 1, sender: 0}, one: {end: 1, sender: 1}}
+access:
+  report_left:  {report: {}, answers: {left: one}}
+  report_right: {report: {}, answers: {right: one}}
+messages:
+  left:  {section: "1", match: {command: 1}, access: [report_left], models: [L], value: {bytes: 0}}
+  right: {section: "1", match: {command: 1}, access: [report_right], models: [R], value: {bytes: 0}}
+models: {L: {section: "1"}, R: {section: "1"}}
+"#;
+
+#[test]
+fn the_message_of_another_model_is_noted_only_if_the_frame_can_be_that_one() {
+    let outcome = compile(Source::new("ends.yaml", ENDS.into()).expect("plain text"));
+    let ends = outcome.protocol.unwrap_or_else(|| panic!("{}", outcome.diagnostics.concise()));
+    // Command 1 is bit 2, the right end bit 1, a report bit 0.
+    assert_eq!((message(&ends, None, "005#07"), notes(&ends, "005#07")), ("left", vec![]));
+    assert_eq!((message(&ends, None, "007#07"), notes(&ends, "007#07")), ("right", vec![]));
+    assert_eq!(notes(&feature("model_layouts"), "003#08FC"), ["model_dependent"]);
+}

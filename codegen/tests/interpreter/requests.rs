@@ -1,0 +1,99 @@
+//! Requests by name, with values as a person types them.
+
+use super::{feature, model, protocol, requested};
+
+fn output(signals: &[(&str, &str)]) -> Option<String> {
+    requested(&feature("scaled_signal"), None, "set_output", "module:3", signals).ok()
+}
+
+fn power(power: &str) -> Option<String> {
+    output(&[("voltage", "41.5"), ("temperature", "-40"), ("delay", "8"), ("power", power)])
+}
+
+#[test]
+fn values_are_scaled_and_a_negative_one_is_a_complement() {
+    // 53.5 V = 535 = 0x217, 15 °C = 110 = 0x6E, -1500 W = -150 = 0xFF6A.
+    let values = [("voltage", "53.5V"), ("temperature", "15 °C"), ("delay", "10 s"), ("power", "-1500W")];
+    assert_eq!(output(&values).as_deref(), Some("001203F0#02176E0AFF6A0000"));
+}
+
+#[test]
+fn half_a_step_is_rounded_away_from_zero() {
+    // 415 = 0x19F; -1505 W = -150.5 steps, -151 = 0xFF69; 155 W = 15.5 steps, 16 = 0x10.
+    assert_eq!(power("-1505").as_deref(), Some("001203F0#019F0008FF690000"));
+    assert_eq!(power("-1504.9").as_deref(), Some("001203F0#019F0008FF6A0000"));
+    assert_eq!(power("155").as_deref(), Some("001203F0#019F000800100000"));
+    let delay = |delay| output(&[("voltage", "41.5"), ("temperature", "-40"), ("delay", delay), ("power", "0")]);
+    assert_eq!(delay("10.5").as_deref(), Some("001203F0#019F000B00000000"));
+}
+
+#[test]
+fn both_ends_of_a_range_are_legal_and_what_lies_beyond_is_refused() {
+    let voltage = |voltage| output(&[("voltage", voltage), ("temperature", "15"), ("power", "0")]).is_some();
+    assert_eq!(["41.5", "58.5"].map(voltage), [true; 2]);
+    assert_eq!(["41.4", "58.6", "41.49"].map(voltage), [false; 3]);
+    assert_eq!([power("327670").is_some(), power("-327680").is_some()], [true; 2]);
+    assert_eq!([power("327680").is_some(), power("-327690").is_some()], [false; 2]);
+}
+
+#[test]
+fn a_special_value_is_legal_outside_the_range() {
+    let delay = |delay| output(&[("temperature", "15"), ("delay", delay), ("power", "0")]);
+    assert_eq!(delay("forbid").as_deref(), Some("001203F0#02176E0000000000"));
+    assert_eq!(delay("0").as_deref(), Some("001203F0#02176E0000000000"));
+    assert_eq!(delay("7"), None);
+    // Raw 0 is 8 s.
+    let fans = protocol("tests/downstream/specs/fan.yaml");
+    let turn =
+        |delay| requested(&fans, None, "set_speed", "fan:1", &[("speed", "0"), ("delay", delay), ("power", "off")]);
+    assert_eq!(turn("never").as_deref(), Ok("019101E1#0100000001"));
+    assert_eq!(turn("8 s").as_deref(), Ok("019101E1#0100000001"));
+    assert!(turn("8.4 s").is_err() && turn("9.9 s").is_err());
+}
+
+#[test]
+fn a_signal_that_is_left_out_takes_its_default() {
+    // 53.5 V and `forbid`.
+    let frame = output(&[("temperature", "15"), ("power", "0")]);
+    assert_eq!(frame.as_deref(), Some("001203F0#02176E0000000000"));
+    assert_eq!(output(&[("power", "0")]), None);
+}
+
+#[test]
+fn a_model_has_limits_and_a_default_of_its_own() {
+    let pumps = feature("model_limits");
+    let set = |name, signals: &[_]| requested(&pumps, Some(model(&pumps, name)), "set_speed", "pump", signals).ok();
+    // 500 = 0x1F4, 600 = 0x258.
+    assert_eq!(set("P_10A", &[("flow", "0")]).as_deref(), Some("004#01F40000"));
+    assert_eq!(set("P_48V_DC", &[("flow", "0")]).as_deref(), Some("004#02580000"));
+    let takes = |name, speed| set(name, &[("speed", speed), ("flow", "0")]).is_some();
+    assert!(takes("P_10A", "300") && takes("P_10A", "3000") && takes("P_48V_DC", "0") && takes("P_48V_DC", "1500"));
+    assert!(!takes("P_10A", "299") && !takes("P_10A", "3001") && !takes("P_48V_DC", "1501"));
+    assert_eq!(set("P_20A", &[("flow", "0")]), None);
+}
+
+#[test]
+fn on_and_off_are_sent_by_name() {
+    let switches = feature("named_values");
+    let set = |power| requested(&switches, None, "switch", "heater:9", &[("power", power), ("lamp", "dark")]).ok();
+    assert_eq!(set("on").as_deref(), Some("1A9#000A0A0000000000"));
+    assert_eq!(set("off").as_deref(), Some("1A9#010A0A0000000000"));
+    assert_eq!(set("of"), None);
+}
+
+#[test]
+fn a_request_goes_to_the_first_and_the_last_address_and_to_none_beyond() {
+    let levels = feature("addressing");
+    let to = |target| requested(&levels, None, "level", target, &[("value", "50")]).ok();
+    assert_eq!(to("module:0").as_deref(), Some("004300F0#3200000000000000"));
+    assert_eq!(to("module:0x3B").as_deref(), Some("00433BF0#3200000000000000"));
+    assert_eq!(to("group:7").as_deref(), Some("008307F0#3200000000000000"));
+    assert_eq!(to("all").as_deref(), Some("00433FF0#3200000000000000"));
+    assert_eq!([to("module:0x3C"), to("group:8"), to("module:-1"), to("module"), to("all:1")], [const { None }; 5]);
+}
+
+#[test]
+fn a_register_is_chosen_by_its_selectors() {
+    let request = requested(&feature("register_table"), None, "voltage_limit", "single:3", &[("value", "700")]);
+    assert!(request.is_err_and(|refusal| refusal.0.contains("say which access")));
+}
