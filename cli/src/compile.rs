@@ -1,49 +1,175 @@
 //! `canspec compile`.
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use canspec_codegen::emit;
-use clap::Args;
+use canspec_codegen::emit::{Float, Options, Switch};
+use canspec_codegen::files::{self, File, State};
+use canspec_codegen::{Builder, Generated, generate};
+use clap::{Args, ValueEnum};
 
-use crate::failure::{Failure, Finish};
+use crate::failure::{Failure, Finish, tell};
 use crate::protocols;
 
-/// Compile a spec to Rust.
+/// Compile specs to Rust.
 ///
-/// Nothing is written if the spec has errors, and a file that would not change is left alone.
+/// Nothing is written if a spec has errors, and a file that would not change is left alone.
 #[derive(Args)]
-#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec compile protocol.yaml --output src/protocol.rs")]
+#[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Compile {
-    /// The spec file.
-    #[arg(required_unless_present = "protocol", conflicts_with = "protocol")]
-    spec: Option<PathBuf>,
-    /// A built-in protocol instead of a file.
+    /// The spec files; more than one need `--out`.
+    #[arg(value_name = "SPEC", required_unless_present = "protocol", conflicts_with = "protocol")]
+    specs: Vec<PathBuf>,
+    /// A built-in protocol instead of files.
     #[arg(long, value_name = "NAME")]
     protocol: Option<String>,
-    /// Where to write; standard output without it.
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    /// Folder for a `PROTOCOL.rs` of each spec; standard output without it.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write nothing; exit with status 1 if a file of `--out` is missing or would change.
+    #[arg(long, requires = "out")]
+    check: bool,
+    /// Type of scaled values.
+    #[arg(long, value_enum, default_value_t = Width::F64)]
+    float: Width,
+    /// Implement the traits of serde: `always`, `never`, or if the crate has this feature.
+    #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
+    serde: Switch,
+    /// Implement `defmt::Format`: likewise.
+    #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
+    defmt: Switch,
+    /// Implement `arbitrary::Arbitrary`: likewise.
+    #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
+    arbitrary: Switch,
+}
+
+const EXAMPLES: &str = "Examples:
+  canspec compile protocol.yaml --out src
+  canspec compile protocol.yaml --out src --check
+  canspec compile protocol.yaml --float f32 --defmt always --serde my_feature";
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Width {
+    F64,
+    F32,
+}
+
+impl From<Width> for Float {
+    fn from(width: Width) -> Self {
+        match width {
+            Width::F64 => Self::F64,
+            Width::F32 => Self::F32,
+        }
+    }
 }
 
 impl Compile {
-    /// Writes the Rust code of the chosen spec.
+    /// Compiles the chosen specs, then writes or compares the Rust code.
     pub fn run(&self) -> Result<Finish, Failure> {
-        let source = protocols::choose(self.protocol.as_deref(), self.spec.as_deref())?;
-        let code = emit::rust(&protocols::load(source)?);
-        match &self.output {
-            Some(path) => update(path, &code)?,
-            None => io::stdout().lock().write_all(code.as_bytes())?,
+        if self.specs.len() > 1 && self.out.is_none() {
+            return Err(Failure::Call("name a folder for the code of several specs with --out DIR".to_owned()));
         }
-        Ok(Finish::Done)
+        let generated = self.compiled()?;
+        for one in generated.iter().filter(|one| !one.warnings.is_empty()) {
+            tell(one.warnings.render(true).trim_end());
+        }
+        self.deliver(&generated)
+    }
+
+    fn compiled(&self) -> Result<Vec<Generated>, Failure> {
+        let Some(name) = &self.protocol else { return self.builder().compile().map_err(Failure::Specs) };
+        let source = protocols::choose(Some(name), None)?;
+        generate(source, &self.options()).map(|one| vec![one]).map_err(|refused| Failure::Specs(vec![refused]))
+    }
+
+    fn builder(&self) -> Builder {
+        self.specs.iter().fold(Builder::new().options(self.options()), Builder::spec)
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            float: self.float.into(),
+            serde: self.serde.clone(),
+            defmt: self.defmt.clone(),
+            arbitrary: self.arbitrary.clone(),
+        }
+    }
+
+    fn deliver(&self, generated: &[Generated]) -> Result<Finish, Failure> {
+        let Some(folder) = &self.out else { return print(generated) };
+        let files: Vec<_> = generated.iter().map(|one| one.file_in(folder)).collect();
+        let done = if self.check { compare(&files) } else { files::write(&files).map(|()| Finish::Done) };
+        done.map_err(|error| Failure::Input(error.to_string()))
     }
 }
 
-/// Writes a file unless it has this content already.
-fn update(path: &Path, code: &str) -> Result<(), Failure> {
-    if fs::read(path).is_ok_and(|old| old == code.as_bytes()) {
-        return Ok(());
+fn print(generated: &[Generated]) -> Result<Finish, Failure> {
+    let mut out = io::stdout().lock();
+    for one in generated {
+        out.write_all(one.code.as_bytes())?;
     }
-    fs::write(path, code).map_err(|error| Failure::input(&path.display().to_string(), &error))
+    Ok(Finish::Done)
+}
+
+/// Tells which files are not what would be written.
+fn compare(files: &[File]) -> io::Result<Finish> {
+    let mut finish = Finish::Done;
+    for file in files {
+        let what = match file.state()? {
+            State::Current => continue,
+            State::Stale => "is stale",
+            State::Missing => "is missing",
+        };
+        tell(format_args!("canspec: {} {what}; the same call without `--check` writes it", file.path().display()));
+        finish = Finish::Errors;
+    }
+    Ok(finish)
+}
+
+/// Reads when a trait is implemented.
+fn switch(text: &str) -> Result<Switch, String> {
+    match text {
+        "always" => Ok(Switch::Always),
+        "never" => Ok(Switch::Never),
+        feature if is_feature(feature) => Ok(Switch::Gated(feature.to_owned())),
+        _ => Err("this is not the name of a feature".to_owned()),
+    }
+}
+
+fn is_feature(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|letter| letter.is_alphanumeric() || "_-+.".contains(letter))
+}
+
+#[cfg(test)]
+mod tests {
+    use canspec_codegen::emit::{Float, Options, Switch};
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Call {
+        #[command(flatten)]
+        compile: super::Compile,
+    }
+
+    fn options(call: &str) -> Option<Options> {
+        Call::try_parse_from(call.split(' ')).ok().map(|call| call.compile.options())
+    }
+
+    #[test]
+    fn each_choice_reaches_its_option() {
+        let call = "compile a.yaml --float f32 --serde always --defmt log --arbitrary fuzz-1";
+        let gated = |feature: &str| Switch::Gated(feature.to_owned());
+        let expected =
+            Options { float: Float::F32, serde: Switch::Always, defmt: gated("log"), arbitrary: gated("fuzz-1") };
+        assert_eq!(options(call), Some(expected));
+        assert_eq!(options("compile a.yaml --serde never --float f64"), Some(Options::default()));
+        assert_eq!(options("compile a.yaml"), Some(Options::default()));
+    }
+
+    #[test]
+    fn what_no_feature_can_be_called_is_refused() {
+        for call in ["compile a.yaml --serde a/b", "compile a.yaml --serde ", "compile a.yaml --serde \""] {
+            assert_eq!(options(call), None, "{call}");
+        }
+    }
 }

@@ -11,6 +11,7 @@ use crate::failure::{Failure, Finish};
 use crate::input::Input;
 use crate::line::{self, Origin};
 use crate::log::{self, Entry};
+use crate::model::Model;
 use crate::protocols::Several;
 use crate::table::Table;
 
@@ -23,6 +24,8 @@ use crate::table::Table;
 pub struct Decode {
     #[command(flatten)]
     protocols: Several,
+    #[command(flatten)]
+    model: Model,
     /// A table, or a JSON object a frame.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -45,11 +48,13 @@ impl Decode {
     /// Writes each frame of the log as the chosen protocols understand it.
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocols = self.protocols.load()?;
+        let models = self.model.find(&protocols)?;
+        let devices: Vec<_> = protocols.iter().zip(models).collect();
         let mut printer = self.printer(&protocols);
         let out = BufWriter::new(io::stdout().lock());
         Input::open(self.file.as_deref())?.each(out, |out, line| {
             let entry = line.text.and_then(log::read)?;
-            Ok(entry.map_or(Ok(()), |entry| printer.frame(out, &protocols, line.number, &entry)))
+            Ok(entry.map_or(Ok(()), |entry| printer.frame(out, &devices, line.number, &entry)))
         })
     }
 
@@ -65,11 +70,11 @@ impl Printer {
     fn frame(
         &mut self,
         out: &mut impl Write,
-        protocols: &[Protocol],
+        devices: &[Device<'_>],
         line: usize,
         entry: &Entry<'_>,
     ) -> io::Result<()> {
-        let Some((protocol, decoded)) = decode(protocols, &entry.frame) else { return Ok(()) };
+        let Some((protocol, decoded)) = decode(devices, &entry.frame) else { return Ok(()) };
         let Entry { time, channel, frame } = entry;
         let origin = Origin { line, time: time.as_deref(), channel: *channel, frame, protocol };
         match self {
@@ -79,8 +84,11 @@ impl Printer {
     }
 }
 
+/// A protocol, and the number of the device model if one of its models is chosen.
+type Device<'a> = (&'a Protocol, Option<usize>);
+
 /// Decodes by the first protocol that recognises the frame, else says what the first one has against it.
-fn decode<'a>(protocols: &'a [Protocol], frame: &Frame) -> Option<(&'a Protocol, Result<Decoded, Unrecognised>)> {
-    let by = |protocol: &'a Protocol| (protocol, interpret::decode(protocol, frame));
-    protocols.iter().map(by).find(|(_, decoded)| decoded.is_ok()).or_else(|| protocols.first().map(by))
+fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<(&'a Protocol, Result<Decoded, Unrecognised>)> {
+    let by = |(protocol, model): &Device<'a>| (*protocol, interpret::decode(protocol, *model, frame));
+    devices.iter().map(by).find(|(_, decoded)| decoded.is_ok()).or_else(|| devices.first().map(by))
 }

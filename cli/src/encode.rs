@@ -11,6 +11,7 @@ use crate::failure::{Failure, Finish};
 use crate::input::Input;
 use crate::line::Content;
 use crate::log;
+use crate::model::Model;
 use crate::protocols::One;
 
 /// Make a request, or turn decoded lines back into frames.
@@ -29,6 +30,8 @@ Examples:
 pub struct Encode {
     #[command(flatten)]
     protocol: One,
+    #[command(flatten)]
+    model: Model,
     /// Read decoded lines from the file, or from standard input.
     #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["to", "source"])]
     from: Option<Format>,
@@ -61,9 +64,10 @@ impl Encode {
     /// Prints the frames asked for.
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocol = self.protocol.load()?;
+        let model = self.model.find_in(&protocol)?;
         match (&self.to, self.from) {
-            (Some(to), None) => self.request(&protocol, to),
-            _ => lines(&protocol, self.file()?),
+            (Some(to), None) => self.request(&protocol, model, to),
+            _ => lines(&protocol, model, self.file()?),
         }
     }
 
@@ -75,7 +79,7 @@ impl Encode {
         }
     }
 
-    fn request(&self, protocol: &Protocol, to: &str) -> Result<Finish, Failure> {
+    fn request(&self, protocol: &Protocol, model: Option<usize>, to: &str) -> Result<Finish, Failure> {
         let (signals, names): (Vec<&String>, Vec<&String>) = self.words.iter().partition(|word| word.contains('='));
         let (access, message) = match names.as_slice() {
             [message] => (None, message),
@@ -85,7 +89,7 @@ impl Encode {
         let pair = |word: &&String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
         let signals: Vec<_> = signals.iter().filter_map(pair).collect();
         let target = Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string()))?;
-        let frame = interpret::request(protocol, access, message, &target, self.source, &signals);
+        let frame = interpret::request(protocol, model, access, message, &target, self.source, &signals);
         let frame = frame.map_err(|refusal| Failure::Input(refusal.to_string()))?;
         log::write(&mut io::stdout().lock(), None, None, &frame)?;
         Ok(Finish::Done)
@@ -93,10 +97,10 @@ impl Encode {
 }
 
 /// Turns decoded lines into a log.
-fn lines(protocol: &Protocol, file: Option<&Path>) -> Result<Finish, Failure> {
+fn lines(protocol: &Protocol, model: Option<usize>, file: Option<&Path>) -> Result<Finish, Failure> {
     let out = BufWriter::new(io::stdout().lock());
     Input::open(file)?.each(out, |out, line| {
-        let made = line.text.and_then(|text| read(protocol, text))?;
+        let made = line.text.and_then(|text| read(protocol, model, text))?;
         Ok(made.map_or(Ok(()), |(content, frame)| {
             let time = content.time.as_ref().map(|time| time.get());
             log::write(out, time, content.channel.as_deref(), &frame)
@@ -104,11 +108,11 @@ fn lines(protocol: &Protocol, file: Option<&Path>) -> Result<Finish, Failure> {
     })
 }
 
-fn read(protocol: &Protocol, line: &str) -> Result<Option<(Content, Frame)>, String> {
+fn read(protocol: &Protocol, model: Option<usize>, line: &str) -> Result<Option<(Content, Frame)>, String> {
     let Some(content) = Content::read(line)? else { return Ok(None) };
     check_protocol(protocol, &content)?;
     check_units(protocol, &content)?;
-    let frame = interpret::encode(protocol, &content.frame).map_err(|refusal| refusal.to_string())?;
+    let frame = interpret::encode(protocol, model, &content.frame).map_err(|refusal| refusal.to_string())?;
     Ok(Some((content, frame)))
 }
 

@@ -33,6 +33,8 @@ pub enum Failure {
     Input(String),
     /// A spec has errors.
     Spec(Box<Diagnostics>),
+    /// Some of several specs have errors.
+    Specs(Vec<Diagnostics>),
     /// Standard output cannot be written.
     Output(io::Error),
 }
@@ -50,6 +52,7 @@ impl Failure {
             Self::Output(error) => tell(format_args!("canspec: standard output: {error}")),
             Self::Call(why) | Self::Input(why) => tell(format_args!("canspec: {why}")),
             Self::Spec(diagnostics) => tell(diagnostics.render(true).trim_end()),
+            Self::Specs(refused) => refused.iter().for_each(|one| tell(one.render(true).trim_end())),
         }
         ExitCode::from(if matches!(self, Self::Call(_)) { 2 } else { 1 })
     }

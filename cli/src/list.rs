@@ -4,7 +4,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use canspec_codegen::model::{
-    Document, Encoding, Enumeration, Example, Message, Piece, Protocol, Selector, SelectorPlace, Signal, StatusWord,
+    DeviceModel, Document, Encoding, Enumeration, Example, Message, NamedValue, Piece, Protocol, Selector,
+    SelectorPlace, Signal, StatusWord,
 };
 use canspec_codegen::number::Rational;
 use canspec_specs::SPECS;
@@ -72,9 +73,39 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     let mut rows = Vec::new();
     for message in &protocol.messages {
         rows.push(message_row(protocol, &selectors, message));
-        rows.extend(message.signals.iter().map(|signal| signal_row(protocol, selectors.len(), message, signal)));
+        let signals = message.signals.iter().filter(|_| value(message).is_none());
+        rows.extend(signals.map(|signal| signal_row(protocol, selectors.len(), message, signal)));
     }
-    columns::write(out, &headings, "MEANING", &rows)
+    columns::write(out, &headings, "MEANING", &rows)?;
+    models(out, protocol)
+}
+
+/// Writes a table of the device models, if there are any.
+fn models(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
+    let rows: Vec<Row> = protocol.models.iter().map(model_row).collect();
+    if rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    columns::write(out, &["MODEL", "ITEM", "IN PARALLEL", "KBIT/S", "SECTION"], "MEANING", &rows)
+}
+
+fn model_row(model: &DeviceModel) -> Row {
+    let rates = model.bit_rates.iter().map(|rate| (rate / 1000).to_string());
+    let cells = vec![
+        model.name.clone(),
+        model.items.join(", "),
+        model.max_parallel.map_or(String::new(), |count| count.to_string()),
+        rates.collect::<Vec<_>>().join(", "),
+        model.doc.section.clone().unwrap_or_default(),
+    ];
+    let facts = model.facts.iter().map(|(name, fact)| {
+        let unit = fact.unit.map_or(String::new(), |unit| format!(" {}", unit.symbol));
+        format!("{name} {}{unit}", fact.value)
+    });
+    let limits = model.types.iter().filter_map(|own| Some((&own.name, own.range?)));
+    let limits = limits.map(|(name, range)| format!("{name} {}..{}", range.minimum, range.maximum));
+    Row { cells, last: titled(model.doc.title.as_deref(), facts.chain(limits).collect()), separator: ", " }
 }
 
 fn document(document: &Document) -> String {
@@ -105,9 +136,22 @@ fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> R
     };
     let accesses = message.accesses.iter().map(|access| protocol.accesses[access.access].name.as_str());
     let mut cells: Vec<String> = selectors.iter().map(shown).collect();
-    cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone(), String::new()]);
+    cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
+    cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_owned()));
     cells.push(message.doc.section.clone().unwrap_or_default());
-    Row { cells, last: words(message.doc.title.as_deref().unwrap_or_default()), separator: " " }
+    let models = message.models.iter().map(|model| protocol.models[*model].name.as_str()).collect::<Vec<_>>();
+    let models = if models.is_empty() { String::new() } else { format!(" (only {})", models.join(", ")) };
+    let title = format!("{}{models}", message.doc.title.as_deref().unwrap_or_default());
+    let title = Some(title.trim_start()).filter(|title| !title.is_empty());
+    match value(message) {
+        Some(signal) => Row { cells, last: titled(title, meaning(protocol, signal)), separator: ", " },
+        None => Row { cells, last: words(title.unwrap_or_default()), separator: " " },
+    }
+}
+
+/// Returns the signal of a message that is nothing but a value, as a register is.
+fn value(message: &Message) -> Option<&Signal> {
+    message.signals.first().filter(|signal| message.signals.len() == 1 && signal.name == "value")
 }
 
 /// Writes a selector's value in as many digits as it has on the bus.
@@ -142,7 +186,7 @@ fn titled(title: Option<&str>, mut items: Vec<String>) -> Vec<String> {
 fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     let mut items = Vec::new();
     items.extend(signal.range.map(|range| format!("{}..{}", range.minimum, range.maximum)));
-    items.extend(depends_on_model(protocol, signal).then(|| "limits by model".to_owned()));
+    items.extend((!signal.model_ranges.is_empty()).then(|| "limits by model".to_owned()));
     match &signal.encoding {
         Encoding::Number { scale, .. } if *scale != Rational::ONE => items.push(format!("step {scale}")),
         Encoding::Float => items.push("float".to_owned()),
@@ -156,13 +200,14 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     items
 }
 
-fn depends_on_model(protocol: &Protocol, signal: &Signal) -> bool {
-    let mut types = protocol.models.iter().flat_map(|model| &model.types);
-    types.any(|differing| differing.range.is_some() && signal.types.contains(&differing.name))
-}
-
 fn names(enumeration: &Enumeration) -> Vec<String> {
-    enumeration.values.iter().map(|value| format!("{} = {}", value.raw, value.name)).collect()
+    let digits = usize::from(enumeration.width.div_ceil(4));
+    let is_small = enumeration.values.iter().all(|value| value.raw < 10);
+    let shown = |value: &NamedValue| match value.raw {
+        raw if is_small => format!("{raw} = {}", value.name),
+        raw => format!("0x{raw:0digits$X} = {}", value.name),
+    };
+    enumeration.values.iter().map(shown).collect()
 }
 
 fn bits(word: &StatusWord) -> Vec<String> {

@@ -11,6 +11,7 @@ mod input;
 mod line;
 mod list;
 mod log;
+mod model;
 mod protocols;
 mod table;
 

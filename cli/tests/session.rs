@@ -1,4 +1,4 @@
-//! The shipped log decodes to what the vendor's document says, and encodes back to the same frames.
+//! The shipped logs decode to what the vendors' documents say, and encode back to the same frames.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,8 +7,92 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-fn logs(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/logs").join(name)
+/// A log, how it is decoded, the commands or registers that it uses, and the lines whose request is outside the limits.
+struct Session {
+    name: &'static str,
+    protocol: &'static str,
+    model: Option<&'static str>,
+    commands: &'static [u64],
+    out_of_range: &'static [u64],
+}
+
+const SESSIONS: [Session; 5] = [
+    Session {
+        name: "infy-session",
+        protocol: "infy",
+        model: None,
+        commands: &[1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 19, 20, 22, 25, 26, 27, 28, 31],
+        out_of_range: &[],
+    },
+    Session {
+        name: "gcp-session",
+        protocol: "gcp",
+        model: Some("PS_M2_3AC_1000DC_30KW"),
+        commands: &[1, 2, 3, 4, 6, 12, 15, 19, 20, 26, 27, 28],
+        out_of_range: &[],
+    },
+    Session {
+        name: "gcp-dc-session",
+        protocol: "gcp",
+        model: Some("PS_M2_825DC_1000DC_30KW"),
+        commands: &[1, 2, 3, 4, 6, 12, 15, 19, 20, 26, 27, 28],
+        out_of_range: &[],
+    },
+    Session {
+        name: "trio-session",
+        protocol: "trio",
+        model: Some("PM_1AC_24DC_2500W"),
+        commands: &[16, 17, 32, 33, 34, 35, 37, 39],
+        out_of_range: &[10, 14, 15, 16, 99],
+    },
+    Session {
+        name: "mxr-session",
+        protocol: "mxr",
+        model: None,
+        commands: &[
+            1, 2, 3, 4, 5, 8, 10, 11, 12, 13, 14, 16, 17, 18, 23, 27, 30, 31, 32, 33, 34, 35, 48, 49, 62, 64, 67, 68,
+            70, 72, 74, 75, 84, 85, 86, 87,
+        ],
+        out_of_range: &[],
+    },
+];
+
+impl Session {
+    fn file(&self, ending: &str) -> PathBuf {
+        let logs = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/logs");
+        logs.join(format!("{}.{ending}", self.name))
+    }
+
+    /// Returns the lines of the expected values without the line that explains them.
+    fn expected(&self) -> Vec<String> {
+        let text = fs::read_to_string(self.file("expected.tsv")).expect("the file ships");
+        text.lines().filter(|line| !line.starts_with('#')).map(|line| line.trim_end().to_owned()).collect()
+    }
+
+    fn run(&self, command: &str, options: &[&str], input: &[u8]) -> Output {
+        let mut arguments = vec![command, "--protocol", self.protocol];
+        arguments.extend(self.model.iter().flat_map(|model| ["--model", model]));
+        arguments.extend(options);
+        canspec(&arguments, input)
+    }
+
+    fn decode(&self, options: &[&str]) -> String {
+        let log = self.file("log");
+        let output = self.run("decode", &[options, &[&log.to_string_lossy()]].concat(), b"");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).expect("the output is UTF-8")
+    }
+
+    fn decoded(&self) -> Vec<Value> {
+        let text = self.decode(&["--format", "jsonl"]);
+        text.lines().map(|line| serde_json::from_str(line).expect("each line is an object")).collect()
+    }
+
+    /// Encodes decoded lines.
+    fn encode(&self, lines: &[Value]) -> Output {
+        let lines: Vec<_> = lines.iter().map(Value::to_string).collect();
+        self.run("encode", &["--from", "jsonl"], lines.join("\n").as_bytes())
+    }
 }
 
 fn canspec(arguments: &[&str], input: &[u8]) -> Output {
@@ -28,7 +112,7 @@ fn canspec(arguments: &[&str], input: &[u8]) -> Output {
     output
 }
 
-/// Shows a line of output as `session.expected.tsv` does, the signals in the order of their names.
+/// Shows a line of output as the expected values are written, the signals in the order of their names.
 fn shown(line: &Value) -> String {
     let Some(message) = line["message"].as_str() else { return format!("{}\t-\t-", line["line"]) };
     let signals = line["signals"].as_object().expect("signals are an object");
@@ -45,6 +129,11 @@ fn sorted(expected: &str) -> String {
     format!("{head}\t{}", signals.join("; ")).trim_end().to_owned()
 }
 
+/// Returns the command of a frame, or the register of a protocol that has registers.
+fn command(line: &Value) -> Option<u64> {
+    line["identifier"]["command"].as_u64().or(line["selectors"]["register"].as_u64())
+}
+
 fn value(signal: &Value) -> String {
     if let Some(set) = signal["set"].as_array() {
         let unknown = signal["unknown"].as_u64().unwrap_or_default();
@@ -52,54 +141,66 @@ fn value(signal: &Value) -> String {
         let named = set.iter().filter_map(Value::as_str).map(str::to_owned);
         return format!("{{{}}}", named.chain(unnamed).collect::<Vec<_>>().join(","));
     }
-    let text = match &signal["value"] {
-        Value::String(text) => text.clone(),
+    let number = match &signal["value"] {
+        Value::String(text) => return text.clone(),
         Value::Number(number) => number.to_string().trim_end_matches(".0").to_owned(),
         _ => format!("?{}", signal["raw"]),
     };
-    signal["unit"].as_str().map_or(text.clone(), |unit| format!("{text} {unit}"))
-}
-
-fn decoded() -> Vec<Value> {
-    let log = logs("infy-session.log");
-    let output = canspec(&["decode", "--protocol", "infy", "--format", "jsonl", &log.to_string_lossy()], b"");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).expect("the output is UTF-8");
-    text.lines().map(|line| serde_json::from_str(line).expect("each line is an object")).collect()
+    signal["unit"].as_str().map_or(number.clone(), |unit| format!("{number} {unit}"))
 }
 
 #[test]
-fn the_session_decodes_to_the_values_of_the_document() {
-    let expected = fs::read_to_string(logs("infy-session.expected.tsv")).expect("the file ships");
-    let expected = expected.lines().filter(|line| !line.starts_with('#')).map(str::trim_end);
-    let lines = decoded();
-    for (line, expected) in lines.iter().zip(expected.clone()) {
-        assert_eq!(shown(line), sorted(expected));
+fn each_session_decodes_to_the_values_of_the_document() {
+    for session in SESSIONS {
+        let lines = session.decoded();
+        let expected = session.expected();
+        for (line, expected) in lines.iter().zip(&expected) {
+            assert_eq!(shown(line), sorted(expected), "{}", session.name);
+        }
+        assert_eq!(lines.len(), expected.len(), "{}", session.name);
     }
-    assert_eq!(lines.len(), expected.count());
-    assert!(lines.len() >= 40);
 }
 
 #[test]
-fn the_session_uses_every_command() {
-    let lines = decoded();
-    let commands: BTreeSet<_> = lines.iter().filter_map(|line| line["identifier"]["command"].as_u64()).collect();
-    let all = [1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 19, 20, 22, 25, 26, 27, 28, 31];
-    assert!(all.iter().all(|command| commands.contains(command)), "{commands:?}");
+fn each_session_uses_every_command() {
+    for session in SESSIONS {
+        let lines = session.decoded();
+        let commands: BTreeSet<_> = lines.iter().filter_map(command).collect();
+        assert!(session.commands.iter().all(|command| commands.contains(command)), "{}: {commands:?}", session.name);
+    }
 }
 
 #[test]
-fn the_session_encodes_back_to_the_same_frames() {
-    let log = fs::read_to_string(logs("infy-session.log")).expect("the file ships");
-    let recognised: Vec<_> = decoded().into_iter().filter(|line| !line["message"].is_null()).collect();
-    let lines: Vec<_> = recognised.iter().map(Value::to_string).collect();
-    let output = canspec(&["encode", "--protocol", "infy", "--from", "jsonl"], lines.join("\n").as_bytes());
-    let frame = |line: &str| line.rsplit(' ').next().unwrap_or_default().to_owned();
-    let encoded: Vec<_> = String::from_utf8_lossy(&output.stdout).lines().map(frame).collect();
-    let numbers = recognised.iter().filter_map(|line| line["line"].as_u64()).collect::<BTreeSet<_>>();
-    let printed = log.lines().zip(1..).filter(|(_, number)| numbers.contains(number)).map(|(line, _)| frame(line));
-    assert_eq!(encoded, printed.collect::<Vec<_>>(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success());
+fn each_session_encodes_back_to_the_same_frames() {
+    for session in SESSIONS {
+        let log = fs::read_to_string(session.file("log")).expect("the file ships");
+        let accepted = |line: &Value| !line["message"].is_null() && !is_out_of_range(line);
+        let recognised: Vec<_> = session.decoded().into_iter().filter(accepted).collect();
+        let output = session.encode(&recognised);
+        let frame = |line: &str| line.rsplit(' ').next().unwrap_or_default().to_owned();
+        let encoded: Vec<_> = String::from_utf8_lossy(&output.stdout).lines().map(frame).collect();
+        let numbers = recognised.iter().filter_map(|line| line["line"].as_u64()).collect::<BTreeSet<_>>();
+        let printed = log.lines().zip(1..).filter(|(_, number)| numbers.contains(number)).map(|(line, _)| frame(line));
+        assert_eq!(encoded, printed.collect::<Vec<_>>(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "{}", session.name);
+    }
+}
+
+fn is_out_of_range(line: &Value) -> bool {
+    line["notes"].as_array().is_some_and(|notes| notes.iter().any(|note| note["rule"] == "out_of_range"))
+}
+
+#[test]
+fn each_request_outside_the_limits_is_noted_and_cannot_be_sent() {
+    for session in SESSIONS {
+        let outside: Vec<_> = session.decoded().into_iter().filter(is_out_of_range).collect();
+        let lines: Vec<_> = outside.iter().filter_map(|line| line["line"].as_u64()).collect();
+        assert_eq!(lines, session.out_of_range, "{}", session.name);
+        let output = session.encode(&outside);
+        let refusals = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(refusals.lines().count(), lines.len(), "{refusals}");
+        assert!(output.stdout.is_empty(), "{}", session.name);
+    }
 }
 
 /// Splits the table into the text of each line of the log, with the wrapped parts joined.
@@ -127,23 +228,32 @@ fn written(signal: &str) -> [String; 2] {
     [format!("{name} {number}{unit}"), format!("{name} {number}.0{unit}")]
 }
 
+/// Tells whether the row of a line shows its message and each of its numbers and names.
+fn shows(block: &str, expected: &str) -> Result<(), String> {
+    let mut columns = expected.split('\t').skip(1);
+    let message = columns.next().expect("a message");
+    if message != "-" && !block.contains(&format!(" {message}")) {
+        return Err(format!("{message} is not in {block:?}"));
+    }
+    let signals = columns.nth(1).unwrap_or_default();
+    for signal in signals.split("; ").filter(|signal| signal.contains('=') && !signal.contains('{')) {
+        let shown = written(signal);
+        let ends = |text: &String| block.contains(&format!("{text} ")) || block.ends_with(text.as_str());
+        if !shown.iter().any(ends) {
+            return Err(format!("{shown:?} is not in {block:?}"));
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn each_row_of_the_table_shows_the_values_of_the_document() {
-    let log = logs("infy-session.log");
-    let output = canspec(&["decode", "--protocol", "infy", &log.to_string_lossy()], b"");
-    let blocks = blocks(&String::from_utf8(output.stdout).expect("the output is UTF-8"));
-    let expected = fs::read_to_string(logs("infy-session.expected.tsv")).expect("the file ships");
-    let expected: Vec<_> = expected.lines().filter(|line| !line.starts_with('#')).collect();
-    assert_eq!(blocks.len(), expected.len());
-    for (block, line) in blocks.iter().zip(expected) {
-        let mut columns = line.split('\t').skip(1);
-        let message = columns.next().expect("a message");
-        assert!(message == "-" || block.contains(&format!(" {message}")), "{message}: {block}");
-        let signals = columns.nth(1).unwrap_or_default();
-        for signal in signals.split("; ").filter(|signal| signal.contains('=') && !signal.contains('{')) {
-            let shown = written(signal);
-            let ends = |text: &String| block.contains(&format!("{text} ")) || block.ends_with(text.as_str());
-            assert!(shown.iter().any(ends), "{shown:?} is not in {block:?}");
+    for session in SESSIONS {
+        let blocks = blocks(&session.decode(&[]));
+        let expected = session.expected();
+        assert_eq!(blocks.len(), expected.len(), "{}", session.name);
+        for (block, line) in blocks.iter().zip(&expected) {
+            assert_eq!(shows(block, line), Ok(()), "{}", session.name);
         }
     }
 }

@@ -286,7 +286,7 @@ messages:
         let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
         let origin = Origin { line: 7, time, channel, frame, protocol: &protocol };
         let mut out = Vec::new();
-        write(&mut out, &origin, &decode(&protocol, frame)).expect("a vector takes everything");
+        write(&mut out, &origin, &decode(&protocol, None, frame)).expect("a vector takes everything");
         String::from_utf8(out).expect("JSON is text")
     }
 

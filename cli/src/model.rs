@@ -1,0 +1,39 @@
+//! Choosing a device model.
+
+use canspec_codegen::model::{DeviceModel, Protocol};
+use clap::Args;
+
+use crate::failure::Failure;
+
+/// Chooses a device model.
+#[derive(Args)]
+pub struct Model {
+    /// The device model, by name or item number: its layouts and limits count.
+    #[arg(long = "model", value_name = "NAME")]
+    name: Option<String>,
+}
+
+impl Model {
+    /// Returns the model's number in each protocol that has it.
+    pub fn find(&self, protocols: &[Protocol]) -> Result<Vec<Option<usize>>, Failure> {
+        let Some(name) = &self.name else { return Ok(vec![None; protocols.len()]) };
+        let is_meant = |model: &DeviceModel| model.name == *name || model.items.contains(name);
+        let found: Vec<_> = protocols.iter().map(|protocol| protocol.models.iter().position(is_meant)).collect();
+        if found.iter().all(Option::is_none) { Err(Failure::Call(unknown(name, protocols))) } else { Ok(found) }
+    }
+
+    /// Returns the model's number in a protocol.
+    pub fn find_in(&self, protocol: &Protocol) -> Result<Option<usize>, Failure> {
+        Ok(self.find(std::slice::from_ref(protocol))?.into_iter().flatten().next())
+    }
+}
+
+/// Says which models there are.
+fn unknown(name: &str, protocols: &[Protocol]) -> String {
+    let known = protocols.iter().map(|protocol| {
+        let names: Vec<_> = protocol.models.iter().map(|model| model.name.as_str()).collect();
+        let names = if names.is_empty() { "no models".to_owned() } else { names.join(", ") };
+        format!("`{}` has {names}", protocol.name)
+    });
+    format!("unknown model `{name}`; {}", known.collect::<Vec<_>>().join("; "))
+}
