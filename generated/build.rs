@@ -1,5 +1,8 @@
 //! Compiles every spec of `specs/`.
 
+use canspec_codegen::emit::Switch::Gated;
+
 fn main() {
-    canspec_codegen::Builder::new().folder("../specs").build();
+    let [serde, defmt, arbitrary] = ["serde", "defmt", "arbitrary"].map(|feature| Gated(feature.to_owned()));
+    canspec_codegen::Builder::new().folder("../specs").serde(serde).defmt(defmt).arbitrary(arbitrary).build();
 }

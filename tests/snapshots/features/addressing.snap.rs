@@ -239,7 +239,7 @@ pub enum Message {
     Level(Level),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -265,14 +265,14 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
     const MODES: &'static [Mode] = &[SINGLE_MODE, GROUP_MODE, ALL_MODE];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x03)
             .then(|| Recognised::request(&Level::SET, Self::Level(Layout::decode(data))))
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x03)

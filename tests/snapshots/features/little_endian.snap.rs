@@ -172,7 +172,7 @@ pub enum Message {
     Measurement(Measurement),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -198,7 +198,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::FUNCTION.of(id) == 0x1)

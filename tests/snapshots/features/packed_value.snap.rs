@@ -209,7 +209,7 @@ pub enum Message {
     Label(Label),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -235,13 +235,13 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         (Identifier::COMMAND.of(id) == 0x06)
             .then(|| Recognised::request(&Label::READ, Self::ReadLabel))
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x06)

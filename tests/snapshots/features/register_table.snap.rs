@@ -208,7 +208,7 @@ pub enum Message {
     VoltageLimit(VoltageLimit),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -234,7 +234,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (
@@ -249,7 +249,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (

@@ -202,7 +202,7 @@ pub enum Message {
     SetOutput(SetOutput),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -228,7 +228,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[MODULE_MODE];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x0012)
@@ -238,7 +238,7 @@ impl Protocol for Message {
             ))
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x0012)

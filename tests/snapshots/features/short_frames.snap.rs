@@ -231,7 +231,7 @@ pub enum Message {
     Drift(Drift),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -257,7 +257,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[ALL_MODE, SINGLE_MODE];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (
@@ -271,7 +271,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::FUNCTION.of(id) == 0x5)

@@ -261,6 +261,135 @@ const SET_TOTAL_ANSWERS: [Option<Who>; 4] = [
     Some(Who::Coordinator),
 ];
 
+/// A device model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Model {
+    /// `REG85750`: Module for up to 750 V and 15 A. Section 3.3, 2.2.
+    Reg85750,
+    /// `REG85500`: Module for up to 550 V and 20 A. Section 3.3, 2.2.
+    ///
+    /// Erratum D51: printed is "REG85500 from 0.12 A; REG75030 and REG50040 from 100 V in the table, from
+    /// 50 V since February 2017 in a note below it", used is "0.12 A and 100 V as the table has them, 50 V
+    /// as a fact".
+    Reg85500,
+    /// `REG75020`: Module for up to 750 V and 16.7 A. Section 3.3, 2.2.
+    ///
+    /// DIP addressing from software 1.20 on; without a set-point 600 V and 16.7 A before the change of
+    /// defaults, whose date is unknown.
+    ///
+    /// Erratum U33: printed is "a column of defaults, empty for the last four models, and a column of
+    /// changed defaults without a date, empty for the first two", used is "each as a fact where it is
+    /// printed, none as a value to send".
+    Reg75020,
+    /// `REG50025`: Module for up to 550 V and 23 A. Section 3.3, 2.2.
+    ///
+    /// DIP addressing from software 2.20 on; without a set-point 500 V and 23 A before the change of
+    /// defaults, whose date is unknown.
+    ///
+    /// Erratum U33: printed is "a column of defaults, empty for the last four models, and a column of
+    /// changed defaults without a date, empty for the first two", used is "each as a fact where it is
+    /// printed, none as a value to send".
+    Reg50025,
+    /// `REG75030`: Module for up to 750 V and 25.7 A. Section 3.3, 2.2.
+    ///
+    /// DIP addressing; modules from February 2017 on go down to 50 V, an older one ignores less than 100 V
+    /// and keeps its last set-point.
+    ///
+    /// Erratum D51: printed is "REG85500 from 0.12 A; REG75030 and REG50040 from 100 V in the table, from
+    /// 50 V since February 2017 in a note below it", used is "0.12 A and 100 V as the table has them, 50 V
+    /// as a fact".
+    ///
+    /// Erratum U33: printed is "a column of defaults, empty for the last four models, and a column of
+    /// changed defaults without a date, empty for the first two", used is "each as a fact where it is
+    /// printed, none as a value to send".
+    Reg75030,
+    /// `REG50040`: Module for up to 550 V and 35 A. Section 3.3, 2.2.
+    ///
+    /// DIP addressing; modules from February 2017 on go down to 50 V, an older one ignores less than 100 V
+    /// and keeps its last set-point.
+    ///
+    /// Erratum D51: printed is "REG85500 from 0.12 A; REG75030 and REG50040 from 100 V in the table, from
+    /// 50 V since February 2017 in a note below it", used is "0.12 A and 100 V as the table has them, 50 V
+    /// as a fact".
+    ///
+    /// Erratum U33: printed is "a column of defaults, empty for the last four models, and a column of
+    /// changed defaults without a date, empty for the first two", used is "each as a fact where it is
+    /// printed, none as a value to send".
+    Reg50040,
+    /// `REG75035`: Module for up to 750 V and 33 A. Section 3.3, 2.2.
+    ///
+    /// Erratum U33: printed is "a column of defaults, empty for the last four models, and a column of
+    /// changed defaults without a date, empty for the first two", used is "each as a fact where it is
+    /// printed, none as a value to send".
+    Reg75035,
+    /// `REG50050`: Module for up to 550 V and 50 A. Section 3.3, 2.2.
+    ///
+    /// Erratum U33: printed is "a column of defaults, empty for the last four models, and a column of
+    /// changed defaults without a date, empty for the first two", used is "each as a fact where it is
+    /// printed, none as a value to send".
+    Reg50050,
+}
+
+impl Model {
+    /// Every device model.
+    pub const ALL: [Self; 8] = [
+        Self::Reg85750,
+        Self::Reg85500,
+        Self::Reg75020,
+        Self::Reg50025,
+        Self::Reg75030,
+        Self::Reg50040,
+        Self::Reg75035,
+        Self::Reg50050,
+    ];
+
+    /// Returns the vendor's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Reg85750 => "REG85750",
+            Self::Reg85500 => "REG85500",
+            Self::Reg75020 => "REG75020",
+            Self::Reg50025 => "REG50025",
+            Self::Reg75030 => "REG75030",
+            Self::Reg50040 => "REG50040",
+            Self::Reg75035 => "REG75035",
+            Self::Reg50050 => "REG50050",
+        }
+    }
+}
+
+impl From<Model> for u8 {
+    fn from(model: Model) -> Self {
+        model as Self
+    }
+}
+
+/// Limits of `output_voltage` by device model.
+const OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[
+    (Model::Reg85750 as u8, 100.0, 750.0),
+    (Model::Reg85500 as u8, 100.0, 550.0),
+    (Model::Reg75020 as u8, 100.0, 750.0),
+    (Model::Reg50025 as u8, 100.0, 550.0),
+    (Model::Reg75030 as u8, 100.0, 750.0),
+    (Model::Reg50040 as u8, 100.0, 550.0),
+    (Model::Reg75035 as u8, 50.0, 750.0),
+    (Model::Reg50050 as u8, 50.0, 550.0),
+];
+
+/// Limits of `output_current` by device model.
+const OUTPUT_CURRENT_LIMITS: &[(u8, f64, f64)] = &[
+    (Model::Reg85750 as u8, 0.1, 15.0),
+    (Model::Reg85500 as u8, 0.12, 20.0),
+    (Model::Reg75020 as u8, 0.13, 16.7),
+    (Model::Reg50025 as u8, 0.2, 23.0),
+    (Model::Reg75030 as u8, 0.2, 25.7),
+    (Model::Reg50040 as u8, 0.3, 35.0),
+    (Model::Reg75035 as u8, 0.26, 33.0),
+    (Model::Reg50050 as u8, 0.4, 50.0),
+];
+
 /// Cause of an error in the data, or that the module is starting up. Section 2.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ErrorCode {
@@ -1614,7 +1743,8 @@ impl SetTotalOutput {
     /// The signal `voltage`.
     pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
         .unit("V")
-        .scale(1, 1000);
+        .scale(1, 1000)
+        .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`.
     pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
         .unit("A")
@@ -1629,6 +1759,16 @@ impl SetTotalOutput {
         )
         .request(FRAME.id(Identifier::COMMAND, 0x1B))
         .reply(FRAME.id(Identifier::COMMAND, 0x1B));
+
+    /// Returns the values if a device model takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Self, Error> {
+        Self::SET_TOTAL.within(model, &self)?;
+        Ok(self)
+    }
 
     /// Builds the request `set_total` with these values. Section 2.4.
     ///
@@ -1689,17 +1829,29 @@ impl SetModuleOutput {
     /// The signal `voltage`.
     pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
         .unit("V")
-        .scale(1, 1000);
+        .scale(1, 1000)
+        .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`.
     pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
         .unit("A")
-        .scale(1, 1000);
+        .scale(1, 1000)
+        .model_limits(OUTPUT_CURRENT_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
     pub const SET: Exchange = Exchange::new("set_module_output", "set", &SET_ANSWERS)
         .request(FRAME.id(Identifier::COMMAND, 0x1C))
         .reply(FRAME.id(Identifier::COMMAND, 0x1C));
+
+    /// Returns the values if a device model takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Self, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(self)
+    }
 
     /// Builds the request `set` with these values. Section 2.4.
     ///
@@ -1846,7 +1998,7 @@ pub enum Message {
     SetAddressMode(SetAddressMode),
 }
 
-/// A recognised frame.
+/// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
 pub type Received = canspec_runtime::Received<Message>;
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -1864,6 +2016,18 @@ impl Message {
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
+
+    /// Recognises a frame of a device model: of messages that look the same, the one that it has.
+    ///
+    /// # Errors
+    ///
+    /// Says why the frame is not recognised.
+    pub fn decode_for(
+        model: Model,
+        frame: &impl embedded_can::Frame,
+    ) -> Result<Received, Problem> {
+        Received::decode_for(model, frame)
+    }
 }
 
 impl Protocol for Message {
@@ -1877,7 +2041,7 @@ impl Protocol for Message {
         ALL_GROUPS_MODE,
     ];
 
-    fn request(frame: &Frame) -> Option<Recognised<Self>> {
+    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match Identifier::COMMAND.of(id) {
@@ -1904,7 +2068,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    fn reply(frame: &Frame) -> Option<Recognised<Self>> {
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match Identifier::COMMAND.of(id) {
