@@ -1,0 +1,5 @@
+//! Compiles every spec of `specs/`.
+
+fn main() {
+    canspec_codegen::Builder::new().folder("specs").build();
+}

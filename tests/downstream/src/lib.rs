@@ -1,0 +1,39 @@
+//! A driver for winches and fans of made-up vendors.
+#![no_std]
+#![deny(warnings, missing_docs, unsafe_code)]
+
+/// Rope winches, as `specs/winch.yaml` describes them.
+pub mod winch {
+    canspec_runtime::include_protocol!("winch");
+}
+
+/// Fans, as `specs/fan.yaml` describes them.
+pub mod fan {
+    canspec_runtime::include_protocol!("fan");
+}
+
+/// Circulation pumps, as `specs/pump.yaml` describes them.
+pub mod pump {
+    canspec_runtime::include_protocol!("pump");
+}
+
+pub mod pumps;
+
+use winch::{Error, Message, Request, Run, Target, embedded_can};
+
+/// Lets a winch pull its rope in.
+///
+/// # Errors
+///
+/// The winch or the speed is out of range.
+pub fn pull(winch: u8, speed_rpm: i16) -> Result<Request<Run>, Error> {
+    Run { speed_rpm, ramp_s: 2.5 }.set(Target::Winch(winch))
+}
+
+/// Returns how much rope is out, if a frame of the bus says so.
+pub fn rope_m(frame: &impl embedded_can::Frame) -> Option<f64> {
+    match Message::decode(frame).ok()?.reply()? {
+        Ok(Message::Status(status)) => Some(status.rope_m),
+        _ => None,
+    }
+}

@@ -1,0 +1,132 @@
+//! Frames of the fans, put together by hand: priority 6 is 0x01800000 in the identifier, the command starts at bit 16.
+
+use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
+use winch_driver::fan::{
+    Air, Error, Failure, Frame, Identifier, Message, Model, Named, Power, Problem, Replies, Request, SetBlades,
+    SetSpeed, Target,
+};
+
+/// Raw -1501, raw 25 and raw 1.
+const SLOWLY: SetSpeed = SetSpeed { speed_rpm: -750.5, delay_s: 58.0, power: Power::Off };
+
+#[test]
+fn a_low_byte_stands_first_and_a_sign_is_kept() {
+    assert_eq!(sent(SLOWLY.set(Target::Fan(1))), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 1]));
+    let received = decoded(&frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 1]));
+    assert_eq!(received.request(), Some(&Message::SetSpeed(SLOWLY)));
+}
+
+#[test]
+fn an_angle_in_the_midst_of_a_word_leaves_the_other_bits_alone() {
+    let request = SetBlades { angle: -0.2 }.set(Target::Fan(1));
+    assert_eq!(sent(request), frame(0x0191_01E1, &[2, 0xE0, 0x3F, 0, 0]));
+    assert_eq!(SetBlades::RESERVED, [0, 0x0F, 0xC0, 0xFF, 0xFF, 0, 0, 0]);
+    let noisy = decoded(&frame(0x0191_01E1, &[2, 0xEF, 0xFF, 0, 0x80]));
+    assert_eq!(noisy.request(), Some(&Message::SetBlades(SetBlades { angle: -0.2 })));
+    assert_eq!(noisy.reserved(), [0, 0x0F, 0xC0, 0, 0x80, 0, 0, 0]);
+}
+
+#[test]
+fn power_0_is_on_and_power_1_is_off() {
+    let speed = |power| sent(SetSpeed { power, ..SLOWLY }.set(Target::Fan(1)));
+    assert_eq!(speed(Power::On), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 0]));
+    assert_eq!(speed(Power::Off), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 1]));
+    assert_eq!(speed(Power::Unknown(7)), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 7]));
+    assert_eq!([Power::On, Power::Off, Power::Unknown(7)].map(Named::name), [Some("on"), Some("off"), None]);
+}
+
+#[test]
+fn half_a_step_is_rounded_away_from_zero() {
+    let speed = |speed_rpm| sent(SetSpeed { speed_rpm, ..SLOWLY }.set(Target::Fan(1)));
+    assert_eq!(speed(750.25), frame(0x0191_01E1, &[1, 0xDD, 0x05, 25, 1]));
+    assert_eq!(speed(-750.25), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 1]));
+}
+
+#[test]
+fn both_ends_of_a_range_are_legal_and_what_lies_beyond_is_refused() {
+    let speed = |speed_rpm| SetSpeed { speed_rpm, ..SLOWLY }.set(Target::Fan(1)).is_ok();
+    assert_eq!([-1500.5, 1500.5].map(speed), [true; 2]);
+    assert_eq!([-1500.6, 1500.6, f64::NAN].map(speed), [false; 3]);
+}
+
+#[test]
+fn a_special_value_is_legal_outside_the_range() {
+    let delay = |delay_s| SetSpeed { delay_s, ..SLOWLY }.set(Target::Fan(1));
+    assert_eq!(SetSpeed::DELAY_NEVER.to_bits(), 8.0_f64.to_bits());
+    assert_eq!(sent(delay(SetSpeed::DELAY_NEVER)), frame(0x0191_01E1, &[1, 0x23, 0xFA, 0, 1]));
+    assert!(delay(8.5).is_err());
+}
+
+#[test]
+fn a_model_has_limits_and_messages_of_its_own() {
+    let speed = |speed_rpm, model| SetSpeed { speed_rpm, ..SLOWLY }.within(model).is_ok();
+    assert!(speed(900.5, Model::F200) && !speed(901.0, Model::F200));
+    assert!(speed(901.0, Model::F400) && !speed(1501.0, Model::F400));
+    let blades = SetBlades { angle: 1.0 };
+    assert!(blades.within(Model::F400).is_ok() && blades.within(Model::F200).is_err());
+}
+
+#[test]
+fn a_fan_has_an_address_from_1_to_64() {
+    let air = |fan| Air::read(Target::Fan(fan));
+    assert_eq!(sent(air(0x40)), frame(0x0192_40E1, &[1, 0, 0, 0, 0, 0, 0, 0]));
+    assert!(air(0).is_err() && air(0x41).is_err());
+}
+
+#[test]
+fn the_host_is_e1_unless_the_caller_is_another() {
+    let air = |host| Air::read(Target::Fan(2).sent_by(host));
+    assert_eq!(sent(air(0xE3)), frame(0x0192_02E3, &[1, 0, 0, 0, 0, 0, 0, 0]));
+    assert!(air(0xDF).is_err() && air(0xE4).is_err());
+}
+
+#[test]
+fn each_fan_of_a_group_answers() {
+    let request = SLOWLY.set(Target::Group(6)).expect("there are groups 0 to 7");
+    assert_eq!(*request.frame(), frame(0x0191_99E1, &[1, 0x23, 0xFA, 25, 1]));
+    assert!(matches!(request.replies(), Replies::Each(_)));
+    assert!(request.is_reply(&frame(0x0191_E140, &[1, 0, 0, 0, 0])));
+    assert!(!request.is_reply(&frame(0x0191_E040, &[1, 0, 0, 0, 0])));
+    assert!(!request.is_reply(&frame(0x0191_E140, &[2, 0, 0, 0, 0])));
+    assert!(SLOWLY.set(Target::Group(8)).is_err());
+}
+
+#[test]
+fn a_reply_says_what_the_fan_measures_or_shows_an_error() {
+    let request = Air::read(Target::Fan(1)).expect("fan 1 is documented");
+    let reply = |id, data: &[u8]| request.reply(&frame(id, data)).map(|reply| reply.values);
+    let air = Air { temperature_c: 15.0, humidity_percent: 50.0 };
+    assert_eq!(reply(0x0192_E101, &[1, 0x6E, 0, 0, 0x42, 0x48, 0, 0]), Some(Ok(air)));
+    assert_eq!(reply(0x0592_E101, &[1, 0x6E, 0, 0, 0x42, 0x48, 0, 0]), Some(Err(Failure::Error)));
+    assert_eq!(reply(0x0192_E101, &[1, 0x6E, 0, 0, 0x42]), Some(Err(Failure::Length)));
+    assert_eq!(reply(0x0192_E102, &[1, 0x6E, 0, 0, 0x42, 0x48, 0, 0]), None);
+}
+
+#[test]
+fn an_identifier_is_split_into_its_fields() {
+    let identifier = Identifier { error: 1, priority: 6, command: 0x12, target: 0xE1, source: 1 };
+    assert_eq!(decoded(&frame(0x0592_E101, &[1, 0, 0, 0, 0, 0, 0, 0])).identifier(), identifier);
+}
+
+#[test]
+fn what_is_no_frame_of_a_fan_is_named() {
+    let problem = |id, data: &[u8]| Message::decode(&frame(id, data)).map(|_| ());
+    assert_eq!(problem(0x01FF_FF00, &[]), Err(Problem::Foreign));
+    assert_eq!(problem(0x0191_01DF, &[1, 0, 0, 0, 0]), Err(Problem::Identifier));
+    assert_eq!(problem(0x0193_01E1, &[1, 0, 0, 0, 0]), Err(Problem::UnknownMessage));
+    assert_eq!(problem(0x0191_01E1, &[3, 0, 0, 0, 0]), Err(Problem::UnknownMessage));
+    assert_eq!(problem(0x0191_01E1, &[1, 0, 0, 0]), Err(Problem::Length));
+    assert_eq!(problem(0x0191_01E1, &[1, 0, 0, 0, 0, 0]), Err(Problem::Length));
+}
+
+fn sent<R: winch_driver::fan::Layout>(request: Result<Request<R>, Error>) -> Frame {
+    *request.expect("the document allows it").frame()
+}
+
+fn decoded(frame: &Frame) -> winch_driver::fan::Received {
+    Message::decode(frame).expect("a frame of a fan")
+}
+
+fn frame(id: u32, data: &[u8]) -> Frame {
+    Frame::new(ExtendedId::new(id).expect("it has 29 bits"), data).expect("it has 8 bytes at most")
+}

@@ -1,0 +1,45 @@
+//! The frames that the manual of the winches prints.
+
+use winch_driver::winch::embedded_can::{ExtendedId, Frame as _};
+use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, StatusWord, Target};
+use winch_driver::{pull, rope_m};
+
+#[test]
+fn a_request_is_the_printed_frame() {
+    let request = pull(0x12, 600).expect("both are in range");
+    assert_eq!(*request.frame(), frame(0x0B20_1201, [0x02, 0x58, 0x19, 0x00]));
+    let request = SetBrake { brake: Brake::Engaged }.set(Target::All).expect("all winches have a brake");
+    assert_eq!(*request.frame(), frame(0x0B22_FF01, [1, 0, 0, 0]));
+}
+
+#[test]
+fn a_reply_has_the_printed_values() {
+    let reply = frame(0x0B21_0112, [0x04, 0xD2, 0x41, 0x81]);
+    assert_eq!(rope_m(&reply), Some(12.34));
+    let request = Status::read(Target::Winch(0x12)).expect("the winch is in range");
+    let status = request.reply(&reply).expect("it answers the request").values.expect("it has its values");
+    assert_eq!((status.rope_m, status.temperature_c), (12.34, 25.0));
+    assert!(status.state.contains(State::OVERLOAD | State::BRAKED));
+    assert!(!status.state.contains(State::SLACK_ROPE));
+    let names = status.state.set_bits().map(|bit| bit.name);
+    assert!(names.eq(["braked", "overload"]));
+}
+
+#[test]
+fn a_frame_of_the_bus_is_recognised() {
+    let received = Message::decode(&frame(0x0B20_0112, [0xFD, 0xA8, 0x19, 0x00])).expect("it is printed");
+    assert_eq!(received.reply(), Some(Ok(&Message::Run(Run { speed_rpm: -600, ramp_s: 2.5 }))));
+    assert_eq!(received.encode(), Ok(*received.frame()));
+    assert!(Message::decode(&frame(0x0B55_0112, [0; 4])).is_err());
+}
+
+#[test]
+fn what_the_manual_forbids_is_refused() {
+    let error = pull(0x12, 1501).expect_err("it is too fast");
+    assert_eq!(error.to_string(), "`speed` of `run` is 1501 rpm, but its limits are -1500 and 1500 rpm");
+    assert!(pull(0x20, 600).is_err());
+}
+
+fn frame(id: u32, data: [u8; 4]) -> Frame {
+    Frame::new(ExtendedId::new(id).expect("it has 29 bits"), &data).expect("it has 4 bytes")
+}
