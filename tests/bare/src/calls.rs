@@ -1,0 +1,117 @@
+//! Calls of what every protocol has: the traits and the types of the runtime.
+
+use core::fmt::{self, Display, Write};
+use core::hint::black_box;
+
+use canspec_runtime::{
+    AnySignal, Error, Layout, Meaning, Named, Packed, Problem, Protocol, Raw, Reading, Received, Request, Signal,
+    StatusWord,
+};
+
+use crate::unknown::{Unknown, unknown};
+
+/// Makes the compiler believe that the value is needed.
+#[expect(clippy::needless_pass_by_value, reason = "callers hand over what calls return")]
+pub fn sink<T>(value: T) {
+    black_box(&value);
+}
+
+/// Formats a value.
+pub fn text(value: &impl Display) {
+    struct Sink;
+
+    impl Write for Sink {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            sink(text);
+            Ok(())
+        }
+    }
+
+    sink(write!(Sink, "{value}"));
+}
+
+/// Recognises a frame.
+pub fn decode<P: Protocol>() {
+    sink(Received::<P>::decode(&unknown_frame()));
+}
+
+/// Recognises a frame and asks for all that it says; builds it anew, and with other values and another identifier.
+pub fn received<P: Protocol<Identifier: Unknown> + Unknown>() {
+    let frame = unknown_frame();
+    let received =
+        if unknown() { Received::<P>::decode(&frame) } else { Received::decode_for(unknown::<u8>(), &frame) };
+    let received = match received {
+        Ok(received) => received,
+        Err(problem) => return text(&problem),
+    };
+    sink((received.request(), received.report(), received.content()));
+    match received.reply() {
+        Some(Err(failure)) => text(&failure),
+        reply => sink(reply),
+    }
+    sink((received.identifier(), received.frame(), received.kind(), received.exchange()));
+    sink((received.addressing(), received.is_error_reply(), received.reserved()));
+    received.selectors().for_each(sink);
+    received.visit(reading);
+    sink(received.encode());
+    sink(received.with_identifier(unknown()).encode());
+    let other = received.with_content(unknown());
+    sink(other.encode());
+    other.visit(reading);
+}
+
+fn unknown_frame() -> canspec_runtime::Frame {
+    unknown()
+}
+
+fn reading(reading: Reading<'_>) {
+    sink((reading.name, reading.unit, reading.raw, reading.meaning));
+}
+
+/// Looks at a request, and at a frame that may answer it.
+pub fn request<P: Protocol, R: Layout>(request: Result<Request<P, R>, Error>) {
+    match request {
+        Ok(request) => {
+            sink((request.frame(), request.replies(), request.is_reply(&unknown_frame())));
+            if let Some(reply) = request.reply(&unknown_frame()) {
+                reply.selectors().for_each(sink);
+                sink((reply.identifier, reply.values));
+            }
+        }
+        Err(error) => sink(error),
+    }
+}
+
+/// Builds a request and no more.
+pub fn encode<P: Protocol, R: Layout>(request: Result<Request<P, R>, Error>) {
+    sink(request);
+}
+
+/// Reads and writes a signal, as its own type and as any signal.
+pub fn signal<R: Raw + Unknown>(signal: &'static Signal<R>) {
+    sink((signal.get(&unknown()), signal.documented_limits()));
+    let mut payload = unknown();
+    sink(signal.put(unknown(), &mut payload));
+    sink(signal.write(unknown(), &mut payload));
+    sink(payload);
+    signal.read(&unknown(), &mut reading);
+    let signal: &dyn AnySignal = signal;
+    sink(signal);
+}
+
+/// Names a value, and finds it by its name.
+pub fn named<T: Named + Unknown>() {
+    sink((unknown::<T>().name(), T::from_name(unknown())));
+}
+
+/// Asks for the bits of a status word.
+pub fn status_word<T: StatusWord + Unknown>() {
+    let (one, other) = (unknown::<T>(), unknown());
+    sink((one.contains(other), one.intersects(other), one.is_empty(), one.union(other), one.unknown()));
+    one.set_bits().for_each(sink);
+}
+
+/// Reads a packed value from a text.
+pub fn packed<T: Packed + Unknown>() {
+    sink((unknown::<T>().text(), T::parse(unknown())));
+}

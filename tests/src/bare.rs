@@ -1,0 +1,195 @@
+//! Programs without the standard library, which cannot be linked if they can panic.
+
+mod binary;
+mod calls;
+mod others;
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, io};
+
+use canspec_codegen::emit;
+use canspec_codegen::model::Protocol;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+pub use binary::{Binary, Size};
+use calls::Module;
+pub use others::Others;
+
+/// The codecs that a program has, and what it calls of them.
+#[derive(Clone, Debug)]
+pub struct Program {
+    name: String,
+    modules: String,
+}
+
+/// One protocol in generated code.
+#[derive(Clone, Debug)]
+pub struct Codec {
+    name: String,
+    protocol: Protocol,
+    code: String,
+}
+
+impl Codec {
+    /// Generates the codecs of all specs in a folder of the workspace.
+    ///
+    /// # Panics
+    ///
+    /// If a spec is wrong.
+    pub fn all(folder: &str) -> Vec<Self> {
+        crate::specs(folder).iter().map(|path| Self::new(path)).collect()
+    }
+
+    fn new(path: &Path) -> Self {
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let protocol = crate::protocol(path);
+        let code = emit::rust(&protocol, &emit::Options::default());
+        Self { name, protocol, code }
+    }
+
+    /// Returns the name of the spec's file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns the protocol as the compiler knows it.
+    pub fn protocol(&self) -> &Protocol {
+        &self.protocol
+    }
+
+    /// Adds an indexing expression to the first decoder.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such decoder.
+    #[must_use]
+    pub fn with_index(mut self) -> Self {
+        const HEAD: &str = "fn decode(data: &Data) -> Self {";
+        let start = self.code.find(HEAD).expect("the decoder of a message");
+        self.code.insert_str(start + HEAD.len(), " let _byte = data[usize::from(data[0])];");
+        self
+    }
+
+    /// Returns the struct of the message that [`Program::one_message`] uses.
+    pub fn one_message(&self) -> Option<String> {
+        Module::new(&self.code).one_message().map(|(owner, _)| owner)
+    }
+
+    /// Returns the structs of all messages.
+    pub fn messages(&self) -> Vec<String> {
+        Module::new(&self.code).layouts().collect()
+    }
+}
+
+impl Program {
+    /// Returns the program that does nothing.
+    pub fn empty() -> Self {
+        Self::of("empty", [])
+    }
+
+    /// Returns the program that calls every function of all these codecs.
+    pub fn everything(codecs: &[Codec]) -> Self {
+        Self::of("everything", codecs.iter().map(|codec| module(codec, Module::everything)))
+    }
+
+    /// Returns the program that recognises a frame.
+    pub fn decode(codec: &Codec) -> Self {
+        let name = format!("{}_decode", codec.name);
+        Self::of(&name, [module(codec, |_| quote!(calls::decode::<Message>();))])
+    }
+
+    /// Returns the program that builds the requests of every message.
+    pub fn encode(codec: &Codec) -> Self {
+        let name = format!("{}_encode", codec.name);
+        Self::of(&name, [module(codec, Module::requests)])
+    }
+
+    /// Returns the program that decodes and requests one message only.
+    pub fn one_message(codec: &Codec) -> Self {
+        let name = format!("{}_one_message", codec.name);
+        Self::of(&name, [module(codec, |module| module.one_message().map(|(_, calls)| calls).unwrap_or_default())])
+    }
+
+    fn of(name: &str, modules: impl IntoIterator<Item = (String, TokenStream)>) -> Self {
+        let (names, modules): (Vec<_>, Vec<_>) = modules.into_iter().unzip();
+        let names = names.iter().map(|name| format_ident!("{name}"));
+        let program = quote!(fn program() { #(#names::program::program();)* });
+        let modules = modules.into_iter().chain([program]).map(|tokens| tokens.to_string());
+        Self { name: name.to_owned(), modules: modules.collect::<Vec<_>>().join("\n") }
+    }
+}
+
+/// Returns the module of a codec, with a function that calls something of it.
+fn module(codec: &Codec, calls: impl FnOnce(&Module) -> TokenStream) -> (String, TokenStream) {
+    let module = Module::new(&codec.code);
+    let name = format_ident!("{}", codec.name);
+    let code: TokenStream = codec.code.parse().expect("generated code is Rust");
+    let (unknown_values, calls) = (module.unknown_values(), calls(&module));
+    let tokens = quote! {
+        mod #name {
+            #code
+
+            pub mod program {
+                use super::*;
+                use crate::calls;
+                use crate::unknown::unknown;
+
+                #unknown_values
+
+                pub fn program() { #calls }
+            }
+        }
+    };
+    (codec.name.clone(), tokens)
+}
+
+/// How a program is compiled.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    /// A profile of `tests/bare/Cargo.toml`: the optimization.
+    pub profile: &'a str,
+    /// The target, if it is not this machine.
+    pub target: Option<&'a str>,
+}
+
+impl Program {
+    /// Compiles and links the program in a folder, one at a time; returns it, or what cargo says.
+    ///
+    /// # Errors
+    ///
+    /// If files cannot be written, or cargo does not start.
+    pub fn link(&self, folder: &Path, settings: Settings<'_>) -> io::Result<Result<Binary, String>> {
+        let folder = folder.join(settings.profile);
+        let source = folder.join(format!("{}.rs", self.name));
+        fs::create_dir_all(&folder)?;
+        let lock = File::create(folder.join("lock"))?;
+        lock.lock()?;
+        fs::write(&source, &self.modules)?;
+        let bare = root().join("tests/bare");
+        // The versions of this workspace; all of them are on the machine already.
+        fs::copy(root().join("Cargo.lock"), bare.join("Cargo.lock"))?;
+        let target = settings.target.map(|target| ["--target", target]);
+        let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+            .args(["build", "--offline", "--quiet", "--profile", settings.profile])
+            .args(target.into_iter().flatten())
+            .arg("--target-dir")
+            .arg(&folder)
+            .env("CANSPEC_PROGRAM", &source)
+            .env_remove("RUSTFLAGS")
+            .current_dir(bare)
+            .output()?;
+        if !output.status.success() {
+            return Ok(Err(String::from_utf8_lossy(&output.stderr).into_owned()));
+        }
+        let path = folder.join(settings.target.unwrap_or_default()).join(settings.profile).join("bare");
+        Binary::read(&path).map(Ok)
+    }
+}
+
+/// Returns the root of the workspace.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}

@@ -1,0 +1,206 @@
+//! Finds every function of generated code, and writes a call of it with unknown arguments.
+
+use proc_macro2::TokenStream;
+use quote::{ToTokens, format_ident, quote};
+use syn::{
+    Fields, File, FnArg, ImplItem, ImplItemConst, Item, ItemEnum, ItemImpl, ItemStruct, PathSegment, ReceiverKind,
+    ReturnType, Signature, Type,
+};
+
+/// The source of one generated module, read.
+pub struct Module(File);
+
+/// A function of an `impl` block.
+#[derive(Clone, Copy)]
+struct Function<'a> {
+    block: &'a ItemImpl,
+    signature: &'a Signature,
+}
+
+impl Module {
+    /// Reads the source.
+    ///
+    /// # Panics
+    ///
+    /// If it is no Rust.
+    pub fn new(code: &str) -> Self {
+        Self(syn::parse_file(code).expect("generated code is Rust"))
+    }
+
+    /// Returns how its types get unknown values.
+    pub fn unknown_values(&self) -> TokenStream {
+        let items = self.0.items.iter().map(|item| match item {
+            Item::Enum(item) => unknown_enum(item),
+            Item::Struct(item) => unknown_struct(item),
+            _ => TokenStream::new(),
+        });
+        items.collect()
+    }
+
+    /// Returns calls of everything.
+    pub fn everything(&self) -> TokenStream {
+        let functions = self.functions().filter(|function| function.signature.ident != "fmt").map(Function::call);
+        functions.chain(self.signals()).chain(self.blocks().map(provided)).collect()
+    }
+
+    /// Returns calls that build the requests of every message.
+    pub fn requests(&self) -> TokenStream {
+        self.functions().filter(Function::builds_request).map(Function::encode).collect()
+    }
+
+    /// Returns calls that decode and request one message: the first whose request carries signals.
+    pub fn one_message(&self) -> Option<(String, TokenStream)> {
+        let with_signals =
+            |function: &Function<'_>| function.builds_request() && function.signature.receiver().is_some();
+        let function = self.functions().find(with_signals)?;
+        let (owner, call) = (&function.block.self_ty, function.call());
+        let decode = quote!(calls::sink(<#owner as Layout>::decode(&unknown())););
+        Some((text(owner), quote!(#decode #call)))
+    }
+
+    /// Returns the names of the structs that frames decode to.
+    pub fn layouts(&self) -> impl Iterator<Item = String> {
+        let layouts = self.blocks().filter(|block| trait_name(block).is_some_and(|name| name.ident == "Layout"));
+        layouts.map(|block| text(&block.self_ty))
+    }
+
+    fn blocks(&self) -> impl Iterator<Item = &ItemImpl> {
+        self.0.items.iter().filter_map(|item| if let Item::Impl(block) = item { Some(block) } else { None })
+    }
+
+    fn functions(&self) -> impl Iterator<Item = Function<'_>> {
+        self.blocks().flat_map(|block| {
+            block.items.iter().filter_map(move |item| match item {
+                ImplItem::Fn(function) => Some(Function { block, signature: &function.sig }),
+                _ => None,
+            })
+        })
+    }
+
+    fn signals(&self) -> impl Iterator<Item = TokenStream> {
+        self.blocks().flat_map(|block| {
+            let constants = block.items.iter().filter_map(|item| match item {
+                ImplItem::Const(constant) if is_signal(constant) => Some(&constant.ident),
+                _ => None,
+            });
+            let owner = &block.self_ty;
+            constants.map(move |name| quote!(calls::signal(&<#owner>::#name);))
+        })
+    }
+}
+
+impl Function<'_> {
+    fn call(self) -> TokenStream {
+        let result = self.result();
+        match &self.signature.output {
+            _ if self.builds_request() => quote!(calls::request(#result);),
+            ReturnType::Type(_, output) if matches!(**output, Type::ImplTrait(_)) => {
+                quote!(#result.for_each(calls::sink);)
+            }
+            _ => quote!(calls::sink(#result);),
+        }
+    }
+
+    fn encode(self) -> TokenStream {
+        let result = self.result();
+        quote!(calls::encode(#result);)
+    }
+
+    fn result(self) -> TokenStream {
+        let (owner, name) = (&self.block.self_ty, &self.signature.ident);
+        let of_trait = trait_name(self.block).map(|name| quote!(as #name));
+        let arguments = self.signature.inputs.iter().map(|argument| match argument {
+            FnArg::Receiver(receiver) => unknown_receiver(&receiver.kind),
+            FnArg::Typed(argument) => unknown(&argument.ty),
+        });
+        quote!(<#owner #of_trait>::#name(#(#arguments),*))
+    }
+
+    fn builds_request(&self) -> bool {
+        text(&self.signature.output).contains("Request <")
+    }
+}
+
+/// Returns an unknown value of the type itself.
+fn unknown_receiver(kind: &ReceiverKind) -> TokenStream {
+    if let ReceiverKind::Reference(_, _, mutability) = kind {
+        quote!(&#mutability unknown())
+    } else {
+        quote!(unknown())
+    }
+}
+
+/// Returns an unknown value of an argument's type.
+fn unknown(argument: &Type) -> TokenStream {
+    match argument {
+        Type::Reference(reference) if text(&reference.elem) == "str" => quote!(unknown()),
+        Type::Reference(reference) => {
+            let (mutability, value) = (&reference.mutability, unknown(&reference.elem));
+            quote!(&#mutability #value)
+        }
+        Type::ImplTrait(bounds) => match text(&bounds.bounds).as_str() {
+            "Into < Route < Target > >" => quote!(unknown::<Route<Target>>()),
+            "embedded_can :: Frame" => quote!(unknown::<Frame>()),
+            bound => panic!("say which type stands for `impl {bound}`"),
+        },
+        _ => quote!(unknown()),
+    }
+}
+
+/// Returns calls of what the runtime provides for a type that implements one of its traits.
+fn provided(block: &ItemImpl) -> TokenStream {
+    let owner = &block.self_ty;
+    match trait_name(block).map(|name| name.ident.to_string()).as_deref() {
+        Some("Named") => quote!(calls::named::<#owner>();),
+        Some("StatusWord") => quote!(calls::status_word::<#owner>();),
+        Some("Packed") => quote!(calls::packed::<#owner>();),
+        Some("Protocol") => quote!(calls::received::<#owner>();),
+        Some("Display") => quote!(calls::text(&unknown::<#owner>());),
+        _ => TokenStream::new(),
+    }
+}
+
+fn text(tokens: &impl ToTokens) -> String {
+    tokens.to_token_stream().to_string()
+}
+
+fn trait_name(block: &ItemImpl) -> Option<&PathSegment> {
+    block.trait_.as_ref().and_then(|(path, _)| path.segments.last())
+}
+
+fn is_signal(constant: &ImplItemConst) -> bool {
+    text(&constant.ty).starts_with("Signal <")
+}
+
+fn unknown_struct(item: &ItemStruct) -> TokenStream {
+    let value = fields(&item.fields);
+    implementation(&item.ident, &quote!(Self #value))
+}
+
+fn unknown_enum(item: &ItemEnum) -> TokenStream {
+    let values = item.variants.iter().map(|variant| {
+        let (name, value) = (&variant.ident, fields(&variant.fields));
+        quote!(Self::#name #value)
+    });
+    let values: Vec<_> = values.collect();
+    let (last, others) = values.split_last().expect("generated enums have variants");
+    let numbers = 0_u16..;
+    implementation(&item.ident, &quote!(match unknown::<u16>() { #(#numbers => #others,)* _ => #last }))
+}
+
+fn implementation(name: &syn::Ident, value: &TokenStream) -> TokenStream {
+    quote!(impl crate::unknown::Unknown for #name { fn unknown() -> Self { #value } })
+}
+
+/// Returns unknown values of the fields of a struct or of a variant.
+fn fields(fields: &Fields) -> TokenStream {
+    let count = fields.iter().map(|_| format_ident!("unknown"));
+    match fields {
+        Fields::Unit => TokenStream::new(),
+        Fields::Unnamed(_) => quote!((#(#count()),*)),
+        Fields::Named(_) => {
+            let names = fields.iter().map(|field| &field.ident);
+            quote!({ #(#names: unknown()),* })
+        }
+    }
+}

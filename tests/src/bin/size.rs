@@ -1,0 +1,76 @@
+//! Prints how many bytes generated code takes, as a Markdown table.
+#![expect(clippy::print_stdout, reason = "the table is what people call it for")]
+
+use std::env::consts::ARCH;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, io};
+
+use canspec_tests::bare::{Codec, Program, Settings, Size};
+
+/// The targets: this machine, and the processors of small devices if the toolchain has them.
+const TARGETS: [(&str, Option<&str>); 2] = [(ARCH, None), ("Cortex-M4", Some("thumbv7em-none-eabi"))];
+/// The optimizations, with their profiles.
+const PROFILES: [(&str, &str); 2] = [("z", "z"), ("3", "three")];
+
+/// A way to compile.
+struct Column {
+    heading: String,
+    settings: Settings<'static>,
+    empty: Size,
+}
+
+fn main() -> io::Result<()> {
+    let folder = env::current_exe()?.with_file_name("bare");
+    let columns = columns(&folder)?;
+    let headings: Vec<_> = columns.iter().map(|column| column.heading.as_str()).collect();
+    println!("Bytes of code + constants, beyond those of an empty program.\n");
+    println!("| | {} |\n|---|{}", headings.join(" | "), "---:|".repeat(headings.len()));
+    for (name, program) in programs() {
+        let cells: io::Result<Vec<_>> = columns.iter().map(|column| cell(&program, &folder, column)).collect();
+        println!("| {name} | {} |", cells?.join(" | "));
+    }
+    Ok(())
+}
+
+fn columns(folder: &Path) -> io::Result<Vec<Column>> {
+    let targets = TARGETS.into_iter().filter(|(_, target)| target.is_none_or(is_installed));
+    let columns = targets.flat_map(|(name, target)| {
+        PROFILES.map(|(level, profile)| {
+            let settings = Settings { profile, target };
+            let empty = size(&Program::empty(), folder, settings)?;
+            Ok(Column { heading: format!("{name}, {level}"), settings, empty })
+        })
+    });
+    columns.collect()
+}
+
+/// Returns the programs to measure, each with its name.
+fn programs() -> Vec<(String, Program)> {
+    let codecs = Codec::all("specs");
+    let of_codec = |codec: &Codec| {
+        let name = codec.name();
+        let message = codec.one_message().unwrap_or_default();
+        [
+            (format!("`{name}`: decode"), Program::decode(codec)),
+            (format!("`{name}`: encode"), Program::encode(codec)),
+            (format!("`{name}`: `{message}` alone"), Program::one_message(codec)),
+        ]
+    };
+    codecs.iter().flat_map(of_codec).collect()
+}
+
+fn is_installed(target: &str) -> bool {
+    let folder = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    folder.is_ok_and(|folder| PathBuf::from(String::from_utf8_lossy(&folder.stdout).trim()).is_dir())
+}
+
+/// Returns by how much a program is larger than the empty one.
+fn cell(program: &Program, folder: &Path, column: &Column) -> io::Result<String> {
+    let Size { code, constants } = size(program, folder, column.settings)? - column.empty;
+    Ok(format!("{code} + {constants}"))
+}
+
+fn size(program: &Program, folder: &Path, settings: Settings<'_>) -> io::Result<Size> {
+    program.link(folder, settings)?.map(|binary| binary.size()).map_err(io::Error::other)
+}
