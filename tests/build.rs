@@ -1,24 +1,32 @@
-//! Generates codecs of the feature specs and of made-up devices, and a list of every protocol, those that ship included.
+//! Generates codecs of the feature specs and of made-up devices, each also with every option, and a list of every protocol, those that
+//! ship included.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use canspec_codegen::{compile, emit, source::Source};
+use canspec_codegen::emit::{Float, Options, Switch};
+use canspec_codegen::source::Source;
 
 fn main() {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets it"));
     let mut list = Protocols::default();
     for (name, path) in specs(&root.join("../specs")) {
-        list.visit(&format!("canspec_protocols::{name}"), &path);
+        let visit = visit(&format!("canspec_protocols::{name}"), &path);
+        list.visits.push_str(&visit);
+        list.switched.push_str(&visit);
     }
     for folder in ["features", "devices"] {
         for (name, path) in specs(&root.join("specs").join(folder)) {
             let module = format!("{folder}_{name}");
-            fs::write(out.join(format!("{module}.rs")), generate(&path)).expect("OUT_DIR can be written");
-            list.module(&module, &path);
-            list.visit(&module, &path);
+            let switched = format!("{module}_switched");
+            for (module, options) in [(&module, Options::default()), (&switched, every_option())] {
+                fs::write(out.join(format!("{module}.rs")), generate(&path, &options)).expect("OUT_DIR can be written");
+                list.module(module, &path);
+            }
+            list.visits.push_str(&visit(&module, &path));
+            list.switched.push_str(&visit(&switched, &path));
         }
     }
     fs::write(out.join("protocols.rs"), list.finish()).expect("OUT_DIR can be written");
@@ -40,15 +48,20 @@ fn specs(folder: &Path) -> Vec<(String, PathBuf)> {
 }
 
 /// Compiles a feature spec; a wrong one stops the build with its diagnostics.
-fn generate(path: &Path) -> String {
-    let outcome = match Source::read(path) {
-        Ok(source) => compile(source),
+fn generate(path: &Path, options: &Options) -> String {
+    match Source::read(path).and_then(|source| canspec_codegen::generate(source, options)) {
+        Ok(generated) => generated.code,
         Err(diagnostics) => panic!("{}", diagnostics.concise()),
-    };
-    match outcome.protocol {
-        Some(protocol) => emit::rust(&protocol),
-        None => panic!("{}", outcome.diagnostics.concise()),
     }
+}
+
+fn every_option() -> Options {
+    Options { float: Float::F32, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
+}
+
+/// Shows a protocol to a visitor.
+fn visit(module: &str, path: &Path) -> String {
+    format!("    visitor.visit::<{module}::Message>(\"{}\");\n", path.display())
 }
 
 /// The list of protocols as Rust.
@@ -56,6 +69,7 @@ fn generate(path: &Path) -> String {
 struct Protocols {
     modules: String,
     visits: String,
+    switched: String,
 }
 
 impl Protocols {
@@ -69,15 +83,13 @@ impl Protocols {
         );
     }
 
-    fn visit(&mut self, module: &str, path: &Path) {
-        let _ = writeln!(self.visits, "    visitor.visit::<{module}::Message>(\"{}\");", path.display());
-    }
-
     fn finish(self) -> String {
         format!(
             "{}\n/// Shows every protocol to a visitor, with the path of its spec.\n\
-             pub fn visit(visitor: &mut impl Visitor) {{\n{}}}\n",
-            self.modules, self.visits
+             pub fn visit(visitor: &mut impl Visitor) {{\n{}}}\n\
+             \n/// Shows every protocol that has the optional traits to a visitor, with the path of its spec.\n\
+             pub fn visit_switched(visitor: &mut impl SwitchedVisitor) {{\n{}}}\n",
+            self.modules, self.visits, self.switched
         )
     }
 }

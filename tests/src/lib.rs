@@ -1,10 +1,14 @@
 //! What the tests share: every protocol with both of its engines, and random frames.
 
-use std::path::Path;
+pub mod bare;
+
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Form, Frame};
 use canspec_codegen::model::{AddressPattern, Protocol, SelectorPlace};
 use canspec_codegen::{Outcome, compile, source::Source};
+use canspec_runtime::{Problem, Received};
 
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 
@@ -17,6 +21,32 @@ struct Readme;
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
     fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str);
+}
+
+/// Runs a test on each protocol whose types have the optional traits.
+pub trait SwitchedVisitor {
+    /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
+    fn visit<P>(&mut self, path: &str)
+    where
+        P: canspec_runtime::Protocol<Identifier: Optional> + Optional + PartialEq;
+}
+
+/// The optional traits, beside `Arbitrary`, which only the structs of messages have.
+pub trait Optional: serde::Serialize + serde::de::DeserializeOwned + canspec_runtime::defmt::Format {}
+
+impl<T: serde::Serialize + serde::de::DeserializeOwned + canspec_runtime::defmt::Format> Optional for T {}
+
+/// Returns the specs of a folder of the workspace, in order.
+///
+/// # Panics
+///
+/// If the folder cannot be read.
+pub fn specs(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+    let entries = fs::read_dir(folder).expect("the folder exists").flatten().map(|entry| entry.path());
+    let mut specs: Vec<_> = entries.filter(|path| path.extension().is_some_and(|ending| ending == "yaml")).collect();
+    specs.sort();
+    specs
 }
 
 /// Compiles a spec.
@@ -41,6 +71,33 @@ pub fn outcome(path: impl AsRef<Path>) -> Outcome {
         Ok(source) => compile(source),
         Err(diagnostics) => panic!("{}", diagnostics.concise()),
     }
+}
+
+/// Recognises a frame by the generated code, as one of a device model if one is chosen.
+///
+/// # Errors
+///
+/// As the generated code has them.
+pub fn received<P: canspec_runtime::Protocol>(model: Option<usize>, frame: &Frame) -> Result<Received<P>, Problem> {
+    let mut data = [0; 8];
+    data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
+    let length = u8::try_from(frame.data.len()).unwrap_or(u8::MAX);
+    let frame = canspec_runtime::Frame::new_raw(frame.id, frame.extended, data, length);
+    model.map_or_else(|| Received::decode(&frame), |model| Received::decode_for(number(model), &frame))
+}
+
+/// Returns the number that a device model has in the generated code.
+///
+/// # Panics
+///
+/// If a spec has more models than a byte counts.
+pub fn number(model: usize) -> u8 {
+    u8::try_from(model).expect("a spec of the tests has few models")
+}
+
+/// Returns no device model, and then each.
+pub fn models(protocol: &Protocol) -> impl Iterator<Item = Option<usize>> + Clone {
+    std::iter::once(None).chain((0..protocol.models.len()).map(Some))
 }
 
 /// Makes frames that are close to those of a protocol: right, nearly right, and far off.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use canspec_codegen::interpret::{self, Frame, Input, Value, raw_of};
+use canspec_codegen::interpret::{self, Frame, Input, Limits, Value, raw_of};
 use canspec_codegen::model::{Encoding, Message, Protocol, Signal};
-use canspec_runtime::{AnySignal, Meaning, Number, Payload, Problem, Reading, Received};
-use canspec_tests::{Frames, Visitor, protocol, visit};
+use canspec_runtime::{AnySignal, Meaning, Number, Payload, Problem, Reading};
+use canspec_tests::{Frames, Visitor, models, number, protocol, received, visit};
 use embedded_can::Frame as _;
 
 /// How many random frames each protocol sees.
@@ -24,17 +24,8 @@ struct Report {
     encoded: Option<Vec<u8>>,
 }
 
-/// Returns the frame as the generated code takes it.
-fn received_frame(frame: &Frame) -> canspec_runtime::Frame {
-    let mut data = [0; 8];
-    data[..frame.data.len()].copy_from_slice(&frame.data);
-    let length = u8::try_from(frame.data.len()).expect("at most 8 bytes");
-    canspec_runtime::Frame::new_raw(frame.id, frame.extended, data, length)
-}
-
-fn generated<P: canspec_runtime::Protocol>(frame: &Frame) -> Result<Report, Problem> {
-    let frame = received_frame(frame);
-    let received = Received::<P>::decode(&frame)?;
+fn generated<P: canspec_runtime::Protocol>(model: Option<usize>, frame: &Frame) -> Result<Report, Problem> {
+    let received = received::<P>(model, frame)?;
     let mut signals = Vec::new();
     received.visit(|reading| signals.push(shown(&reading)));
     let exchange = received.exchange();
@@ -54,7 +45,7 @@ fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
     let bits = match reading.raw {
         Number::Unsigned(raw) => raw,
         Number::Signed(raw) => raw.cast_unsigned(),
-        Number::Float(_) => panic!("a raw value is an integer"),
+        Number::Single(_) | Number::Float(_) => panic!("a raw value is an integer"),
     };
     let meaning = match reading.meaning {
         Meaning::Number(Number::Float(value)) => format!("{:016X}", value.to_bits()),
@@ -67,8 +58,8 @@ fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
     (reading.name.to_owned(), reading.unit.map(str::to_owned), bits, meaning)
 }
 
-fn interpreted(protocol: &Protocol, frame: &Frame) -> Result<Report, Problem> {
-    let decoded = interpret::decode(protocol, frame).map_err(|problem| match problem.problem {
+fn interpreted(protocol: &Protocol, model: Option<usize>, frame: &Frame) -> Result<Report, Problem> {
+    let decoded = interpret::decode(protocol, model, frame).map_err(|problem| match problem.problem {
         interpret::Problem::Frame => Problem::Frame,
         interpret::Problem::Foreign => Problem::Foreign,
         interpret::Problem::Identifier => Problem::Identifier,
@@ -86,7 +77,7 @@ fn interpreted(protocol: &Protocol, frame: &Frame) -> Result<Report, Problem> {
         signals: decoded.signals.iter().map(|reading| read(&message.signals[reading.signal], reading)).collect(),
         selectors: selectors.map(|(index, raw)| (protocol.selectors[*index].name.clone(), *raw)).collect(),
         reserved: decoded.reserved,
-        encoded: interpret::encode(protocol, &content).ok().map(|frame| frame.data),
+        encoded: interpret::encode(protocol, model, &content).ok().map(|frame| frame.data),
     })
 }
 
@@ -113,10 +104,10 @@ impl Visitor for Decoding {
     fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
         let protocol = protocol(path);
         let mut frames = Frames::new(&protocol, 0xCA25);
-        for _ in 0..FRAMES {
+        for model in models(&protocol).cycle().take(FRAMES) {
             let frame = frames.next_frame();
-            let report = interpreted(&protocol, &frame);
-            assert_eq!(generated::<P>(&frame), report, "{}: {:X?}", protocol.name, frame);
+            let report = interpreted(&protocol, model, &frame);
+            assert_eq!(generated::<P>(model, &frame), report, "{}: {:X?} of {model:?}", protocol.name, frame);
             self.recognised += usize::from(report.is_ok());
         }
     }
@@ -133,7 +124,7 @@ fn random_frames_mean_the_same_to_both_engines_and_encode_to_the_same_bytes() {
 fn candidates(signal: &Signal, random: &mut fastrand::Rng) -> Vec<f64> {
     match &signal.encoding {
         Encoding::Number { .. } | Encoding::Float => {
-            let limits = signal.range.iter().flat_map(|range| [range.minimum.to_f64(), range.maximum.to_f64()]);
+            let limits = signal.ranges().flat_map(|(range, _)| [range.minimum.to_f64(), range.maximum.to_f64()]);
             let mut values =
                 vec![0.0, -0.0, 0.5, 1.5, 2.5, -0.5, -1.5, 0.049_999_999_999_999_99, f64::NAN, f64::INFINITY, 1e300];
             values.extend(limits.flat_map(|limit| [limit, limit.next_up(), limit.next_down()]));
@@ -152,8 +143,8 @@ type Signals = BTreeMap<&'static str, &'static [&'static dyn AnySignal]>;
 fn signals<P: canspec_runtime::Protocol>(protocol: &Protocol) -> Signals {
     let mut frames = Frames::new(protocol, 0x516);
     let mut signals = Signals::new();
-    for frame in std::iter::repeat_with(|| frames.next_frame()).take(20_000) {
-        let Ok(received) = Received::<P>::decode(&received_frame(&frame)) else { continue };
+    for model in models(protocol).cycle().take(20_000) {
+        let Ok(received) = received::<P>(model, &frames.next_frame()) else { continue };
         let carried = received.content().layout().signals();
         let known = signals.entry(received.exchange().message()).or_insert(carried);
         if known.len() < carried.len() {
@@ -164,8 +155,11 @@ fn signals<P: canspec_runtime::Protocol>(protocol: &Protocol) -> Signals {
 }
 
 /// Writes a value through a signal of the generated code.
-fn written(known: &dyn AnySignal, value: f64, request: bool) -> Option<[u8; 8]> {
-    let mut payload = if request { Payload::within_limits("message", [0; 8]) } else { Payload::new("message", [0; 8]) };
+fn written(known: &dyn AnySignal, value: f64, limits: Limits) -> Option<[u8; 8]> {
+    let mut payload = match limits {
+        Limits::Bits => Payload::new("message", [0; 8]),
+        Limits::Range(model) => Payload::within_limits("message", [0; 8]).for_model(model.map(number)),
+    };
     known.write(Meaning::Number(Number::Float(value)), &mut payload).ok().map(|()| *payload.data())
 }
 
@@ -189,15 +183,15 @@ impl Visitor for Values {
 }
 
 fn compare_encoding(protocol: &Protocol, message: &Message, signal: &Signal, known: &dyn AnySignal, value: f64) {
-    for request in [true, false] {
-        let bits = raw_of(protocol, message, signal, &Input::Number(value), request).ok();
+    for limits in std::iter::once(Limits::Bits).chain(models(protocol).map(Limits::Range)) {
+        let bits = raw_of(protocol, message, signal, &Input::Number(value), limits).ok();
         let expected = bits.map(|bits| {
             let mut data = [0; 8];
             signal.place.put(&mut data, bits);
             data
         });
-        let data = written(known, value, request);
-        assert_eq!(data, expected, "{}.{}.{} = {value}, request: {request}", protocol.name, message.name, signal.name);
+        let data = written(known, value, limits);
+        assert_eq!(data, expected, "{}.{}.{} = {value} in {limits:?}", protocol.name, message.name, signal.name);
     }
 }
 

@@ -1,8 +1,9 @@
 //! The documents' own frames in the generated code: the values that the spec states, and the same bytes back.
 
+use canspec_codegen::interpret::Frame;
 use canspec_codegen::model::{Encoding, Example, Kind, Protocol};
-use canspec_runtime::{Number, Received};
-use canspec_tests::{Visitor, protocol, visit};
+use canspec_runtime::Number;
+use canspec_tests::{Visitor, protocol, received, visit};
 use embedded_can::Frame as _;
 
 struct Examples {
@@ -22,12 +23,9 @@ impl Visitor for Examples {
 fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -> bool {
     let (Some(bytes), Some(message)) = (&example.data, example.message) else { return false };
     let message = &protocol.messages[message];
-    let mut data = [0; 8];
-    data[..bytes.len()].copy_from_slice(bytes);
-    let length = u8::try_from(bytes.len()).expect("at most 8 bytes");
-    let frame = canspec_runtime::Frame::new_raw(example.id, example.extended, data, length);
     let at = format!("{}: {}", protocol.name, example.doc.path);
-    let received = Received::<P>::decode(&frame).unwrap_or_else(|problem| panic!("{at}: {problem}"));
+    let received = received::<P>(example.model, &Frame::of(protocol, example));
+    let received = received.unwrap_or_else(|problem| panic!("{at}: {problem}"));
     assert_eq!(received.exchange().message(), message.name, "{at}");
     let mut read = Vec::new();
     received.visit(|reading| read.push((reading.name, bits(reading.raw))));
@@ -54,7 +52,7 @@ fn bits(raw: Number) -> u64 {
     match raw {
         Number::Unsigned(raw) => raw,
         Number::Signed(raw) => raw.cast_unsigned(),
-        Number::Float(_) => panic!("a raw value is an integer"),
+        Number::Single(_) | Number::Float(_) => panic!("a raw value is an integer"),
     }
 }
 

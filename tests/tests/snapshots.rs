@@ -1,24 +1,21 @@
 //! The generated Rust, whole, as a pull request shows it.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use canspec_codegen::emit;
-use canspec_tests::protocol;
+use canspec_codegen::emit::{self, Float, Options, Switch};
+use canspec_tests::{protocol, specs};
 
 /// Snapshots of one-feature specs stay short enough to be read.
 const LINES: usize = 300;
 
-/// Returns the specs of a folder, by its path from this crate.
-fn specs(folder: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let entries = fs::read_dir(folder).expect("the folder exists").flatten().map(|entry| entry.path());
-    entries.filter(|path| path.extension().is_some_and(|ending| ending == "yaml")).collect()
+/// Returns the Rust of a spec.
+fn rust(path: &Path) -> String {
+    emit::rust(&protocol(path), &Options::default())
 }
 
 /// Compares the Rust of a spec with `snapshots/FOLDER/SPEC.snap.rs`.
-fn compare(path: &Path, folder: &str) -> String {
-    let code = emit::rust(&protocol(path));
+fn compare(path: &Path, folder: &str, options: &Options) -> String {
+    let code = emit::rust(&protocol(path), options);
     let name = path.file_stem().expect("a spec has a name").to_string_lossy();
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
@@ -30,22 +27,34 @@ fn compare(path: &Path, folder: &str) -> String {
 
 #[test]
 fn each_feature_generates_the_rust_that_was_reviewed() {
-    for path in specs("specs/features") {
-        let lines = compare(&path, "features").lines().count();
+    for path in specs("tests/specs/features") {
+        let lines = compare(&path, "features", &Options::default()).lines().count();
         assert!(lines <= LINES, "{}: {lines} lines of Rust are more than anybody reviews", path.display());
     }
 }
 
 #[test]
 fn each_protocol_generates_the_rust_that_was_reviewed() {
-    for path in specs("../specs") {
-        compare(&path, "protocols");
+    for path in specs("specs") {
+        compare(&path, "protocols", &Options::default());
     }
 }
 
 #[test]
+fn each_option_adds_the_rust_that_was_reviewed() {
+    let gated = |feature: &str| Switch::Gated(feature.to_owned());
+    let [serde, defmt, arbitrary] = ["serde", "defmt", "arbitrary"].map(gated);
+    let gated = Options { serde, defmt, arbitrary, ..Options::default() };
+    let [serde, defmt, arbitrary] = [const { Switch::Always }; 3];
+    let always = Options { float: Float::F32, serde, defmt, arbitrary };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs/features");
+    compare(&folder.join("status_word.yaml"), "options/gated", &gated);
+    compare(&folder.join("scaled_signal.yaml"), "options/always_f32", &always);
+}
+
+#[test]
 fn generation_is_deterministic() {
-    for path in specs("../specs") {
-        assert_eq!(emit::rust(&protocol(&path)), emit::rust(&protocol(&path)));
+    for path in specs("specs") {
+        assert_eq!(rust(&path), rust(&path));
     }
 }

@@ -1,10 +1,10 @@
 //! Raw values survive the way to a physical value and back, in both engines; set-points on the grid meet their own raw value.
 
-use canspec_codegen::interpret::{Input, physical, raw_of};
+use canspec_codegen::interpret::{Input, Limits, physical, raw_of};
 use canspec_codegen::model::{Message, Protocol, Signal};
 use canspec_protocols::infy::SetModuleOutput;
-use canspec_runtime::{AnySignal, Meaning, Payload, Reading, Received};
-use canspec_tests::{Frames, Visitor, protocol, visit};
+use canspec_runtime::{AnySignal, Meaning, Payload, Reading};
+use canspec_tests::{Frames, Optional, SwitchedVisitor, Visitor, models, protocol, received, visit, visit_switched};
 
 /// How many random raw values a signal of more than 16 bits sees.
 const SAMPLE: usize = 20_000;
@@ -44,7 +44,7 @@ impl Visitor for Sweep {
 fn interpreter(protocol: &Protocol, message: &Message, signal: &Signal) {
     for bits in raw_values(signal.place.width()) {
         let value = physical(protocol, signal, bits);
-        let back = raw_of(protocol, message, signal, &Input::of(protocol, signal, &value, bits), false);
+        let back = raw_of(protocol, message, signal, &Input::of(protocol, signal, &value, bits), Limits::Bits);
         assert_eq!(back, Ok(bits), "{}.{}.{}: {value:?}", protocol.name, message.name, signal.name);
     }
 }
@@ -53,12 +53,8 @@ fn interpreter(protocol: &Protocol, message: &Message, signal: &Signal) {
 fn generated<P: canspec_runtime::Protocol>(protocol: &Protocol) {
     let mut frames = Frames::new(protocol, 0x5EED);
     let mut swept = Vec::new();
-    for frame in std::iter::repeat_with(|| frames.next_frame()).take(20_000) {
-        let mut data = [0; 8];
-        data[..frame.data.len()].copy_from_slice(&frame.data);
-        let length = u8::try_from(frame.data.len()).expect("at most 8 bytes");
-        let frame = canspec_runtime::Frame::new_raw(frame.id, frame.extended, data, length);
-        let Ok(received) = Received::<P>::decode(&frame) else { continue };
+    for model in models(protocol).cycle().take(20_000) {
+        let Ok(received) = received::<P>(model, &frames.next_frame()) else { continue };
         for signal in received.content().layout().signals() {
             let name = (received.exchange().message(), signal.name());
             if !swept.contains(&name) {
@@ -96,6 +92,22 @@ fn every_raw_value_survives_the_way_to_its_physical_value_and_back() {
     assert!(sweep.signals >= 34, "{} signals", sweep.signals);
 }
 
+struct SinglePrecision;
+
+impl SwitchedVisitor for SinglePrecision {
+    fn visit<P>(&mut self, path: &str)
+    where
+        P: canspec_runtime::Protocol<Identifier: Optional> + Optional + PartialEq,
+    {
+        generated::<P>(&protocol(path));
+    }
+}
+
+#[test]
+fn every_raw_value_survives_in_single_precision_too() {
+    visit_switched(&mut SinglePrecision);
+}
+
 /// Returns `millivolts` as a person writes them in volts: the text decides the double, not an operation of ours.
 fn volts(millivolts: u32) -> f64 {
     let text = format!("{}.{:03}", millivolts / 1000, millivolts % 1000);
@@ -116,7 +128,8 @@ fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_the_interp
     let protocol = protocol(concat!(env!("CARGO_MANIFEST_DIR"), "/../specs/infy.yaml"));
     let message = protocol.messages.iter().find(|message| message.name == "set_module_output").expect("a message");
     for millivolts in 0..=1_000_000 {
-        let bits = raw_of(&protocol, message, &message.signals[0], &Input::Number(volts(millivolts)), true);
+        let bits =
+            raw_of(&protocol, message, &message.signals[0], &Input::Number(volts(millivolts)), Limits::Range(None));
         assert_eq!(bits, Ok(millivolts.into()));
     }
 }

@@ -1,0 +1,68 @@
+//! Device models in the generated code: limits, layouts and messages of their own.
+
+use canspec_protocols::infy;
+use canspec_runtime::Frame;
+use canspec_tests::{features_model_layouts as layouts, features_model_limits as limits};
+
+/// The limits that the INFY document prints for its models in 3.3: voltage and current.
+const PRINTED: [(infy::Model, [f64; 2], [f64; 2]); 8] = [
+    (infy::Model::Reg85750, [100.0, 750.0], [0.1, 15.0]),
+    (infy::Model::Reg85500, [100.0, 550.0], [0.12, 20.0]),
+    (infy::Model::Reg75020, [100.0, 750.0], [0.13, 16.7]),
+    (infy::Model::Reg50025, [100.0, 550.0], [0.2, 23.0]),
+    (infy::Model::Reg75030, [100.0, 750.0], [0.2, 25.7]),
+    (infy::Model::Reg50040, [100.0, 550.0], [0.3, 35.0]),
+    (infy::Model::Reg75035, [50.0, 750.0], [0.26, 33.0]),
+    (infy::Model::Reg50050, [50.0, 550.0], [0.4, 50.0]),
+];
+
+#[test]
+fn each_model_takes_what_lies_within_its_printed_limits_and_no_milliampere_more() {
+    assert_eq!(PRINTED.map(|(model, ..)| model), infy::Model::ALL);
+    for (model, [lowest_v, highest_v], [lowest_a, highest_a]) in PRINTED {
+        let takes = |voltage_v, current_a| infy::SetModuleOutput { voltage_v, current_a }.within(model).is_ok();
+        let name = model.name();
+        assert!(takes(lowest_v, lowest_a) && takes(highest_v, highest_a), "{name}");
+        assert!(!takes(lowest_v - 0.001, highest_a) && !takes(highest_v + 0.001, lowest_a), "{name}");
+        assert!(!takes(lowest_v, lowest_a - 0.001) && !takes(lowest_v, highest_a + 0.001), "{name}");
+    }
+}
+
+#[test]
+fn a_refusal_names_the_limits_of_the_model() {
+    let output = infy::SetModuleOutput { voltage_v: 500.0, current_a: 25.8 };
+    let error = output.within(infy::Model::Reg75030).expect_err("a refusal");
+    assert_eq!(error.to_string(), "`current` of `set_module_output` is 25.8 A, but its limits are 0.2 and 25.7 A");
+    let request = output.within(infy::Model::Reg50040).and_then(|output| output.set(infy::Target::Module(3)));
+    assert_eq!(
+        request.map(|request| *request.frame()),
+        output.set(infy::Target::Module(3)).map(|known| *known.frame())
+    );
+}
+
+#[test]
+fn limits_can_be_asked_for() {
+    let speed = limits::SetSpeed::SPEED;
+    assert_eq!(speed.limits_for(limits::Model::P10a), Some((300.0, 3000.0)));
+    assert_eq!(speed.limits_for(limits::Model::P20a), Some((0.0, 6000.0)));
+    assert_eq!(limits::SetSpeed::FLOW.limits_for(limits::Model::P20a), None);
+}
+
+#[test]
+fn a_message_that_a_model_does_not_have_is_refused() {
+    let speed = limits::SetSpeed { speed_rpm: 1000, flow_percent: 0.0 };
+    assert!(speed.within(limits::Model::P48vDc).is_ok());
+    let error = speed.within(limits::Model::P20a).expect_err("a refusal");
+    assert_eq!(error.to_string(), "the device model has no `set_speed`");
+}
+
+#[test]
+fn a_frame_is_decoded_by_the_layout_of_its_model() {
+    let frame = Frame::new_raw(3, false, [0x12, 0xC0, 0, 0, 0, 0, 0, 0], 2);
+    let said = |received: layouts::Received| *received.report().expect("a report");
+    let ac = layouts::Message::SupplyAc(layouts::SupplyAc { voltage_v: 480.0 });
+    let dc = layouts::Message::SupplyDc(layouts::SupplyDc { voltage_v: 48.0 });
+    assert_eq!(layouts::Message::decode(&frame).map(said), Ok(ac));
+    assert_eq!(layouts::Message::decode_for(layouts::Model::P10a, &frame).map(said), Ok(ac));
+    assert_eq!(layouts::Message::decode_for(layouts::Model::P48vDc, &frame).map(said), Ok(dc));
+}
