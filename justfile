@@ -8,6 +8,18 @@ test:
 ci:
     .ci/run
 
+# A table of how many bytes generated code takes.
+size:
+    cargo run --quiet --package canspec-tests --bin size
+
+# Time the generated codecs beside a hand-written one and dbc-codegen; valgrind counts the instructions.
+bench:
+    cd generated/benches && cargo test --release --quiet && cargo bench && cargo run --release --quiet
+
+# A table of mistakes, planted one after the other in a copy of the sources, and of the tests that find them; words choose among them.
+mutants *words:
+    cargo run --quiet --package canspec-mutants -- {{words}}
+
 # Rewrite the expected outputs: generated code, diagnostics, whole commands. Read the difference before you commit it.
 bless:
     INSTA_UPDATE=always CANSPEC_BLESS=1 cargo test -p canspec-tests
