@@ -4,8 +4,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use canspec_codegen::model::{
-    DeviceModel, Document, Encoding, Enumeration, Example, Message, NamedValue, Piece, Protocol, Selector,
-    SelectorPlace, Signal, StatusWord,
+    DeviceModel, Document, Encoding, Enumeration, Example, Message, NamedValue, Piece, Protocol, Signal, StatusWord,
 };
 use canspec_codegen::number::Rational;
 use canspec_specs::SPECS;
@@ -132,7 +131,7 @@ fn constant(message: &Message, selector: usize) -> Option<u64> {
 fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> Row {
     let shown = |index: &usize| {
         let value = constant(message, *index);
-        value.map_or(String::new(), |value| hexadecimal(protocol, &protocol.selectors[*index], value))
+        value.map_or(String::new(), |value| protocol.selector_value(*index, value))
     };
     let accesses = message.accesses.iter().map(|access| protocol.accesses[access.access].name.as_str());
     let mut cells: Vec<String> = selectors.iter().map(shown).collect();
@@ -152,16 +151,6 @@ fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> R
 /// Returns the signal of a message that is nothing but a value, as a register is.
 fn value(message: &Message) -> Option<&Signal> {
     message.signals.first().filter(|signal| message.signals.len() == 1 && signal.name == "value")
-}
-
-/// Writes a selector's value in as many digits as it has on the bus.
-fn hexadecimal(protocol: &Protocol, selector: &Selector, value: u64) -> String {
-    let bits = match selector.place {
-        SelectorPlace::Identifier(field) => protocol.identifier.fields[field].width,
-        SelectorPlace::Payload(place) => place.width(),
-        _ => 0,
-    };
-    format!("0x{value:0width$X}", width = usize::from(bits.div_ceil(4)))
 }
 
 fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: &Signal) -> Row {

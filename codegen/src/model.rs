@@ -76,6 +76,15 @@ pub struct Protocol {
 }
 
 impl Protocol {
+    /// Writes a selector's value in as many hexadecimal digits as it has on the bus.
+    pub fn selector_value(&self, selector: usize, value: u64) -> String {
+        let width = match self.selectors[selector].place {
+            SelectorPlace::Identifier(field) => self.identifier.fields[field].width,
+            SelectorPlace::Payload(place) => place.width(),
+        };
+        format!("0x{value:0digits$X}", digits = usize::from(width.div_ceil(4)))
+    }
+
     /// Returns the remarks of every item that can refer to an erratum.
     pub fn docs(&self) -> Vec<&Doc> {
         let mut docs: Vec<&Doc> = Vec::new();

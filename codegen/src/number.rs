@@ -136,14 +136,14 @@ impl Ord for Rational {
 }
 
 impl fmt::Display for Rational {
-    /// Writes a decimal where it ends, else a fraction.
+    /// Writes a decimal where it ends, else a fraction; `1/1024` is easier to recognise than its ten digits.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (mut scaled, mut places) = (*self, 0);
         while scaled.denominator != 1 && places < 18 {
             let Some(next) = scaled.times(Self::integer(10)) else { break };
             (scaled, places) = (next, places + 1);
         }
-        if scaled.denominator != 1 {
+        if scaled.denominator != 1 || (self.numerator == 1 && places > 6) {
             return write!(formatter, "{}/{}", self.numerator, self.denominator);
         }
         let sign = if self.numerator < 0 { "-" } else { "" };
@@ -183,7 +183,16 @@ mod tests {
 
     #[test]
     fn a_number_is_written_as_a_decimal_where_that_ends() {
-        for (text, written) in [("1/8", "0.125"), ("-83/2", "-41.5"), ("1/3", "1/3"), ("0.10", "0.1"), ("750", "750")] {
+        for (text, written) in [
+            ("1/8", "0.125"),
+            ("-83/2", "-41.5"),
+            ("1/3", "1/3"),
+            ("0.10", "0.1"),
+            ("750", "750"),
+            ("1/1024", "1/1024"),
+            ("1025/1024", "1.0009765625"),
+            ("0.000001", "0.000001"),
+        ] {
             assert_eq!(Rational::parse(text).map(|number| number.to_string()), Some(written.to_owned()));
         }
     }

@@ -3,6 +3,7 @@
 use canspec_codegen::interpret::{Input, Limits, physical, raw_of};
 use canspec_codegen::model::{Message, Protocol, Signal};
 use canspec_protocols::infy::SetModuleOutput;
+use canspec_protocols::{mxr, trio};
 use canspec_runtime::{AnySignal, Meaning, Payload, Reading};
 use canspec_tests::{Frames, Optional, SwitchedVisitor, Visitor, models, protocol, received, visit, visit_switched};
 
@@ -123,14 +124,77 @@ fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_generated_
     }
 }
 
+/// A scaled signal of a shipped protocol, for the interpreter.
+struct SetPoint {
+    protocol: Protocol,
+    message: usize,
+    signal: usize,
+}
+
+impl SetPoint {
+    fn of(spec: &str, message: &str, signal: &str) -> Self {
+        let protocol = protocol(format!("{}/../specs/{spec}.yaml", env!("CARGO_MANIFEST_DIR")));
+        let message = protocol.messages.iter().position(|known| known.name == message).expect("a message");
+        let signal = protocol.messages[message].signals.iter().position(|known| known.name == signal);
+        Self { protocol, message, signal: signal.expect("a signal") }
+    }
+
+    fn raw(&self, value: f64, limits: Limits) -> Option<u64> {
+        let message = &self.protocol.messages[self.message];
+        raw_of(&self.protocol, message, &message.signals[self.signal], &Input::Number(value), limits).ok()
+    }
+}
+
 #[test]
 fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_the_interpreter() {
-    let protocol = protocol(concat!(env!("CARGO_MANIFEST_DIR"), "/../specs/infy.yaml"));
-    let message = protocol.messages.iter().find(|message| message.name == "set_module_output").expect("a message");
+    let voltage = SetPoint::of("infy", "set_module_output", "voltage");
     for millivolts in 0..=1_000_000 {
-        let bits =
-            raw_of(&protocol, message, &message.signals[0], &Input::Number(volts(millivolts)), Limits::Range(None));
-        assert_eq!(bits, Ok(millivolts.into()));
+        assert_eq!(voltage.raw(volts(millivolts), Limits::Range(None)), Some(millivolts.into()));
+    }
+}
+
+#[test]
+fn every_set_point_in_steps_of_1_1024_meets_its_own_raw_value_and_a_milliampere_the_nearest() {
+    let current = SetPoint::of("mxr", "set_output_current", "value");
+    let meets = |amperes: f64, raw: u32| {
+        let mut payload = Payload::new("message", [0; 8]);
+        mxr::SetOutputCurrent::VALUE.encode(amperes, &mut payload).expect("the value fits 32 bits");
+        assert_eq!(payload.data()[4..], raw.to_be_bytes(), "{amperes} A");
+        assert_eq!(current.raw(amperes, Limits::Range(None)), Some(raw.into()), "{amperes} A");
+    };
+    (0..=1_u32 << 20).for_each(|raw| meets(f64::from(raw) / 1024.0, raw));
+    (0..=1_000_000).for_each(|milliamperes| meets(volts(milliamperes), (milliamperes * 256 + 125) / 250));
+}
+
+/// The voltages that the TRIO document prints for its models in 3.3, in tenths of a volt.
+const PRINTED: [(trio::Model, u32, u32); 5] = [
+    (trio::Model::Pm1ac24dc1500wPt, 185, 295),
+    (trio::Model::Pm1ac24dc2500w, 235, 298),
+    (trio::Model::Pm1ac24dc2500wPt, 235, 298),
+    (trio::Model::Pm1ac48dc1500wPt, 380, 580),
+    (trio::Model::Pm1ac48dc2500wPt, 450, 590),
+];
+
+#[test]
+fn every_set_point_of_a_model_meets_its_own_raw_value_and_no_other_is_taken() {
+    assert_eq!(PRINTED.map(|(model, ..)| model), trio::Model::ALL);
+    let voltage = SetPoint::of("trio", "control", "voltage");
+    for (index, (model, lowest, highest)) in PRINTED.into_iter().enumerate() {
+        for tenths in 0..=1000 {
+            let name = format!("{}, {tenths} tenths of a volt", model.name());
+            let raw = (lowest..=highest).contains(&tenths).then_some(tenths);
+            assert_eq!(voltage.raw(volts(tenths * 100), Limits::Range(Some(index))), raw.map(u64::from), "{name}");
+            let control = trio::Control {
+                mode: trio::ControlMode::Remote,
+                operation: trio::Operation::On,
+                voltage_v: volts(tenths * 100),
+            };
+            let request = control.within(model).and_then(|control| control.set(trio::Target::Module(0xE6)));
+            let sent = request.ok().map(|request| request.frame().bytes());
+            // The document's frame for module 7: remote, on, and the voltage in two bytes.
+            let printed = raw.map(|raw| (0x0180_0000_0000_0000 | u64::from(raw) << 32).to_be_bytes());
+            assert_eq!(sent, printed, "{name}");
+        }
     }
 }
 

@@ -170,8 +170,8 @@ impl<'a> Decoder<'a> {
     /// Shows the values of the identifier's selectors.
     fn identifier_selectors(&self, candidates: &[Candidate]) -> String {
         let selectors = self.protocol.selectors.iter().enumerate().filter(|(index, _)| chooses(candidates, *index));
-        let texts = selectors.filter_map(|(_, selector)| match selector.place {
-            SelectorPlace::Identifier(field) => Some(format!("{} {}", selector.name, hexadecimal(self.field(field)))),
+        let texts = selectors.filter_map(|(index, selector)| match selector.place {
+            SelectorPlace::Identifier(field) => Some(self.selector_text((index, self.field(field).into()))),
             SelectorPlace::Payload(_) => None,
         });
         texts.collect::<Vec<_>>().join(", ")
@@ -233,7 +233,7 @@ impl<'a> Decoder<'a> {
     }
 
     fn selector_text(&self, (index, value): (usize, u64)) -> String {
-        format!("{} {value:#04X}", self.protocol.selectors[index].name)
+        format!("{} {}", self.protocol.selectors[index].name, self.protocol.selector_value(index, value))
     }
 
     /// Returns the payload selectors of the candidates, as far as the frame has the bytes.

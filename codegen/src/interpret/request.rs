@@ -168,9 +168,7 @@ fn put_signals(
     let carried: Vec<_> = shape.signals.iter().map(|index| &message.signals[*index]).collect();
     for (index, (name, _)) in given.iter().enumerate() {
         if carried.iter().all(|signal| signal.name != *name) {
-            let names: Vec<_> = carried.iter().map(|signal| format!("`{}`", signal.name)).collect();
-            let has = if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
-            return Err(refuse(message, &format!("there is no signal `{name}` to send; {has}")));
+            return Err(refuse(message, &not_carried(protocol, message, shape, name)));
         }
         if given[..index].iter().any(|(earlier, _)| earlier == name) {
             return Err(refuse(message, &format!("the signal `{name}` is given twice")));
@@ -188,6 +186,21 @@ fn put_signals(
         signal.place.put(data, raw_of(protocol, message, signal, &input, Limits::Range(model))?);
     }
     Ok(())
+}
+
+/// Says why a request has no place for a value.
+fn not_carried(protocol: &Protocol, message: &Message, shape: &Shape, name: &str) -> String {
+    let access = |shape: &Shape| &protocol.accesses[message.accesses[shape.access].access].name;
+    let carries = |shape: &&Shape| shape.signals.iter().any(|index| message.signals[*index].name == name);
+    let senders = message.shapes.iter().filter(|shape| shape.kind == Kind::Request).filter(carries);
+    let senders: Vec<_> = senders.map(|shape| format!("`{}`", access(shape))).collect();
+    let sent: Vec<_> = shape.signals.iter().map(|index| format!("`{}`", message.signals[*index].name)).collect();
+    match (message.signals.iter().any(|signal| signal.name == name), sent.is_empty()) {
+        (true, _) if senders.is_empty() => format!("`{name}` is read only: `{}` asks for it", access(shape)),
+        (true, _) => format!("`{}` does not send `{name}`; {} does", access(shape), senders.join(", ")),
+        (false, true) => format!("there is no signal `{name}`; `{}` sends none", access(shape)),
+        (false, false) => format!("there is no signal `{name}`; `{}` sends {}", access(shape), sent.join(", ")),
+    }
 }
 
 /// Reads a value as a person types it: `750V`, `750 V`, `750`, `on`, `[fan_fault]`.

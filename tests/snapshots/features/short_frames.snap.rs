@@ -169,7 +169,7 @@ impl Layout for KeepAlive {
 /// Signed numbers across byte borders. Section 5.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// Drift in V: bytes 3..1, steps of 0.0009765625 V.
+    /// Drift in V: bytes 3..1, steps of 1/1024 V.
     pub drift_v: f64,
     /// Turns in rpm: bytes 5..4.
     pub turns_rpm: i16,

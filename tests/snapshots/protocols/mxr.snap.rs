@@ -1602,7 +1602,7 @@ impl Layout for SetAltitude {
 /// Output current. Section 3.1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetOutputCurrent {
-    /// Value in A: bytes 4..7, steps of 0.0009765625 A.
+    /// Value in A: bytes 4..7, steps of 1/1024 A.
     pub value_a: f64,
 }
 
