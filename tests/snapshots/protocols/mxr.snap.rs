@@ -16,7 +16,7 @@ const FRAME: Filter = Filter::EXTENDED.id(Identifier::PROTOCOL, 0x060);
 /// Erratum X6: printed is "03, 10, 41 and 42 without a radix", used is "hexadecimal".
 pub const FUNCTION_SELECTOR: Selector = Selector::new("function", Place::byte(0));
 
-/// Whether the request was carried out: byte 1. Section 2.3, 4.
+/// Whether the request was carried out: byte 1. Section 2.3, 4, 6.
 ///
 /// 0 in a request; a reply with another result than `normal` is to be discarded.
 ///
@@ -35,6 +35,9 @@ pub const REGISTER_SELECTOR: Selector = Selector::new("register", Place::bytes(2
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Identifier {
     /// Number of the protocol: bits 28..20. Section 2.2.1.
+    ///
+    /// Erratum X37: printed is "Default: PROTNO= 0x060", used is "0x060 only, another number is another
+    /// protocol".
     pub protocol: u16,
     /// 1 for one module and 0 for several: bit 19. Section 2.2.2.
     pub point_to_point: u8,
@@ -44,7 +47,7 @@ pub struct Identifier {
     pub source: u8,
     /// Number of a group: bits 2..0. Section 2.2.5, 4.
     ///
-    /// A reply has the group of the module.
+    /// A reply has the group of the module, and that to `set_group` the new one.
     ///
     /// Erratum X4: printed is "a group field of 3 bits, groups up to 60, and a reply that shows the latest
     /// group at once", used is "0 is sent in an extended broadcast; any number is accepted, there and in a
@@ -142,7 +145,7 @@ impl Destination for Target {
     }
 }
 
-/// Address of the controller: `0xF0..=0xF0`. Section 2.2.3.
+/// Address of the controller: `0xF0..=0xF0`. Section 2.2.3, 2.2.4.
 ///
 /// Erratum X23: printed is "controlled address and controlled input mode", used is "controller, input
 /// mode that was set".
@@ -150,7 +153,7 @@ pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0,
     .strict()
     .default_number(0xF0);
 
-/// Address of a module: `0x00..=0x3F`. Section 2.2.3.
+/// Address of a module: `0x00..=0x3F`. Section 2.2.3, 2.2.4.
 ///
 /// Erratum X24: printed is "00~63 as module addresses, beside `0xF0` and `0xFF`", used is "0 to 63,
 /// decimal".
@@ -209,6 +212,10 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
 };
 
 /// All modules of one of the groups 0 to 7. Section 2.2.2, 2.2.3, 2.2.5.
+///
+/// Erratum X19: printed is "replies to 0x0017, 0x001E and 0x001F and to reads, all with the value; none
+/// to other settings or to broadcasts", used is "each setting of one module is answered with the value,
+/// of the type of the register; broadcasts only set, and nobody answers them".
 pub const GROUP_MODE: Mode = Mode {
     name: "group",
     target: Some(&GROUP_ADDRESS),
@@ -238,6 +245,10 @@ pub const GROUP_MODE: Mode = Mode {
 /// Erratum X4: printed is "a group field of 3 bits, groups up to 60, and a reply that shows the latest
 /// group at once", used is "0 is sent in an extended broadcast; any number is accepted, there and in a
 /// reply".
+///
+/// Erratum X19: printed is "replies to 0x0017, 0x001E and 0x001F and to reads, all with the value; none
+/// to other settings or to broadcasts", used is "each setting of one module is answered with the value,
+/// of the type of the register; broadcasts only set, and nobody answers them".
 pub const EXTENDED_GROUP_MODE: Mode = Mode {
     name: "extended_group",
     target: Some(&EXTENDED_GROUP_ADDRESS),
@@ -335,7 +346,7 @@ impl Word for HeaderFunction {
 
 impl Named for HeaderFunction {}
 
-/// Whether the request was carried out. Section 2.3, 4.
+/// Whether the request was carried out. Section 2.3, 4, 6.
 ///
 /// 0 in a request; a reply with another result than `normal` is to be discarded.
 ///
@@ -489,7 +500,7 @@ impl Word for Reset {
 
 impl Named for Reset {}
 
-/// Relevance. Section 3.1.
+/// Relevance permission. Section 3.1.
 ///
 /// Erratum X29: printed is "relevance permission of module output overvoltage protection", used is "the
 /// word as printed".
@@ -860,7 +871,10 @@ impl Layout for OutputCurrent {
     }
 }
 
-/// Current limit (share of rated). Section 3.1.
+/// Current limit (1 is the rated current). Section 3.1.
+///
+/// Erratum X8: printed is "a current limit set in percentage, with 0.5 as example", used is "a number
+/// without unit, 1 for the rated value".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentLimit {
     /// Share of a rated value: bytes 4..7.
@@ -916,6 +930,8 @@ impl Layout for CurrentLimit {
 }
 
 /// Temperature of the DC board. Section 3.1.
+///
+/// Erratum X21: printed is "no units beside floating point registers", used is "V, A, W and °C".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DcBoardTemperature {
     /// Value in °C: bytes 4..7.
@@ -1142,6 +1158,8 @@ impl Layout for Pfc1Voltage {
 }
 
 /// Ambient temperature at the panel. Section 3.1.
+///
+/// Erratum X21: printed is "no units beside floating point registers", used is "V, A, W and °C".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientTemperature {
     /// Value in °C: bytes 4..7.
@@ -1366,6 +1384,8 @@ impl Layout for PhaseCVoltage {
 }
 
 /// Temperature of the PFC board. Section 3.1.
+///
+/// Erratum X21: printed is "no units beside floating point registers", used is "V, A, W and °C".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PfcBoardTemperature {
     /// Value in °C: bytes 4..7.
@@ -1600,6 +1620,9 @@ impl Layout for SetAltitude {
 }
 
 /// Output current. Section 3.1.
+///
+/// Erratum X18: printed is "an output current in 0x001B, and a limit of current in 0x0022", used is
+/// "both as printed, without a rule between them".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetOutputCurrent {
     /// Value in A: bytes 4..7, steps of 1/1024 A.
@@ -1784,7 +1807,7 @@ impl Layout for SetAddressMode {
     }
 }
 
-/// Power (share of rated). Section 3.1.
+/// Output power (1 is the rated power). Section 3.1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetOutputPower {
     /// Share of a rated value: bytes 4..7, `0.1..=1`.
@@ -1901,7 +1924,13 @@ impl Layout for SetOutputVoltage {
     }
 }
 
-/// Current limit (share of rated). Section 2.3.1, 3.1.
+/// Current limit (1 is the rated current). Section 2.3.1, 3.1.
+///
+/// Erratum X8: printed is "a current limit set in percentage, with 0.5 as example", used is "a number
+/// without unit, 1 for the rated value".
+///
+/// Erratum X18: printed is "an output current in 0x001B, and a limit of current in 0x0022", used is
+/// "both as printed, without a rule between them".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetCurrentLimit {
     /// Share of a rated value: bytes 4..7.
@@ -2135,10 +2164,10 @@ impl Layout for ResetOvervoltage {
     }
 }
 
-/// Relevance of the output overvoltage protection. Section 3.1.
+/// Relevance permission of the output overvoltage protection. Section 3.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetOvervoltageRelevance {
-    /// Relevance: bytes 4..7.
+    /// Relevance permission: bytes 4..7.
     pub value: Relevance,
 }
 
@@ -2600,6 +2629,9 @@ impl Layout for ActiveInputMode {
 }
 
 /// Low bits of the serial number. Section 3.1.
+///
+/// Erratum X30: printed is "low bits and high bits of the node serial No. (ID No.)", used is "two
+/// numbers of 32 bits".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SerialNumberLow {
     /// Half of a serial number: bytes 4..7.
@@ -2655,6 +2687,9 @@ impl Layout for SerialNumberLow {
 }
 
 /// High bits of the serial number. Section 3.1.
+///
+/// Erratum X30: printed is "low bits and high bits of the node serial No. (ID No.)", used is "two
+/// numbers of 32 bits".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SerialNumberHigh {
     /// Half of a serial number: bytes 4..7.
@@ -2713,6 +2748,9 @@ impl Layout for SerialNumberHigh {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DcdcVersion {
     /// Number of the version: bytes 6..7.
+    ///
+    /// Erratum X26: printed is "the version is in the low 16 bits and refers to decimal numbers; nothing
+    /// about the high 16 bits", used is "an unsigned number, the high 16 bits reserved".
     pub version: u16,
 }
 
@@ -2768,6 +2806,9 @@ impl Layout for DcdcVersion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PfcVersion {
     /// Number of the version: bytes 6..7.
+    ///
+    /// Erratum X26: printed is "the version is in the low 16 bits and refers to decimal numbers; nothing
+    /// about the high 16 bits", used is "an unsigned number, the high 16 bits reserved".
     pub version: u16,
 }
 
@@ -2832,7 +2873,7 @@ pub enum Message {
     OutputCurrent(OutputCurrent),
     /// The request of `current_limit` by `read`.
     ReadCurrentLimit,
-    /// Current limit (share of rated).
+    /// Current limit (1 is the rated current).
     CurrentLimit(CurrentLimit),
     /// The request of `dc_board_temperature` by `read`.
     ReadDcBoardTemperature,
@@ -2886,11 +2927,11 @@ pub enum Message {
     SetGroup(SetGroup),
     /// Choose where modules get their address from.
     SetAddressMode(SetAddressMode),
-    /// Power (share of rated).
+    /// Output power (1 is the rated power).
     SetOutputPower(SetOutputPower),
     /// Output voltage.
     SetOutputVoltage(SetOutputVoltage),
-    /// Current limit (share of rated).
+    /// Current limit (1 is the rated current).
     SetCurrentLimit(SetCurrentLimit),
     /// Upper limit of the output voltage, at which the overvoltage protection acts.
     SetOvervoltagePoint(SetOvervoltagePoint),
@@ -2898,7 +2939,7 @@ pub enum Message {
     SwitchModules(SwitchModules),
     /// Reset after overvoltage.
     ResetOvervoltage(ResetOvervoltage),
-    /// Relevance of the output overvoltage protection.
+    /// Relevance permission of the output overvoltage protection.
     SetOvervoltageRelevance(SetOvervoltageRelevance),
     /// The request of `module_status` by `read`.
     ReadModuleStatus,

@@ -122,7 +122,8 @@ pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF3,
 
 /// Address of a module: `0xE0..=0xEF`. Section 3.2.5.
 ///
-/// A module has `0xE0` until `set_address` gives it another one.
+/// A module has `0xE0` until `set_address` gives it another one; the document counts them as PSU1 or
+/// module 1 at `0xE0` to PSU16 at `0xEF`.
 ///
 /// Erratum T19: printed is "`0xE0` as an automatically assigned address", used is "`0xE0` until another
 /// address is set by hand".
@@ -261,7 +262,7 @@ impl Word for ControlMode {
 
 impl Named for ControlMode {}
 
-/// Operation. Section 3.3.
+/// Whether the module is switched on. Section 3.3.
 ///
 /// Only a module in `remote` mode can be switched over the bus; one that was switched off so does not
 /// start at power-on until it is switched on over the bus or put into `local` mode.
@@ -422,7 +423,7 @@ impl BitOr for Status {
 pub struct ReferenceValues {
     /// Who controls the module: byte 0.
     pub mode: ControlMode,
-    /// Operation: byte 1.
+    /// Whether the module is switched on: byte 1.
     pub operation: Operation,
     /// Nominal voltage in V: bytes 2..3, steps of 0.1 V.
     ///
@@ -510,6 +511,9 @@ pub struct OutputValues {
     /// Output current in A: bytes 2..3, steps of 0.1 A.
     pub current_a: f64,
     /// Output power in W: bytes 4..5, steps of 0.1 W.
+    ///
+    /// Erratum T37: printed is "0.0 W in the example of 0x21, for bytes of 0, and no legible R of the
+    /// power", used is "steps of 0.1 W".
     pub power_w: f64,
     /// Faults of the module: bytes 6..7.
     pub status: Status,
@@ -748,7 +752,7 @@ impl Layout for ReplacementAdvice {
 pub struct Control {
     /// Who controls the module: byte 0.
     pub mode: ControlMode,
-    /// Operation: byte 1.
+    /// Whether the module is switched on: byte 1.
     ///
     /// Erratum T12: printed is "Control Mode over byte 0 and again over byte 1", used is "operation in byte
     /// 1".
@@ -756,6 +760,12 @@ pub struct Control {
     /// Output voltage in V: bytes 2..3, steps of 0.1 V. The limits depend on the device model.
     ///
     /// Takes effect in `remote` mode only.
+    ///
+    /// Erratum T11: printed is "Set voltage value (V) under 0x10, without R and b", used is "steps of 0.1
+    /// V".
+    ///
+    /// Erratum T27: printed is "48 V in the example of 0x10, and no model", used is "48 V without a model,
+    /// and a note with a model of 24 V".
     pub voltage_v: f64,
 }
 
@@ -835,6 +845,9 @@ pub struct SetAddress {
     /// New address of the module: byte 0, `224..=239`.
     ///
     /// Takes effect at the next power-on.
+    ///
+    /// A module has `0xE0` until `set_address` gives it another one; the document counts them as PSU1 or
+    /// module 1 at `0xE0` to PSU16 at `0xEF`.
     pub address: u8,
 }
 
