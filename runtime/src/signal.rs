@@ -145,7 +145,8 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
         let Some((minimum, maximum)) = limits else { return Ok(()) };
         let is_special = bits.is_some_and(|bits| self.special(bits).is_some());
-        if is_special || (minimum.limit::<R>()..=maximum.limit::<R>()).contains(&value) {
+        let is_within = |minimum: F, maximum: F| (minimum..=maximum).contains(&value);
+        if is_special || is_within(minimum, maximum) || is_within(minimum.limit::<R>(), maximum.limit::<R>()) {
             return Ok(());
         }
         Err(self.outside(number, minimum.number(), maximum.number(), payload))
@@ -411,6 +412,10 @@ mod tests {
         let upper = FREQUENCY.limits(45.0, 65.3);
         assert_eq!(upper.put(65.3, &mut request()), Ok(()));
         assert!(upper.put(65.300_01, &mut request()).is_err());
+        // The float nearest to 65.7 lies below it, and both are legal.
+        let written = |value| FREQUENCY.write(Meaning::Number(Number::Float(value)), &mut request());
+        assert_eq!(written(65.7), Ok(()));
+        assert!(written(65.700_01).is_err());
     }
 
     #[test]

@@ -160,7 +160,7 @@ impl<'a> Decoder<'a> {
         if left.is_empty() {
             let text = match self.identifier_selectors(candidates).as_str() {
                 "" => "no message goes this way".to_owned(),
-                selectors => format!("no message has {selectors}"),
+                selectors => format!("no {} has {selectors}", kinds(candidates)),
             };
             return Err(self.unrecognised(Problem::UnknownMessage, text, true, &[]));
         }
@@ -202,7 +202,7 @@ impl<'a> Decoder<'a> {
             let mut selectors = self.selectors(candidates);
             selectors.retain(|(index, _)| chooses(candidates, *index));
             let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
-            let text = format!("no message has {}", shown.join(", "));
+            let text = format!("no {} has {}", kinds(candidates), shown.join(", "));
             return Err(self.unrecognised(Problem::UnknownMessage, text, true, candidates));
         };
         Ok((best, left))
@@ -419,6 +419,12 @@ fn range_note(signal: &Signal, model: Option<usize>, value: f64) -> Option<Note>
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let text = format!("{} {value}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
     Some(Note { rule: "out_of_range", text })
+}
+
+/// Names the kinds of these frames, for texts.
+fn kinds(candidates: &[Candidate]) -> String {
+    let is_there = |kind: &Kind| candidates.iter().any(|(_, _, shape)| shape.kind == *kind);
+    Kind::ALL.into_iter().filter(is_there).map(Kind::name).collect::<Vec<_>>().join(" or ")
 }
 
 /// Tests whether a selector takes part in the choice among these frames.

@@ -68,14 +68,14 @@ fn runtime_scale(scale: Rational, offset: Rational) -> Scale {
         .offset(part(offset.numerator()), part(offset.denominator()))
 }
 
-/// Tests a physical value against the range; the limits of a float are the floats nearest to them.
+/// Tests a physical value against the range; of a float, the floats nearest to the limits are legal too.
 pub fn in_range(signal: &Signal, range: &Range, value: f64) -> bool {
-    let limit = |limit: Rational| match signal.encoding {
-        #[allow(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
-        Encoding::Float => f64::from(limit.to_f64() as f32),
-        _ => limit.to_f64(),
-    };
-    value >= limit(range.minimum) && value <= limit(range.maximum)
+    let is_within = |minimum: f64, maximum: f64| (minimum..=maximum).contains(&value);
+    #[allow(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
+    let nearest = |limit: f64| f64::from(limit as f32);
+    let (minimum, maximum) = (range.minimum.to_f64(), range.maximum.to_f64());
+    let is_float = matches!(signal.encoding, Encoding::Float);
+    is_within(minimum, maximum) || (is_float && is_within(nearest(minimum), nearest(maximum)))
 }
 
 /// What a value to send must keep to.

@@ -93,6 +93,8 @@ fn requested(
     signals: &[(&str, &str)],
 ) -> Result<String, Refusal> {
     let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-    let made = request(protocol, model, None, message, &Target::parse(to)?, None, &signals)?;
+    let (access, message) =
+        message.split_once(' ').map_or((None, message), |(access, message)| (Some(access), message));
+    let made = request(protocol, model, access, message, &Target::parse(to)?, None, &signals)?;
     Ok(printed(&made))
 }

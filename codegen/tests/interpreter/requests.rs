@@ -97,3 +97,13 @@ fn a_register_is_chosen_by_its_selectors() {
     let request = requested(&feature("register_table"), None, "voltage_limit", "single:3", &[("value", "700")]);
     assert!(request.is_err_and(|refusal| refusal.0.contains("say which access")));
 }
+
+#[test]
+fn the_written_limit_of_a_float_is_legal_although_the_nearest_float_lies_beside_it() {
+    let write = |volts| {
+        requested(&feature("register_table"), None, "write voltage_limit", "single:3", &[("value", volts)]).ok()
+    };
+    // The float nearest to 0.1 is 0x3DCCCCCD and lies above it.
+    assert_eq!(write("0.1").as_deref(), Some("013#030000213DCCCCCD"));
+    assert_eq!([write("0.0999"), write("750.1")], [const { None }; 2]);
+}

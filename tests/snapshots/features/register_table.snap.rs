@@ -113,7 +113,7 @@ const WRITE_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
 /// Voltage limit. Section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VoltageLimit {
-    /// Value in V: bytes 4..7, `0..=750`.
+    /// Value in V: bytes 4..7, `0.1..=750`.
     pub value_v: f32,
 }
 
@@ -121,7 +121,7 @@ impl VoltageLimit {
     /// The signal `value`.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7))
         .unit("V")
-        .limits(0.0, 750.0);
+        .limits(0.1, 750.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
