@@ -23,14 +23,14 @@ use inputs::Inputs;
 /// canspec_codegen::Builder::new().folder("specs").build();
 /// ```
 ///
-/// ```ignore
+/// ```rs
 /// // lib.rs: the module of one protocol
 /// pub mod heater {
 ///     canspec_runtime::include_protocol!("heater");
 /// }
 /// ```
 ///
-/// ```ignore
+/// ```rs
 /// // or a module for each protocol
 /// include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 /// ```

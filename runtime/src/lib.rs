@@ -78,7 +78,7 @@ pub use word::{Legend, Named, StatusWord, Word};
 
 /// Includes the code that a build script generated for a protocol, as the content of a module.
 ///
-/// ```ignore
+/// ```rs
 /// pub mod heater {
 ///     canspec_runtime::include_protocol!("heater");
 /// }
