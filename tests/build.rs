@@ -1,5 +1,5 @@
-//! Generates codecs of the feature specs and of made-up devices, each also with every option, and a list of every protocol, those that
-//! ship included.
+//! Generates codecs of the feature specs, of made-up devices and of whole protocols that do not ship, each also with every option, and a
+//! list of every protocol, those that ship included.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -17,11 +17,17 @@ fn main() {
         list.visits.push_str(&visit);
         list.switched.push_str(&visit);
     }
-    for folder in ["features", "devices"] {
-        for (name, path) in specs(&root.join("specs").join(folder)) {
-            let module = format!("{folder}_{name}");
+    // A whole protocol may have numbers that single precision misses.
+    let folders = [
+        ("features", "specs/features", Float::F32),
+        ("devices", "specs/devices", Float::F32),
+        ("unshipped", "specs", Float::F64),
+    ];
+    for (kind, folder, float) in folders {
+        for (name, path) in specs(&root.join(folder)) {
+            let module = format!("{kind}_{name}");
             let switched = format!("{module}_switched");
-            for (module, options) in [(&module, Options::default()), (&switched, every_option())] {
+            for (module, options) in [(&module, Options::default()), (&switched, every_option(float))] {
                 fs::write(out.join(format!("{module}.rs")), generate(&path, &options)).expect("OUT_DIR can be written");
                 list.module(module, &path);
             }
@@ -55,8 +61,8 @@ fn generate(path: &Path, options: &Options) -> String {
     }
 }
 
-fn every_option() -> Options {
-    Options { float: Float::F32, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
+fn every_option(float: Float) -> Options {
+    Options { float, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
 }
 
 /// Shows a protocol to a visitor.

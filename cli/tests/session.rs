@@ -2,12 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::LazyLock;
 
 use serde_json::Value;
 
-/// A log, how it is decoded, the commands or registers that it uses, and the lines whose request is outside the limits.
+/// A log, how it is decoded, the commands or registers that it uses, and the lines whose request is outside the limits. The protocol is
+/// built in or a file.
 struct Session {
     name: &'static str,
     protocol: &'static str,
@@ -57,10 +59,47 @@ const SESSIONS: [Session; 5] = [
     },
 ];
 
+/// The specs of whole protocols that do not ship; each has a log called after it.
+static UNSHIPPED: LazyLock<Vec<Unshipped>> = LazyLock::new(|| {
+    let entries = fs::read_dir(tests().join("specs")).expect("the folder exists").flatten().map(|entry| entry.path());
+    let mut specs: Vec<_> = entries.filter(|path| path.extension().is_some_and(|ending| ending == "yaml")).collect();
+    specs.sort();
+    specs.iter().map(|spec| Unshipped::new(spec)).collect()
+});
+
+struct Unshipped {
+    session: String,
+    path: String,
+    out_of_range: Vec<u64>,
+}
+
+impl Unshipped {
+    fn new(path: &Path) -> Self {
+        let session = format!("{}-session", path.file_stem().unwrap_or_default().to_string_lossy());
+        let table = fs::read_to_string(tests().join(format!("logs/{session}.expected.tsv"))).expect("each has a table");
+        let stated = table.lines().find_map(|line| line.strip_prefix("# out of range:")).unwrap_or_default();
+        let out_of_range = stated.split_whitespace().map(|line| line.parse().expect("a line of the log")).collect();
+        Self { session, path: path.to_string_lossy().into_owned(), out_of_range }
+    }
+
+    fn session(&'static self) -> Session {
+        let Self { session: name, path: protocol, out_of_range } = self;
+        Session { name, protocol, model: None, commands: &[], out_of_range }
+    }
+}
+
+/// Returns every session.
+fn sessions() -> impl Iterator<Item = Session> {
+    SESSIONS.into_iter().chain(UNSHIPPED.iter().map(Unshipped::session))
+}
+
+fn tests() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests")
+}
+
 impl Session {
     fn file(&self, ending: &str) -> PathBuf {
-        let logs = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/logs");
-        logs.join(format!("{}.{ending}", self.name))
+        tests().join(format!("logs/{}.{ending}", self.name))
     }
 
     /// Returns the lines of the expected values without the line that explains them.
@@ -70,7 +109,8 @@ impl Session {
     }
 
     fn run(&self, command: &str, options: &[&str], input: &[u8]) -> Output {
-        let mut arguments = vec![command, "--protocol", self.protocol];
+        let option = if Path::new(self.protocol).is_absolute() { "--spec" } else { "--protocol" };
+        let mut arguments = vec![command, option, self.protocol];
         arguments.extend(self.model.iter().flat_map(|model| ["--model", model]));
         arguments.extend(options);
         canspec(&arguments, input)
@@ -151,7 +191,7 @@ fn value(signal: &Value) -> String {
 
 #[test]
 fn each_session_decodes_to_the_values_of_the_document() {
-    for session in SESSIONS {
+    for session in sessions() {
         let lines = session.decoded();
         let expected = session.expected();
         for (line, expected) in lines.iter().zip(&expected) {
@@ -163,7 +203,7 @@ fn each_session_decodes_to_the_values_of_the_document() {
 
 #[test]
 fn each_session_uses_every_command() {
-    for session in SESSIONS {
+    for session in sessions() {
         let lines = session.decoded();
         let commands: BTreeSet<_> = lines.iter().filter_map(command).collect();
         assert!(session.commands.iter().all(|command| commands.contains(command)), "{}: {commands:?}", session.name);
@@ -172,7 +212,7 @@ fn each_session_uses_every_command() {
 
 #[test]
 fn each_session_encodes_back_to_the_same_frames() {
-    for session in SESSIONS {
+    for session in sessions() {
         let log = fs::read_to_string(session.file("log")).expect("the file ships");
         let accepted = |line: &Value| !line["message"].is_null() && !is_out_of_range(line);
         let recognised: Vec<_> = session.decoded().into_iter().filter(accepted).collect();
@@ -192,7 +232,7 @@ fn is_out_of_range(line: &Value) -> bool {
 
 #[test]
 fn each_request_outside_the_limits_is_noted_and_cannot_be_sent() {
-    for session in SESSIONS {
+    for session in sessions() {
         let outside: Vec<_> = session.decoded().into_iter().filter(is_out_of_range).collect();
         let lines: Vec<_> = outside.iter().filter_map(|line| line["line"].as_u64()).collect();
         assert_eq!(lines, session.out_of_range, "{}", session.name);
@@ -200,6 +240,18 @@ fn each_request_outside_the_limits_is_noted_and_cannot_be_sent() {
         let refusals = String::from_utf8_lossy(&output.stderr);
         assert_eq!(refusals.lines().count(), lines.len(), "{refusals}");
         assert!(output.stdout.is_empty(), "{}", session.name);
+    }
+}
+
+#[test]
+fn each_session_of_a_protocol_that_does_not_ship_uses_every_message() {
+    for Unshipped { path, .. } in UNSHIPPED.iter() {
+        let output = canspec(&["check", "--format", "json", path], b"");
+        let summary: Value = serde_json::from_slice(&output.stdout).expect("the summary is an object");
+        let session = sessions().find(|session| session.protocol == path).expect("each spec has a session");
+        let lines = session.decoded();
+        let messages: BTreeSet<_> = lines.iter().filter_map(|line| line["message"].as_str()).collect();
+        assert_eq!(Some(messages.len() as u64), summary["messages"].as_u64(), "{path}: {messages:?}");
     }
 }
 
@@ -248,7 +300,7 @@ fn shows(block: &str, expected: &str) -> Result<(), String> {
 
 #[test]
 fn each_row_of_the_table_shows_the_values_of_the_document() {
-    for session in SESSIONS {
+    for session in sessions() {
         let blocks = blocks(&session.decode(&[]));
         let expected = session.expected();
         assert_eq!(blocks.len(), expected.len(), "{}", session.name);

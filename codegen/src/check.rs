@@ -10,6 +10,7 @@ mod model_range;
 mod outside_frame;
 mod overlap;
 mod range_width;
+mod refusal;
 mod reply;
 mod rust_name;
 mod section;
@@ -25,7 +26,7 @@ use crate::model::Protocol;
 type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what the protocol is, in order.
-const RULES: [Check; 12] = [
+const RULES: [Check; 13] = [
     outside_frame::check,
     overlap::check,
     grid::check,
@@ -35,6 +36,7 @@ const RULES: [Check; 12] = [
     default_value::check,
     direction::check,
     ambiguous::check,
+    refusal::check,
     rust_name::check,
     erratum::check,
     section::check,

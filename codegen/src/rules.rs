@@ -10,7 +10,7 @@ pub struct Rule {
 }
 
 /// Every rule, in the order of the stages.
-pub const RULES: [Rule; 42] = [
+pub const RULES: [Rule; 43] = [
     rule("file", "the file cannot be read"),
     rule("encoding", "the text is not UTF-8, or holds a character that has no place in a spec"),
     rule("yaml", "the text is not YAML, or uses a part of YAML that a spec does without"),
@@ -48,6 +48,7 @@ pub const RULES: [Rule; 42] = [
     rule("default_value", "a default lies outside the range"),
     rule("direction", "an identifier does not show whether it is a request or a reply"),
     rule("ambiguous", "one frame fits two messages, or two accesses of one message"),
+    rule("refusal", "a refusal is also a reply, or is the reply of no message"),
     rule("rust_name", "a name cannot be used in Rust, or two names become one"),
     rule("erratum", "an erratum is referred to but not there, or there but not referred to"),
     rule("section", "an item does not say where it stands in the document"),

@@ -33,6 +33,11 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
         let values = failure.map_or_else(|| Ok(R::decode(&frame.bytes())), Err);
         Self { identifier, values, selectors, frame }
     }
+
+    /// Returns the reply that is another message, which says why the request is refused.
+    pub(crate) fn refused(selectors: &'static [Selector], frame: Frame) -> Self {
+        Self { identifier: P::Identifier::from_raw(frame.raw_id()), values: Err(Failure::Error), selectors, frame }
+    }
 }
 
 /// Why a reply has no values.
@@ -40,7 +45,7 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
-    /// The device answers with an error code, in the identifier or in a selector.
+    /// The device answers with an error code, in the identifier or in a selector, or by another message that says why it refuses.
     Error,
     /// It has too few or too many data bytes.
     Length,

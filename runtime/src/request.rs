@@ -73,12 +73,23 @@ pub struct Exchange {
     request: Option<Filter>,
     reply: Option<Filter>,
     report: Option<Filter>,
+    refusal: Option<&'static Filter>,
 }
 
 impl Exchange {
     /// Returns an exchange without frames; `answers` says who answers, mode by mode.
     pub const fn new(message: &'static str, access: &'static str, answers: &'static [Option<Who>]) -> Self {
-        Self { message, access, length: 8, answers, models: &[], request: None, reply: None, report: None }
+        Self {
+            message,
+            access,
+            length: 8,
+            answers,
+            models: &[],
+            request: None,
+            reply: None,
+            report: None,
+            refusal: None,
+        }
     }
 
     /// Sets how many data bytes its frames have.
@@ -109,6 +120,12 @@ impl Exchange {
     #[must_use]
     pub const fn report(self, report: Filter) -> Self {
         Self { report: Some(report), ..self }
+    }
+
+    /// Adds what refuses a request in place of the reply: another message's reply, which says why.
+    #[must_use]
+    pub const fn refusal(self, refusal: &'static Filter) -> Self {
+        Self { refusal: Some(refusal), ..self }
     }
 
     /// Returns the name of the message.
@@ -182,22 +199,24 @@ impl Exchange {
 
     /// Builds a request whose values `encode` writes; all messages share this code.
     fn built(&self, choice: &Choice, encode: &dyn Fn(&mut Payload) -> Result<(), Error>) -> Result<Built, Error> {
-        let (filter, replies) = self.addressed(choice)?;
+        let Addressed { request: filter, replies, refusal } = self.addressed(choice)?;
         let mut payload = Payload::within_limits(self.message, filter.data_value());
         encode(&mut payload)?;
         let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), self.length);
-        Ok(Built { frame, replies })
+        Ok(Built { frame, replies, refusal })
     }
 
     /// Returns what the request and its replies show.
-    fn addressed(&self, choice: &Choice) -> Result<(Filter, Replies), Error> {
+    fn addressed(&self, choice: &Choice) -> Result<Addressed, Error> {
         let (mode, who, pattern, request) = self.way(choice)?;
         for address in pattern.addresses {
             address.kind().documented(choice.number(address.kind()))?;
         }
         let filter = pattern.narrow(request, |kind| Some(choice.number(kind)));
-        let replies = self.replies(mode, who, |kind| pattern.has(kind).then(|| choice.number(kind)));
-        Ok((filter, replies))
+        let number = |kind: &AddressType| pattern.has(kind).then(|| choice.number(kind));
+        let replies = self.replies(mode, who, number);
+        let refusal = self.refusal.zip(mode.reply(who)).map(|(refusal, pattern)| pattern.narrow(refusal, number));
+        Ok(Addressed { request: filter, replies, refusal })
     }
 
     fn way(&self, choice: &Choice) -> Result<(&'static Mode, Who, &'static Pattern, &Filter), Error> {
@@ -222,6 +241,13 @@ impl Exchange {
             _ => Replies::Nobody,
         }
     }
+}
+
+/// What a request to an address shows, and what answers it.
+struct Addressed {
+    request: Filter,
+    replies: Replies,
+    refusal: Option<Filter>,
 }
 
 /// Which replies a request gets.
@@ -252,6 +278,7 @@ impl Replies {
 struct Built {
     frame: Frame,
     replies: Replies,
+    refusal: Option<Filter>,
 }
 
 /// A request ready to be sent, whose replies carry `R`.
@@ -274,16 +301,27 @@ impl<P: Protocol, R: Layout> Request<P, R> {
         &self.built.replies
     }
 
+    /// Returns what another message's reply shows that refuses this request, if there is one.
+    pub const fn refusal(&self) -> Option<&Filter> {
+        self.built.refusal.as_ref()
+    }
+
     /// Decodes a frame if it answers this request, be it with an error; returns `None` for somebody else's frame.
     pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>> {
         let filter = self.built.replies.filter()?;
+        if let Some(refusal) = self.refusal()
+            && let Some(frame) = answer::<P>(refusal, frame)
+        {
+            return Some(Reply::refused(refusal.data_selectors(), frame));
+        }
         let frame = answer::<P>(filter, frame)?;
         Some(Reply::decode(filter.data_selectors(), self.built.frame.length(), frame))
     }
 
     /// Tests whether a frame answers this request, be it with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
-        self.built.replies.filter().is_some_and(|filter| answer::<P>(filter, frame).is_some())
+        let mut filters = self.built.replies.filter().into_iter().chain(self.refusal());
+        filters.any(|filter| answer::<P>(filter, frame).is_some())
     }
 }
 

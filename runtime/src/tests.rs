@@ -117,7 +117,8 @@ impl Heat {
     const SET: Exchange = Exchange::new("heat", "set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
         .length(4)
         .request(FRAME.id(COMMAND, 7).selectors(&[FUNCTION]).data(FUNCTION.place, 1))
-        .reply(FRAME.id(COMMAND, 7).selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2));
+        .reply(FRAME.id(COMMAND, 7).selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2))
+        .refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1));
     const READ: Exchange = Exchange::new("heat", "read", &[None, Some(Who::Coordinator), None])
         .length(4)
         .request(FRAME.id(COMMAND, 8))
@@ -265,6 +266,22 @@ fn an_error_reply_is_a_reply_without_values() {
     let refused = request.reply(&frame(0x0107_F003, [2, 0xF2, 0, 0])).expect("the reply of heater 3");
     let codes: std::vec::Vec<_> = refused.selectors().map(|(selector, raw)| (selector.name, raw)).collect();
     assert_eq!(codes, [("function", 2), ("result", 0xF2)]);
+}
+
+#[test]
+fn a_refusal_is_a_reply_without_values_whatever_its_length() {
+    let request = HEAT.set(To::Heater(3)).expect("a legal request");
+    for length in [1, 4, 8] {
+        let refused = Frame::new_raw(0x0109_F003, true, [1, 0, 0, 5, 0, 0, 0, 0], length);
+        let reply = request.reply(&refused).expect("the refusal of heater 3");
+        assert_eq!((reply.identifier, reply.values), (Identifier(0x0109_F003), Err(Failure::Error)));
+        assert!(reply.selectors().map(|(selector, raw)| (selector.name, raw)).eq([("function", 1)]));
+        assert!(request.is_reply(&refused));
+    }
+    for other in [frame(0x0109_F004, [1; 4]), frame(0x0109_F003, [2; 4]), frame(0x0109_03F0, [1; 4])] {
+        assert!(request.reply(&other).is_none() && !request.is_reply(&other), "{other}");
+    }
+    assert_eq!(HEAT.set(To::All).expect("a legal request").refusal(), None);
 }
 
 #[test]

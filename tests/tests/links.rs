@@ -19,7 +19,7 @@ fn linked(program: &Program, settings: Settings<'_>) -> Binary {
 
 #[test]
 fn every_function_of_every_protocol_links_without_std_and_without_panics() {
-    let program = Program::everything(&Codec::all("specs"));
+    let program = Program::everything(&[Codec::all("specs"), Codec::all("tests/specs")].concat());
     linked(&program, SIZE);
     linked(&program, SPEED);
 }

@@ -35,7 +35,7 @@ fn each_feature_generates_the_rust_that_was_reviewed() {
 
 #[test]
 fn each_protocol_generates_the_rust_that_was_reviewed() {
-    for path in specs("specs") {
+    for path in [specs("specs"), specs("tests/specs")].concat() {
         compare(&path, "protocols", &Options::default());
     }
 }
@@ -54,7 +54,7 @@ fn each_option_adds_the_rust_that_was_reviewed() {
 
 #[test]
 fn generation_is_deterministic() {
-    for path in specs("specs") {
+    for path in [specs("specs"), specs("tests/specs")].concat() {
         assert_eq!(rust(&path), rust(&path));
     }
 }

@@ -1,11 +1,11 @@
 //! `reply`: an example that does not answer the request before it.
 //!
-//! Within one list a reply belongs to the latest request: the same message, the addresses bound by the addressing mode, and somebody
-//! who answers at all. A frame that the document prints wrongly is marked with `fails`.
+//! Within one list a reply belongs to the latest request: the same message or one that refuses it, the addresses bound by the addressing
+//! mode, and somebody who answers at all. A frame that the document prints wrongly is marked with `fails`.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::{Decoded, Frame, decode};
-use crate::model::{AddressPattern, Example, Kind, Mode, Protocol, Who};
+use crate::model::{AddressPattern, Example, Kind, Message, Mode, Protocol, SelectorPlace, Shape, Who};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let mut latest: Option<(&Example, Decoded)> = None;
@@ -38,16 +38,27 @@ fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
 /// Says why a reply does not answer a request.
 fn mismatch(protocol: &Protocol, asked: &Decoded, reply: &Decoded) -> Option<String> {
     let message = &protocol.messages[reply.message];
-    if asked.message != reply.message {
-        let other = &protocol.messages[asked.message].name;
+    let request = &protocol.messages[asked.message];
+    if asked.message != reply.message && !refuses(protocol, request, asked, reply) {
+        let other = &request.name;
         return Some(format!("a reply of `{}` follows a request of `{other}`", message.name));
     }
     let mode = &protocol.modes[asked.addressing?];
-    let access = message.accesses.iter().find(|access| access.access == asked.access)?;
+    let access = request.accesses.iter().find(|access| access.access == asked.access)?;
     match access.answers[asked.addressing?] {
         Some(Who::Nobody) | None => Some(format!("nobody answers `{}` by `{}`", message.name, mode.name)),
         Some(who) => unbound(protocol, mode, who, asked, reply),
     }
+}
+
+/// Tests whether a reply shows that a request is refused.
+fn refuses(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Decoded) -> bool {
+    let shows = |(selector, value): &(usize, u64)| match protocol.selectors[*selector].place {
+        SelectorPlace::Identifier(field) => u64::from(reply.identifier[field]) == *value,
+        SelectorPlace::Payload(_) => reply.selectors.contains(&(*selector, *value)),
+    };
+    let is_of_access = |refusal: &&Shape| request.accesses[refusal.access].access == asked.access;
+    request.refusals.iter().filter(is_of_access).any(|refusal| refusal.constants.iter().all(shows))
 }
 
 /// Says which address of the reply is not the request's.

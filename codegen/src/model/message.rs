@@ -74,6 +74,8 @@ pub struct Message {
     pub accesses: Vec<MessageAccess>,
     /// The frames that exist: one for each access and kind.
     pub shapes: Vec<Shape>,
+    /// The frames that refuse its requests in place of a reply, one for each access that has them: replies of another message.
+    pub refusals: Vec<Shape>,
     /// Index into [`Protocol::timing`](crate::model::Protocol::timing): how often its report comes, if not as its access says.
     pub every: Option<usize>,
     /// The only device models that have it, by [`Protocol::models`](crate::model::Protocol::models); empty if every

@@ -57,10 +57,14 @@ impl Resolver<'_> {
                 shapes.push(self.shape(path, (index, *kind), constants, &fixed, &leaves.signals, access, surroundings));
             }
         }
+        let refused = accesses.iter().enumerate();
+        let refusals =
+            refused.filter_map(|(index, access)| self.refusal(path, index, &matched, access, surroundings)).collect();
         let every = self.every(path, message.every.as_deref(), surroundings.timing);
         let length = length.unwrap_or(surroundings.length);
         let models = self.message_models(&path.key("models"), &message.models);
-        Message { name: name.to_owned(), doc, length, signals: leaves.signals, accesses, shapes, every, models }
+        let name = name.to_owned();
+        Message { name, doc, length, signals: leaves.signals, accesses, shapes, refusals, every, models }
     }
 
     /// Finds the device models that have a message.
@@ -172,6 +176,23 @@ impl Resolver<'_> {
         selectors.dedup();
         let signals = signals.iter().enumerate().filter(|(_, signal)| present(&signal.kinds));
         Shape { access: index, kind, constants, selectors, signals: signals.map(|(index, _)| index).collect() }
+    }
+
+    /// Returns the frame that refuses a request of the message; it carries none of the message's fields.
+    fn refusal(
+        &mut self,
+        path: &Path,
+        index: usize,
+        matched: &[Constant],
+        access: &MessageAccess,
+        surroundings: &Surroundings,
+    ) -> Option<Shape> {
+        let spec = self.spec;
+        let (name, known) = spec.access.get_index(access.access)?;
+        let pattern = known.refusal.as_ref()?;
+        let path_of_pattern = Path::default().key("access").key(name).key("refusal");
+        let constants = [matched.to_vec(), self.constants(&path_of_pattern, pattern, surroundings.identifier)].concat();
+        Some(self.shape(path, (index, Kind::Reply), constants, &[], &[], access, surroundings))
     }
 
     fn is_payload(&self, selector: usize) -> bool {

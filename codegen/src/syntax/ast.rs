@@ -257,6 +257,9 @@ pub struct Access {
     /// Raw values that fields of the identifier and the header have in a reply: `{function: 3}`, or `{}` if none are
     /// fixed. If absent, there is no reply.
     pub reply: Option<Pattern>,
+    /// Raw values that fields of the identifier and the header have in a reply that refuses the request, in place of those of
+    /// `reply`; another message has such replies and says why: `{function: 0x80}`. If absent, nothing is refused so.
+    pub refusal: Option<Pattern>,
     /// Raw values that fields of the identifier and the header have in a report, which is sent unasked:
     /// `{function: 5}`, or `{}` if none are fixed. If absent, there is no report.
     pub report: Option<Pattern>,

@@ -217,7 +217,11 @@ impl Emitter<'_> {
             let (kind, filter) = (super::names::ident(shape.kind.name()), self.filter(shape));
             quote!(.#kind(#filter))
         });
-        quote!(#comment pub const #constant: Exchange = Exchange::new(#message, #name, #answers) #length #models #(#filters)*;)
+        let refusal = self.message.refusals.iter().find(|shape| shape.access == index).map(|shape| {
+            let filter = self.filter(shape);
+            quote!(.refusal(&#filter))
+        });
+        quote!(#comment pub const #constant: Exchange = Exchange::new(#message, #name, #answers) #length #models #(#filters)* #refusal;)
     }
 
     /// Says how often a report comes.

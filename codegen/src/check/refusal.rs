@@ -1,0 +1,54 @@
+//! `refusal`: an access whose refusals are also replies, or are replies of no message.
+//!
+//! A refusal stands in place of the reply, so one field must tell the two apart, and what refuses says why: it is the reply of a message
+//! of its own. Give `refusal` a constant that `reply` has with another value, and write a message whose reply has this constant.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Kind, Message, Protocol, Shape};
+use crate::syntax::tree::Path;
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        for refusal in &message.refusals {
+            if let Some((text, help)) = complaint(protocol, message, refusal) {
+                let access = &protocol.accesses[message.accesses[refusal.access].access].name;
+                let at = Path::default().key("access").key(access).key("refusal").at_key();
+                diagnostics.push_first(Diagnostic::error("refusal", at, text).help(help));
+            }
+        }
+    }
+}
+
+/// Says what is wrong with a refusal, and what to do.
+fn complaint(protocol: &Protocol, message: &Message, refusal: &Shape) -> Option<(String, &'static str)> {
+    let name = &message.name;
+    let frames = message.shapes.iter().filter(|shape| shape.access == refusal.access);
+    let replies: Vec<_> = frames.clone().filter(|shape| shape.kind == Kind::Reply).collect();
+    if replies.is_empty() || !frames.clone().any(|shape| shape.kind == Kind::Request) {
+        let text =
+            format!("a refusal of `{name}` stands in place of the reply to a request, but there is no such reply");
+        return Some((text, "add `request:` and `reply:` to the access, or take `refusal` out"));
+    }
+    if !replies.iter().all(|reply| is_apart(reply, refusal)) {
+        let help = "give a field one constant in `reply` and another one in `refusal`";
+        return Some((format!("nothing tells a refusal of `{name}` from its reply"), help));
+    }
+    let is_known = protocol.messages.iter().flat_map(|other| &other.shapes).any(|shape| says_why(shape, refusal));
+    (!is_known).then(|| {
+        let text = format!("a refusal of `{name}` is the reply of no message");
+        (text, "write a message whose reply has these constants and carries the reason")
+    })
+}
+
+/// Tests whether one field has different constants in both.
+fn is_apart(reply: &Shape, refusal: &Shape) -> bool {
+    let differs = |(selector, value): &(usize, u64)| {
+        refusal.constants.iter().any(|(other, refused)| other == selector && refused != value)
+    };
+    reply.constants.iter().any(differs)
+}
+
+/// Tests whether every refusal is such a frame.
+fn says_why(shape: &Shape, refusal: &Shape) -> bool {
+    shape.kind == Kind::Reply && shape.constants.iter().all(|constant| refusal.constants.contains(constant))
+}
