@@ -176,7 +176,7 @@ fn a_spec_that_does_not_suit_single_precision_is_refused_for_it() {
             "{bytes: 0..3, scale: 1/1000, range: 0..750, values: {4194304: none}}",
             "raw values to 4194304 times 0.001 reach 2^22, beyond which a single misses steps",
         ),
-        ("{bytes: 0..3, scale: 1/1024}", "32 bits times 0.0009765625 reach 2^24, beyond which a single misses steps"),
+        ("{bytes: 0..3, scale: 1/1024}", "32 bits times 1/1024 reach 2^24, beyond which a single misses steps"),
         (
             "{bytes: 0, scale: 1/16777217}",
             "the denominator of 1/16777217 reaches 2^24, beyond which a single misses integers",
