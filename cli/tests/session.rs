@@ -18,7 +18,7 @@ struct Session {
     out_of_range: &'static [u64],
 }
 
-const SESSIONS: [Session; 5] = [
+const SESSIONS: [Session; 6] = [
     Session {
         name: "infy-session",
         protocol: "infy",
@@ -56,6 +56,13 @@ const SESSIONS: [Session; 5] = [
             70, 72, 74, 75, 84, 85, 86, 87,
         ],
         out_of_range: &[],
+    },
+    Session {
+        name: "megmeet-session",
+        protocol: "megmeet",
+        model: Some("V48"),
+        commands: &[64, 80, 128, 129, 130],
+        out_of_range: &[634, 635, 636, 637, 638, 639, 640, 641, 642, 643, 644, 645, 646, 647, 648, 649],
     },
 ];
 
