@@ -7,15 +7,18 @@ use std::process::Command;
 const PAGES: [&str; 2] = ["docs/your-own-crate.md", "README.md"];
 
 /// Files of the crate that a page can quote.
-const FILES: [&str; 9] = [
+const FILES: [&str; 12] = [
     "Cargo.toml",
     "build.rs",
     "frames.jsonl",
     "src/lib.rs",
+    "src/meters.rs",
     "src/pumps.rs",
+    "specs/meter.yaml",
     "specs/pump.yaml",
     "specs/winch.yaml",
     "tests/frames.rs",
+    "tests/meters.rs",
     "tests/pumps.rs",
 ];
 

@@ -88,6 +88,15 @@ impl Filter {
         Self { id_mask: self.id_mask | mask, id_value, ..self }
     }
 
+    /// Requires what `other` requires too; where both do, `other` counts.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        let mask = word(other.data_mask);
+        let data_mask = (word(self.data_mask) | mask).to_be_bytes();
+        let data_value = ((word(self.data_value) & !mask) | (word(other.data_value) & mask)).to_be_bytes();
+        Self { data_mask, data_value, ..self.id_bits(other.id_mask, other.id_value) }
+    }
+
     /// Tests a frame.
     pub fn matches(&self, frame: &impl embedded_can::Frame) -> bool {
         let (id, extended) = raw_id(frame.id());
@@ -103,8 +112,7 @@ impl Filter {
     }
 
     /// Tests data bytes.
-    pub fn matches_data(&self, data: &Data) -> bool {
-        let word = |data: Data| u64::from_be_bytes(data);
+    pub const fn matches_data(&self, data: &Data) -> bool {
         (word(*data) ^ word(self.data_value)) & word(self.data_mask) == 0
     }
 
@@ -147,6 +155,10 @@ impl Filter {
     pub const fn frame(&self, length: u8) -> Frame {
         Frame::new_raw(self.id_value, self.extended, self.data_value, length)
     }
+}
+
+const fn word(data: Data) -> u64 {
+    u64::from_be_bytes(data)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
@@ -196,5 +208,15 @@ mod tests {
         let filter = Filter::EXTENDED.id(COMMAND, 0x3F).id(COMMAND, 0x01).id_bits(0x0F, 0x05);
         assert_eq!((filter.id_mask(), filter.id_value()), (0x003F_000F, 0x0001_0005));
         assert_eq!(filter.send_id(COMMAND, 0).id_mask(), 0x0F);
+    }
+
+    #[test]
+    fn two_filters_together_require_what_each_of_them_does() {
+        let one = Filter::EXTENDED.id(COMMAND, 0x1C).data(FUNCTION, 0x41).send_id(ERROR, 2);
+        let both = one.and(Filter::EXTENDED.data(Place::bytes(2, 3), 0x0102).id(Bits::new(7, 0), 0xF0));
+        assert_eq!((both.id_mask(), both.id_value(), both.sent_id()), (0x003F_00FF, 0x001C_00F0, 0x081C_00F0));
+        assert_eq!(both.data_mask(), [0xFF, 0, 0xFF, 0xFF, 0, 0, 0, 0]);
+        assert_eq!(both.data_value(), [0x41, 0, 1, 2, 0, 0, 0, 0]);
+        assert_eq!(one.and(Filter::EXTENDED.data(FUNCTION, 0x42)), one.data(FUNCTION, 0x42));
     }
 }

@@ -20,6 +20,36 @@ pub trait Layout {
     fn signals(&self) -> &'static [&'static dyn AnySignal];
 }
 
+/// A layout of one signal, from which [`Layout`] follows.
+pub trait Single: Sized + 'static {
+    /// The signal.
+    const SIGNAL: &'static dyn AnySignal;
+    /// Takes its value out of the data.
+    const DECODE: Decode<Self>;
+    /// Writes its value into data.
+    const ENCODE: Encode<Self>;
+}
+
+/// As [`Layout::decode`].
+pub type Decode<T> = fn(&Data) -> T;
+
+/// As [`Layout::encode`].
+pub type Encode<T> = fn(&T, &mut Payload) -> Result<(), Error>;
+
+impl<T: Single> Layout for T {
+    fn decode(data: &Data) -> Self {
+        Self::DECODE(data)
+    }
+
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+        Self::ENCODE(self, payload)
+    }
+
+    fn signals(&self) -> &'static [&'static dyn AnySignal] {
+        const { &[Self::SIGNAL] }
+    }
+}
+
 /// Frames without signals.
 impl Layout for () {
     fn decode(_: &Data) {}

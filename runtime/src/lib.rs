@@ -18,6 +18,7 @@
 extern crate std;
 
 mod address;
+mod entry;
 mod error;
 mod filter;
 mod frame;
@@ -54,10 +55,11 @@ pub use arbitrary;
 #[doc(hidden)]
 pub use defmt;
 pub use embedded_can;
+pub use entry::Entry;
 pub use error::Error;
 pub use filter::{Filter, Selector};
 pub use frame::Frame;
-pub use layout::Layout;
+pub use layout::{Decode, Encode, Layout, Single};
 pub use number::Number;
 pub use packed::{Packed, PackedText, Piece, left_aligned, right_aligned};
 pub use payload::Payload;

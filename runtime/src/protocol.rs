@@ -9,7 +9,8 @@ use crate::address::Rank;
 use crate::frame::classic;
 use crate::reply::{has_error, selected};
 use crate::{
-    Addressing, Data, Error, Exchange, Failure, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading, Selector,
+    Addressing, Data, Entry, Error, Exchange, Failure, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading,
+    Selector,
 };
 
 /// A protocol, implemented by the enum of its messages.
@@ -22,6 +23,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const NORMAL: Filter;
     /// All addressing modes.
     const MODES: &'static [Mode];
+    /// All messages.
+    const MESSAGES: &'static [Entry<Self>] = &[];
 
     /// Recognises a frame towards a module by its selectors, whatever its length; where layouts differ, by the number of
     /// the device model.

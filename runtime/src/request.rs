@@ -68,6 +68,7 @@ pub struct Exchange {
     message: &'static str,
     access: &'static str,
     length: u8,
+    has_values: bool,
     answers: &'static [Option<Who>],
     models: &'static [u8],
     request: Option<Filter>,
@@ -77,12 +78,13 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Returns an exchange without frames; `answers` says who answers, mode by mode.
-    pub const fn new(message: &'static str, access: &'static str, answers: &'static [Option<Who>]) -> Self {
+    /// Returns an access, without a message and without frames; `answers` says who answers, mode by mode.
+    pub const fn new(access: &'static str, answers: &'static [Option<Who>]) -> Self {
         Self {
-            message,
+            message: "",
             access,
             length: 8,
+            has_values: false,
             answers,
             models: &[],
             request: None,
@@ -90,6 +92,26 @@ impl Exchange {
             report: None,
             refusal: None,
         }
+    }
+
+    /// Returns this access to a message, whose frames show what `own` asks for too.
+    #[must_use]
+    pub const fn of(self, message: &'static str, own: Filter) -> Self {
+        let Self { request, reply, report, .. } = self;
+        let [request, reply, report] = [narrowed(request, own), narrowed(reply, own), narrowed(report, own)];
+        Self { message, request, reply, report, ..self }
+    }
+
+    /// Sets who answers, mode by mode.
+    #[must_use]
+    pub const fn answers(self, answers: &'static [Option<Who>]) -> Self {
+        Self { answers, ..self }
+    }
+
+    /// Says that a request carries values.
+    #[must_use]
+    pub const fn with_values(self) -> Self {
+        Self { has_values: true, ..self }
     }
 
     /// Sets how many data bytes its frames have.
@@ -147,9 +169,19 @@ impl Exchange {
         }
     }
 
+    /// Tests whether a request carries values.
+    pub const fn has_values(&self) -> bool {
+        self.has_values
+    }
+
     /// Returns the name of the access.
     pub const fn access(&self) -> &'static str {
         self.access
+    }
+
+    /// Tests whether there is a request by this access, and it carries no values.
+    pub(crate) fn asks_by(&self, access: &str) -> bool {
+        self.access == access && self.request.is_some() && !self.has_values
     }
 
     /// Tests whether a device model has the message; every message is one of a model that nobody knows.
@@ -248,6 +280,13 @@ struct Addressed {
     request: Filter,
     replies: Replies,
     refusal: Option<Filter>,
+}
+
+const fn narrowed(filter: Option<Filter>, own: Filter) -> Option<Filter> {
+    match filter {
+        Some(filter) => Some(filter.and(own)),
+        None => None,
+    }
 }
 
 /// Which replies a request gets.

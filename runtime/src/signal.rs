@@ -282,6 +282,9 @@ pub trait AnySignal {
     /// Returns the place in the data.
     fn place(&self) -> Place;
 
+    /// Returns the documented limits of the physical value, both legal.
+    fn limits(&self) -> Option<(Number, Number)>;
+
     /// Shows what the signal says in a frame.
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>));
 
@@ -305,6 +308,10 @@ impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
 
     fn place(&self) -> Place {
         self.place
+    }
+
+    fn limits(&self) -> Option<(Number, Number)> {
+        self.limits.map(|(minimum, maximum)| (minimum.number(), maximum.number()))
     }
 
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {

@@ -3,7 +3,7 @@
 use std::string::ToString;
 
 use crate::{
-    Address, AddressType, AnySignal, Bits, Data, Destination, Error, Exchange, Failure, Filter, Frame,
+    Address, AddressType, AnySignal, Bits, Data, Destination, Entry, Error, Exchange, Failure, Filter, Frame,
     IdentifierFields, Kind, Layout, Meaning, Mode, Number, Pattern, Payload, Place, Problem, Protocol, Reading,
     Received, Recognised, Replies, Request, Route, Selector, Signal, StatusBit, Who,
 };
@@ -114,17 +114,21 @@ const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
 
 impl Heat {
     const POWER: Signal<u16> = Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
-    const SET: Exchange = Exchange::new("heat", "set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
+    const SET: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
+        .with_values()
+        .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
+        .reply(FRAME.selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2))
+        .of("heat", FRAME.id(COMMAND, 7))
         .length(4)
-        .request(FRAME.id(COMMAND, 7).selectors(&[FUNCTION]).data(FUNCTION.place, 1))
-        .reply(FRAME.id(COMMAND, 7).selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2))
         .refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1));
-    const READ: Exchange = Exchange::new("heat", "read", &[None, Some(Who::Coordinator), None])
-        .length(4)
-        .request(FRAME.id(COMMAND, 8))
-        .reply(FRAME.id(COMMAND, 8));
-    const REPORT: Exchange = Exchange::new("heat", "report", &[None; 3]).length(4).report(FRAME.id(COMMAND, 0x0B));
-    const PROBE: Exchange = Exchange::new("heat", "probe", &[None; 3]).length(2);
+    const READ: Exchange = Exchange::new("read", &[None, Some(Who::Coordinator), None])
+        .request(FRAME)
+        .reply(FRAME)
+        .of("heat", FRAME.id(COMMAND, 8))
+        .length(4);
+    const REPORT: Exchange =
+        Exchange::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
+    const PROBE: Exchange = Exchange::new("probe", &[None; 3]).of("heat", FRAME).length(2);
 
     fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
         Self::SET.request_to(route, &self)
@@ -403,7 +407,7 @@ fn a_sender_is_the_usual_one_or_else_the_first_one() {
 
 #[test]
 fn a_message_of_some_device_models_is_refused_for_the_others() {
-    const BOOST: Exchange = Exchange::new("boost", "set", &[None; 3]).length(4).models(&[1, 4]);
+    const BOOST: Exchange = Exchange::new("set", &[None; 3]).of("boost", FRAME).length(4).models(&[1, 4]);
     let refused = Err(Error::Model { message: "boost" });
     assert_eq!([0, 1, 2, 4].map(|model: u8| BOOST.within(model, &HEAT)), [refused, Ok(()), refused, Ok(())]);
     assert_eq!(Heat::SET.within(2_u8, &HEAT), Ok(()));
@@ -460,4 +464,13 @@ fn what_a_frame_says_can_be_written_without_knowing_the_message() {
     assert_eq!(reading(None, Meaning::Status(0b1000_0011, KNOWN)), "x {fan_fault, cold, 0x2}");
     assert_eq!(reading(None, Meaning::Status(0, KNOWN)), "x {}");
     assert_eq!(reading(None, Meaning::None), "x ?");
+}
+
+#[test]
+fn an_entry_of_the_list_builds_only_requests_that_carry_nothing() {
+    const ENTRY: Entry<Message> = Entry::new("Heat", &[], &[&Heat::POWER], &[&Heat::SET, &Heat::READ, &Heat::REPORT]);
+    let request = ENTRY.request("read", To::Group(2)).expect("it can be read").expect("a group can be asked");
+    assert_eq!((ENTRY.name(), *request.frame()), ("heat", Frame::new_raw(0x0108_5DF0, true, [0; 8], 4)));
+    assert!(ENTRY.request("read", To::Heater(1)).is_some_and(|request| request.is_err()));
+    assert!(["set", "report", "erase"].iter().all(|access| ENTRY.request(access, To::Group(2)).is_none()));
 }

@@ -1,12 +1,14 @@
 //! Rust: a `no_std` codec on the runtime.
 
 mod address;
-mod arms;
 mod choice;
 mod derives;
 mod dispatch;
 mod doc;
+mod entries;
+mod exchange;
 mod identifier;
+mod lines;
 mod literal;
 mod message;
 mod model;
@@ -30,12 +32,15 @@ use names::Names;
 pub(crate) use names::{camel_case, member};
 
 /// What generated code may take from the runtime beside the prelude, which it passes on.
-const RUNTIME: [&str; 19] = [
+const RUNTIME: [&str; 23] = [
     "Address",
     "AddressType",
     "AnySignal",
     "Bits",
+    "Decode",
     "Destination",
+    "Encode",
+    "Entry",
     "Exchange",
     "Filter",
     "Legend",
@@ -47,6 +52,7 @@ const RUNTIME: [&str; 19] = [
     "Recognised",
     "Selector",
     "Signal",
+    "Single",
     "Who",
     "left_aligned",
     "right_aligned",
@@ -69,7 +75,7 @@ pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
 /// Lays the code out; if it is no Rust it stays as it is, so that its compiler can say why.
 fn formatted(code: &TokenStream) -> String {
     let file = syn::parse2(code.clone());
-    file.map_or_else(|_| code.to_string(), |file| spacing::spaced(&arms::joined(&prettyplease::unparse(&file))))
+    file.map_or_else(|_| code.to_string(), |file| spacing::spaced(&lines::joined(&prettyplease::unparse(&file))))
 }
 
 fn items(protocol: &Protocol, options: &Options) -> TokenStream {
@@ -79,13 +85,14 @@ fn items(protocol: &Protocol, options: &Options) -> TokenStream {
     let target = address::target(protocol, &names, derives);
     let addressing = address::addressing(protocol);
     let models = model::models(protocol, &names, derives, options.float);
+    let accesses = exchange::accesses(protocol, &names);
     let words = words(protocol, &names, derives);
     let messages = protocol.messages.iter().zip(&names.messages);
     let messages = messages.map(|(message, known)| {
         Emitter { protocol, all: &names, names: known, message, derives, float: options.float }.items()
     });
     let last = protocol::protocol(protocol, &names, derives);
-    quote!(#frame #identifier #target #addressing #models #words #(#messages)* #last)
+    quote!(#frame #identifier #target #addressing #accesses #models #words #(#messages)* #last)
 }
 
 fn words(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {
@@ -196,7 +203,8 @@ errata:
         let outcome = crate::compile(Source::new("heater.yaml", SPEC.into()).expect("plain text"));
         let code = super::rust(&outcome.protocol.expect("a spec without errors"), &super::Options::default());
         for part in [
-            "    /// Builds the request `set` with these values. Section 5.\n    ///\n    /// The reply carries the values now in effect.\n",
+            "/// Set. Section 5.\n///\n/// The reply carries the values now in effect.\n///\n/// `module`: the module answers.\npub const SET_ACCESS",
+            "    /// Builds the request [`set`](SET_ACCESS) with these values.\n",
             "    /// One heater: `0x00..=0x3F`. Section 4.\n    ///\n    /// Heaters of a group too.\n    Module(u8),\n",
             "steps of 10 W.\n    ///\n    /// Never above the rating.\n    pub power_w: f64,\n",
             "    /// Mode: byte 2.\n    pub mode: Mode",

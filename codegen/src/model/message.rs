@@ -70,6 +70,9 @@ pub struct Message {
     pub length: u8,
     /// Signals by first byte, then as written.
     pub signals: Vec<Signal>,
+    /// What chooses each of its frames, whatever the access: selectors (index into
+    /// [`Protocol::selectors`](crate::model::Protocol::selectors)) and their values.
+    pub constants: Vec<(usize, u64)>,
     /// Accesses by which it travels.
     pub accesses: Vec<MessageAccess>,
     /// The frames that exist: one for each access and kind.

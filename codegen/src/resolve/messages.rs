@@ -60,11 +60,14 @@ impl Resolver<'_> {
         let refused = accesses.iter().enumerate();
         let refusals =
             refused.filter_map(|(index, access)| self.refusal(path, index, &matched, access, surroundings)).collect();
+        let fixed = fixed.into_iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| constant);
+        let constants = matched.into_iter().chain(fixed).collect();
         let every = self.every(path, message.every.as_deref(), surroundings.timing);
         let length = length.unwrap_or(surroundings.length);
         let models = self.message_models(&path.key("models"), &message.models);
         let name = name.to_owned();
-        Message { name, doc, length, signals: leaves.signals, accesses, shapes, refusals, every, models }
+        let signals = leaves.signals;
+        Message { name, doc, length, signals, constants, accesses, shapes, refusals, every, models }
     }
 
     /// Finds the device models that have a message.

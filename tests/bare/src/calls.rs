@@ -4,8 +4,8 @@ use core::fmt::{self, Display, Write};
 use core::hint::black_box;
 
 use canspec_runtime::{
-    AnySignal, Error, Layout, Meaning, Named, Packed, Problem, Protocol, Raw, Reading, Received, Request, Signal,
-    StatusWord,
+    AnySignal, Destination, Error, Layout, Meaning, Named, Packed, Problem, Protocol, Raw, Reading, Received, Request,
+    Route, Signal, StatusWord,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -58,6 +58,29 @@ pub fn received<P: Protocol<Identifier: Unknown> + Unknown>() {
     let other = received.with_content(unknown());
     sink(other.encode());
     other.visit(reading);
+}
+
+/// Goes through the list of messages.
+pub fn entries<P: Protocol>() {
+    for entry in P::MESSAGES {
+        sink((entry.name(), entry.title, entry.constants));
+        entry.exchanges.iter().for_each(|exchange| sink((exchange.access(), exchange.has_values())));
+        entry.signals.iter().for_each(|signal| sink((signal.name(), signal.unit(), signal.place(), signal.limits())));
+    }
+}
+
+/// Asks for every message without naming one.
+pub fn questions<T: Destination + Unknown>() {
+    for entry in T::Protocol::MESSAGES {
+        entry.request(unknown(), unknown::<Route<T>>()).into_iter().for_each(request);
+    }
+}
+
+/// Decodes and encodes what a message carries.
+pub fn layout<T: Layout + Unknown>() {
+    let message = T::decode(&unknown());
+    sink((unknown::<T>().encode(&mut unknown()), message.signals()));
+    sink(message);
 }
 
 fn unknown_frame() -> canspec_runtime::Frame {

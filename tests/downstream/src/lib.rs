@@ -1,4 +1,4 @@
-//! A driver for winches and fans of made-up vendors.
+//! A driver for devices of made-up vendors.
 #![no_std]
 #![deny(warnings, missing_docs, unsafe_code)]
 
@@ -17,6 +17,12 @@ pub mod pump {
     canspec_runtime::include_protocol!("pump");
 }
 
+/// Energy meters, as `specs/meter.yaml` describes them.
+pub mod meter {
+    canspec_runtime::include_protocol!("meter");
+}
+
+pub mod meters;
 pub mod pumps;
 
 use winch::{Error, Message, Request, Run, Target, embedded_can};

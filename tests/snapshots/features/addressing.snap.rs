@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern,
-    Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Mode, Pattern, Place, Protocol, Recognised, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -104,9 +104,7 @@ impl Destination for Target {
 }
 
 /// Controller: `0xF0..=0xF8`. Section 1.
-pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF8)
-    .strict()
-    .default_number(0xF0);
+pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF8).strict().default_number(0xF0);
 
 /// Module: `0x00..=0x3B`. Section 1.
 pub const MODULE_ADDRESS: AddressType = AddressType::new("module", 0x00, 0x3B);
@@ -178,12 +176,13 @@ pub const ALL_MODE: Mode = Mode {
     }),
 };
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 3] = [
-    Some(Who::One),
-    Some(Who::Each),
-    Some(Who::Coordinator),
-];
+/// Set. Section 2.
+///
+/// `single`: the module answers. `group`: each module answers. `all`: one answers for all.
+pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Coordinator)])
+    .with_values()
+    .request(FRAME)
+    .reply(FRAME);
 
 /// Level of the output. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -194,19 +193,13 @@ pub struct Level {
 
 impl Level {
     /// The signal `value`.
-    pub const VALUE: Signal<u8> = Signal::new("value", Place::byte(0))
-        .unit("%")
-        .limits(0.0, 100.0);
+    pub const VALUE: Signal<u8> = Signal::new("value", Place::byte(0)).unit("%").limits(0.0, 100.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("level", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x03))
-        .reply(FRAME.id(Identifier::COMMAND, 0x03));
+    pub const SET: Exchange = SET_ACCESS.of("level", FRAME.id(Identifier::COMMAND, 0x03));
 
-    /// Builds the request `set` with these values. Section 2.
-    ///
-    /// `single`: the module answers. `group`: each module answers. `all`: one answers for all.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -216,20 +209,10 @@ impl Level {
     }
 }
 
-impl Layout for Level {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_percent: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_percent, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Level {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_percent, payload);
 }
 
 /// Every message that a frame can carry.
@@ -264,6 +247,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
     const MODES: &'static [Mode] = &[SINGLE_MODE, GROUP_MODE, ALL_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -293,3 +277,8 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Level of the output", &[("command", 0x03)], &[&Level::VALUE], &[&Level::SET]),
+];

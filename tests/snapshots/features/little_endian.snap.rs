@@ -2,7 +2,7 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Exchange, Filter, Mode, Pattern, Place,
+    Address, AddressType, AnySignal, Bits, Entry, Exchange, Filter, Mode, Pattern, Place,
     Protocol, Recognised, Signal, Who,
 };
 
@@ -27,10 +27,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            function: Self::FUNCTION.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { function: Self::FUNCTION.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -66,8 +63,10 @@ pub const CYCLIC_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `report`, by addressing mode.
-const REPORT_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Report. Section 3.
+///
+/// `cyclic`: the module answers.
+pub const REPORT_ACCESS: Exchange = Exchange::new("report", &[Some(Who::One)]).report(FRAME);
 
 /// What a rectifier measures. Section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,19 +89,9 @@ pub struct Measurement {
 
 impl Measurement {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new(
-            "voltage",
-            Place::bytes(1, 0).bits(11, 0),
-        )
-        .unit("V")
-        .scale(1, 50);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(1, 0).bits(11, 0)).unit("V").scale(1, 50);
     /// The signal `current`.
-    pub const CURRENT: Signal<i16> = Signal::new(
-            "current",
-            Place::bytes(2, 1).bits(15, 4),
-        )
-        .unit("A")
-        .scale(1, 10);
+    pub const CURRENT: Signal<i16> = Signal::new("current", Place::bytes(2, 1).bits(15, 4)).unit("A").scale(1, 10);
     /// The signal `temperature`.
     pub const TEMPERATURE: Signal<u8> = Signal::new("temperature", Place::byte(3))
         .unit("°C")
@@ -113,9 +102,7 @@ impl Measurement {
     /// The value of `temperature` that stands for `broken`.
     pub const TEMPERATURE_BROKEN: f64 = 87.5;
     /// The signal `power`.
-    pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(5, 4))
-        .unit("W")
-        .scale(1, 2);
+    pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(5, 4)).unit("W").scale(1, 2);
     /// The signal `output`.
     pub const OUTPUT: Signal<u8> = Signal::new("output", Place::byte(6).bit(0));
     /// The signal `mode`.
@@ -125,8 +112,7 @@ impl Measurement {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF0, 0x00];
     /// How it travels by `report`. It comes every 500 ms.
-    pub const REPORT: Exchange = Exchange::new("measurement", "report", &REPORT_ANSWERS)
-        .report(FRAME.id(Identifier::FUNCTION, 0x1));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("measurement", FRAME.id(Identifier::FUNCTION, 0x1));
 }
 
 impl Layout for Measurement {
@@ -153,15 +139,7 @@ impl Layout for Measurement {
     }
 
     fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[
-            &Self::VOLTAGE,
-            &Self::CURRENT,
-            &Self::TEMPERATURE,
-            &Self::POWER,
-            &Self::OUTPUT,
-            &Self::MODE,
-            &Self::COUNTER,
-        ]
+        &[&Self::VOLTAGE, &Self::CURRENT, &Self::TEMPERATURE, &Self::POWER, &Self::OUTPUT, &Self::MODE, &Self::COUNTER]
     }
 }
 
@@ -197,15 +175,13 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::FUNCTION.of(id) == 0x1)
-            .then(|| Recognised::report(
-                &Measurement::REPORT,
-                Self::Measurement(Layout::decode(data)),
-            ))
+            .then(|| Recognised::report(&Measurement::REPORT, Self::Measurement(Layout::decode(data))))
     }
 
     fn reply_lengths(id: u32) -> &'static [u8] {
@@ -218,3 +194,21 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "What a rectifier measures",
+        &[("function", 0x1)],
+        &[
+            &Measurement::VOLTAGE,
+            &Measurement::CURRENT,
+            &Measurement::TEMPERATURE,
+            &Measurement::POWER,
+            &Measurement::OUTPUT,
+            &Measurement::MODE,
+            &Measurement::COUNTER,
+        ],
+        &[&Measurement::REPORT],
+    ),
+];

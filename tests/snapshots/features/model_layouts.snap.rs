@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern, Place, Protocol,
-    Recognised, Signal, Who,
+    AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange, Filter, Mode, Pattern,
+    Place, Protocol, Recognised, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -27,10 +27,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            command: Self::COMMAND.read(id),
-            sender: Self::SENDER.read(id),
-        }
+        Self { command: Self::COMMAND.read(id), sender: Self::SENDER.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -85,8 +82,10 @@ pub const PUMP_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `report`, by addressing mode.
-const REPORT_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Report.
+///
+/// `pump`: the module answers.
+pub const REPORT_ACCESS: Exchange = Exchange::new("report", &[Some(Who::One)]).report(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -127,32 +126,20 @@ pub struct SupplyAc {
 
 impl SupplyAc {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `report`.
-    pub const REPORT: Exchange = Exchange::new("supply_ac", "report", &REPORT_ANSWERS)
+    pub const REPORT: Exchange = REPORT_ACCESS
+        .of("supply_ac", FRAME.id(Identifier::COMMAND, 0x001))
         .length(2)
-        .models(&[Model::P10a as u8])
-        .report(FRAME.id(Identifier::COMMAND, 0x001));
+        .models(&[Model::P10a as u8]);
 }
 
-impl Layout for SupplyAc {
-    fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VOLTAGE]
-    }
+impl Single for SupplyAc {
+    const SIGNAL: &'static dyn AnySignal = &Self::VOLTAGE;
+    const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
 
 /// Supply dc. Section 1.
@@ -164,32 +151,20 @@ pub struct SupplyDc {
 
 impl SupplyDc {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 100);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `report`.
-    pub const REPORT: Exchange = Exchange::new("supply_dc", "report", &REPORT_ANSWERS)
+    pub const REPORT: Exchange = REPORT_ACCESS
+        .of("supply_dc", FRAME.id(Identifier::COMMAND, 0x001))
         .length(2)
-        .models(&[Model::P48vDc as u8])
-        .report(FRAME.id(Identifier::COMMAND, 0x001));
+        .models(&[Model::P48vDc as u8]);
 }
 
-impl Layout for SupplyDc {
-    fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VOLTAGE.encode(self.voltage_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VOLTAGE]
-    }
+impl Single for SupplyDc {
+    const SIGNAL: &'static dyn AnySignal = &Self::VOLTAGE;
+    const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
 
 /// Every message that a frame can carry.
@@ -225,10 +200,7 @@ impl Message {
     /// # Errors
     ///
     /// Says why the frame is not recognised.
-    pub fn decode_for(
-        model: Model,
-        frame: &impl embedded_can::Frame,
-    ) -> Result<Received, Problem> {
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
@@ -238,24 +210,15 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[PUMP_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x001)
             .then(|| {
-                Recognised::report(
-                        &SupplyAc::REPORT,
-                        Self::SupplyAc(Layout::decode(data)),
-                    )
-                    .or(
-                        Recognised::report(
-                            &SupplyDc::REPORT,
-                            Self::SupplyDc(Layout::decode(data)),
-                        ),
-                        frame,
-                        model,
-                    )
+                Recognised::report(&SupplyAc::REPORT, Self::SupplyAc(Layout::decode(data)))
+                    .or(Recognised::report(&SupplyDc::REPORT, Self::SupplyDc(Layout::decode(data))), frame, model)
             })
     }
 
@@ -270,3 +233,9 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("supply ac", &[("command", 0x001)], &[&SupplyAc::VOLTAGE], &[&SupplyAc::REPORT]),
+    Entry::new("supply dc", &[("command", 0x001)], &[&SupplyDc::VOLTAGE], &[&SupplyDc::REPORT]),
+];

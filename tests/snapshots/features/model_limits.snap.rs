@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern, Place, Protocol,
-    Recognised, Signal, Who,
+    AnySignal, Bits, Destination, Entry, Exchange, Filter, Mode, Pattern, Place,
+    Protocol, Recognised, Signal, Who,
 };
 
 /// What every frame shows.
@@ -27,10 +27,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            command: Self::COMMAND.read(id),
-            sender: Self::SENDER.read(id),
-        }
+        Self { command: Self::COMMAND.read(id), sender: Self::SENDER.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -85,8 +82,10 @@ pub const PUMP_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 1] = [Some(Who::Nobody)];
+/// Set.
+///
+/// `pump`: nobody answers.
+pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -122,10 +121,7 @@ impl From<Model> for u8 {
 }
 
 /// Limits of `speed` by device model.
-const SPEED_LIMITS: &[(u8, f64, f64)] = &[
-    (Model::P10a as u8, 300.0, 3000.0),
-    (Model::P48vDc as u8, 0.0, 1500.0),
-];
+const SPEED_LIMITS: &[(u8, f64, f64)] = &[(Model::P10a as u8, 300.0, 3000.0), (Model::P48vDc as u8, 0.0, 1500.0)];
 
 /// Limits of `flow` by device model.
 const FLOW_LIMITS: &[(u8, f64, f64)] = &[(Model::P48vDc as u8, -30.0, 30.5)];
@@ -153,10 +149,10 @@ impl SetSpeed {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_speed", "set", &SET_ANSWERS)
+    pub const SET: Exchange = SET_ACCESS
+        .of("set_speed", FRAME.id(Identifier::COMMAND, 0x002))
         .length(4)
-        .models(&[Model::P10a as u8, Model::P48vDc as u8])
-        .request(FRAME.id(Identifier::COMMAND, 0x002));
+        .models(&[Model::P10a as u8, Model::P48vDc as u8]);
 
     /// Returns the values if a device model takes them.
     ///
@@ -168,9 +164,7 @@ impl SetSpeed {
         Ok(self)
     }
 
-    /// Builds the request `set` with these values.
-    ///
-    /// `pump`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -182,10 +176,7 @@ impl SetSpeed {
 
 impl Layout for SetSpeed {
     fn decode(data: &Data) -> Self {
-        Self {
-            speed_rpm: Self::SPEED.get(data),
-            flow_percent: Self::FLOW.decode(data),
-        }
+        Self { speed_rpm: Self::SPEED.get(data), flow_percent: Self::FLOW.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -229,10 +220,7 @@ impl Message {
     /// # Errors
     ///
     /// Says why the frame is not recognised.
-    pub fn decode_for(
-        model: Model,
-        frame: &impl embedded_can::Frame,
-    ) -> Result<Received, Problem> {
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
@@ -242,15 +230,13 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[PUMP_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x002)
-            .then(|| Recognised::request(
-                &SetSpeed::SET,
-                Self::SetSpeed(Layout::decode(data)),
-            ))
+            .then(|| Recognised::request(&SetSpeed::SET, Self::SetSpeed(Layout::decode(data))))
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
@@ -263,3 +249,8 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("set speed", &[("command", 0x002)], &[&SetSpeed::SPEED, &SetSpeed::FLOW], &[&SetSpeed::SET]),
+];

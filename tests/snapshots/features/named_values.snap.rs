@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, Legend,
+    Mode, Pattern, Place, Protocol, Recognised, Signal, Who,
 };
 
 /// What every frame shows.
@@ -31,11 +31,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -94,8 +90,10 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Set. Section 2.
+///
+/// `single`: the module answers.
+pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
 
 /// Power. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -144,9 +142,7 @@ pub enum SwitchLamp {
 
 impl Word for SwitchLamp {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Dark, "dark"), (Self::Bright, "bright")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Dark, "dark"), (Self::Bright, "bright")]);
 
     fn from_raw(raw: u16) -> Self {
         match raw {
@@ -184,13 +180,9 @@ impl Switch {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("switch", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x1A))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1A));
+    pub const SET: Exchange = SET_ACCESS.of("switch", FRAME.id(Identifier::COMMAND, 0x1A));
 
-    /// Builds the request `set` with these values. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -202,10 +194,7 @@ impl Switch {
 
 impl Layout for Switch {
     fn decode(data: &Data) -> Self {
-        Self {
-            power: Self::POWER.get(data),
-            lamp: Self::LAMP.get(data),
-        }
+        Self { power: Self::POWER.get(data), lamp: Self::LAMP.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -250,15 +239,13 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x1A)
-            .then(|| Recognised::request(
-                &Switch::SET,
-                Self::Switch(Layout::decode(data)),
-            ))
+            .then(|| Recognised::request(&Switch::SET, Self::Switch(Layout::decode(data))))
     }
 
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
@@ -282,3 +269,8 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Switch a heater", &[("command", 0x1A)], &[&Switch::POWER, &Switch::LAMP], &[&Switch::SET]),
+];

@@ -4,8 +4,9 @@ use core::fmt::{self, Display, Formatter};
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Piece, Place, Protocol, Recognised, Signal, Who, left_aligned, right_aligned,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Piece, Place, Protocol, Recognised, Signal, Single,
+    Who, left_aligned, right_aligned,
 };
 
 /// What every frame shows.
@@ -33,11 +34,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -96,8 +93,10 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Read. Section 2.
+///
+/// `single`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
 
 /// Label on the housing. Written as `{major}.{minor:2}-{letter}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -131,11 +130,7 @@ impl Word for LabelValue {
 
     fn from_raw(raw: u64) -> Self {
         let data = left_aligned(raw, 4);
-        Self {
-            letter: Self::LETTER.read(&data),
-            major: Self::MAJOR.read(&data),
-            minor: Self::MINOR.read(&data),
-        }
+        Self { letter: Self::LETTER.read(&data), major: Self::MAJOR.read(&data), minor: Self::MINOR.read(&data) }
     }
 
     fn raw(self) -> u64 {
@@ -168,13 +163,9 @@ impl Label {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("label", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x06))
-        .reply(FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -184,20 +175,10 @@ impl Label {
     }
 }
 
-impl Layout for Label {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Label {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Every message that a frame can carry.
@@ -234,6 +215,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -263,3 +245,8 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Label on the housing", &[("command", 0x06)], &[&Label::VALUE], &[&Label::READ]),
+];

@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern, Place, Protocol,
-    Recognised, Selector, Signal, Who,
+    AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange, Filter, Mode, Pattern,
+    Place, Protocol, Recognised, Selector, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -33,10 +33,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -91,11 +88,19 @@ pub const DEVICE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `write`, by addressing mode.
-const WRITE_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Write. Section 2.
+///
+/// `device`: the module answers.
+pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)])
+    .with_values()
+    .request(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x03))
+    .reply(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x04));
 
-/// Who answers `refuse`, by addressing mode.
-const REFUSE_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Refuse. Section 3.
+///
+/// `device`: the module answers.
+pub const REFUSE_ACCESS: Exchange = Exchange::new("refuse", &[Some(Who::One)])
+    .reply(FRAME.selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR]).data(OPERATION_SELECTOR.place, 0x80));
 
 /// Speed. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -106,25 +111,12 @@ pub struct Speed {
 
 impl Speed {
     /// The signal `value`.
-    pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3))
-        .unit("rpm")
-        .limits(300.0, 3000.0);
+    pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3)).unit("rpm").limits(300.0, 3000.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new("speed", "write", &WRITE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x07)
-                .data(OPERATION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x07)
-                .data(OPERATION_SELECTOR.place, 0x04),
-        )
+    pub const WRITE: Exchange = WRITE_ACCESS
+        .of("speed", FRAME.data(INDEX_SELECTOR.place, 0x07))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -132,35 +124,20 @@ impl Speed {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `write` with these values. Section 2.
-    ///
-    /// `device`: the module answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
 
-impl Layout for Speed {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_rpm: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_rpm, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Speed {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_rpm, payload);
 }
 
 /// Refusal. Section 3.
@@ -176,28 +153,13 @@ impl Refusal {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     /// How it travels by `refuse`.
-    pub const REFUSE: Exchange = Exchange::new("refusal", "refuse", &REFUSE_ANSWERS)
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(OPERATION_SELECTOR.place, 0x80),
-        );
+    pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);
 }
 
-impl Layout for Refusal {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Refusal {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Every message that a frame can carry.
@@ -234,23 +196,18 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[DEVICE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         (OPERATION_SELECTOR.place.get(data) == 0x03
             && INDEX_SELECTOR.place.get(data) == 0x07)
-            .then(|| Recognised::request(
-                &Speed::WRITE,
-                Self::Speed(Layout::decode(data)),
-            ))
+            .then(|| Recognised::request(&Speed::WRITE, Self::Speed(Layout::decode(data))))
     }
 
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
-        let recognised = match (
-            OPERATION_SELECTOR.place.get(data),
-            INDEX_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (OPERATION_SELECTOR.place.get(data), INDEX_SELECTOR.place.get(data)) {
             (0x04, 0x07) => Recognised::reply(&Speed::WRITE, Self::Speed(Layout::decode(data))),
             (0x80, _) => Recognised::reply(&Refusal::REFUSE, Self::Refusal(Layout::decode(data))),
             _ => return None,
@@ -273,3 +230,9 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("speed", &[("index", 0x07)], &[&Speed::VALUE], &[&Speed::WRITE]),
+    Entry::new("refusal", &[], &[&Refusal::VALUE], &[&Refusal::REFUSE]),
+];

@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern,
-    Place, Protocol, Recognised, Selector, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Mode, Pattern, Place, Protocol, Recognised, Selector, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -13,8 +13,7 @@ const FRAME: Filter = Filter::STANDARD;
 pub const FUNCTION_SELECTOR: Selector = Selector::new("function", Place::byte(0));
 
 /// Result: byte 1. Section 2.
-pub const RESULT_SELECTOR: Selector = Selector::new("result", Place::byte(1))
-    .normal(0xF0);
+pub const RESULT_SELECTOR: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
 
 /// Register: bytes 2..3. Section 2.
 pub const REGISTER_SELECTOR: Selector = Selector::new("register", Place::bytes(2, 3));
@@ -41,11 +40,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -104,11 +99,40 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Read. Section 2.
+///
+/// `single`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
+    .request(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .id(Identifier::COMMAND, 0x01)
+            .data(FUNCTION_SELECTOR.place, 0x10),
+    )
+    .reply(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .id(Identifier::COMMAND, 0x01)
+            .data(FUNCTION_SELECTOR.place, 0x41),
+    );
 
-/// Who answers `write`, by addressing mode.
-const WRITE_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Write. Section 2.
+///
+/// `single`: the module answers.
+pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)])
+    .with_values()
+    .request(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .id(Identifier::COMMAND, 0x01)
+            .data(FUNCTION_SELECTOR.place, 0x03),
+    )
+    .reply(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .id(Identifier::COMMAND, 0x01)
+            .data(FUNCTION_SELECTOR.place, 0x43),
+    );
 
 /// Voltage limit. Section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,47 +143,15 @@ pub struct VoltageLimit {
 
 impl VoltageLimit {
     /// The signal `value`.
-    pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("V")
-        .limits(0.1, 750.0);
+    pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V").limits(0.1, 750.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("voltage_limit", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0021)
-                .id(Identifier::COMMAND, 0x01)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0021)
-                .id(Identifier::COMMAND, 0x01)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("voltage_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new("voltage_limit", "write", &WRITE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0021)
-                .id(Identifier::COMMAND, 0x01)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0021)
-                .id(Identifier::COMMAND, 0x01)
-                .data(FUNCTION_SELECTOR.place, 0x43),
-        );
+    pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -168,35 +160,20 @@ impl VoltageLimit {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `write` with these values. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
 
-impl Layout for VoltageLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for VoltageLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Every message that a frame can carry.
@@ -233,6 +210,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -279,3 +257,13 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Voltage limit",
+        &[("register", 0x0021)],
+        &[&VoltageLimit::VALUE],
+        &[&VoltageLimit::READ, &VoltageLimit::WRITE],
+    ),
+];

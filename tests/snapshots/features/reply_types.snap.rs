@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern, Place, Protocol,
-    Recognised, Selector, Signal, Who,
+    AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange, Filter, Mode, Pattern,
+    Place, Protocol, Recognised, Selector, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -33,10 +33,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -91,8 +88,23 @@ pub const DEVICE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Read. Section 2.
+///
+/// In a request, `function` is `0x10`. In a reply, `function` is `0x41`.
+///
+/// `device`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
+    .request(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
+    .reply(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x41));
+
+/// Read. Section 2.
+///
+/// In a request, `function` is `0x10`. In a reply, `function` is `0x42`.
+///
+/// `device`: the module answers.
+pub const READ_ACCESS_2: Exchange = Exchange::new("read", &[Some(Who::One)])
+    .request(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x10))
+    .reply(FRAME.selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR]).data(FUNCTION_SELECTOR.place, 0x42));
 
 /// Voltage. Section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,23 +119,9 @@ impl Voltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0001)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0001)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `device`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -133,20 +131,10 @@ impl Voltage {
     }
 }
 
-impl Layout for Voltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Voltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Revision. Section 3.
@@ -166,23 +154,9 @@ impl Revision {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("revision", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0056)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0056)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("revision", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `device`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -194,10 +168,7 @@ impl Revision {
 
 impl Layout for Revision {
     fn decode(data: &Data) -> Self {
-        Self {
-            hardware: Self::HARDWARE.get(data),
-            software: Self::SOFTWARE.get(data),
-        }
+        Self { hardware: Self::HARDWARE.get(data), software: Self::SOFTWARE.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -248,13 +219,11 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[DEVICE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
-        let recognised = match (
-            FUNCTION_SELECTOR.place.get(data),
-            REGISTER_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
             (0x10, 0x0001) => Recognised::request(&Voltage::READ, Self::ReadVoltage),
             (0x10, 0x0056) => Recognised::request(&Revision::READ, Self::ReadRevision),
             _ => return None,
@@ -264,10 +233,7 @@ impl Protocol for Message {
 
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
-        let recognised = match (
-            FUNCTION_SELECTOR.place.get(data),
-            REGISTER_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
             (0x41, 0x0001) => Recognised::reply(&Voltage::READ, Self::Voltage(Layout::decode(data))),
             (0x42, 0x0056) => Recognised::reply(&Revision::READ, Self::Revision(Layout::decode(data))),
             _ => return None,
@@ -291,3 +257,9 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("voltage", &[("register", 0x0001)], &[&Voltage::VALUE], &[&Voltage::READ]),
+    Entry::new("revision", &[("register", 0x0056)], &[&Revision::HARDWARE, &Revision::SOFTWARE], &[&Revision::READ]),
+];

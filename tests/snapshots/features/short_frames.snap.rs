@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern,
-    Place, Protocol, Recognised, Selector, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Mode, Pattern, Place, Protocol, Recognised, Selector, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -30,10 +30,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            function: Self::FUNCTION.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { function: Self::FUNCTION.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -98,9 +95,7 @@ pub const SINGLE_MODE: Mode = Mode {
     target: Some(&RECTIFIER_ADDRESS),
     request: Some(Pattern {
         constants: &[(Identifier::FUNCTION, 0x6)],
-        addresses: &[
-            Address::new(Identifier::NODE, &RECTIFIER_ADDRESS).excluding(&[(0x00, 0x00)]),
-        ],
+        addresses: &[Address::new(Identifier::NODE, &RECTIFIER_ADDRESS).excluding(&[(0x00, 0x00)])],
     }),
     one: Some(Pattern {
         constants: &[(Identifier::FUNCTION, 0x5)],
@@ -110,11 +105,19 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `tell`, by addressing mode.
-const TELL_ANSWERS: [Option<Who>; 2] = [Some(Who::Nobody), None];
+/// Tell. Section 4.
+///
+/// `all`: nobody answers.
+pub const TELL_ACCESS: Exchange = Exchange::new("tell", &[Some(Who::Nobody), None])
+    .with_values()
+    .request(FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
 
-/// Who answers `ask`, by addressing mode.
-const ASK_ANSWERS: [Option<Who>; 2] = [None, Some(Who::One)];
+/// Ask. Section 5.
+///
+/// `single`: the module answers.
+pub const ASK_ACCESS: Exchange = Exchange::new("ask", &[None, Some(Who::One)])
+    .request(FRAME.id(Identifier::FUNCTION, 0x6))
+    .reply(FRAME.id(Identifier::FUNCTION, 0x5));
 
 /// Keeps the outputs on. Section 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -129,18 +132,9 @@ impl KeepAlive {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `tell`.
-    pub const TELL: Exchange = Exchange::new("keep_alive", "tell", &TELL_ANSWERS)
-        .length(2)
-        .request(
-            FRAME
-                .selectors(&[SIGN_SELECTOR])
-                .id(Identifier::FUNCTION, 0xF)
-                .data(SIGN_SELECTOR.place, 0x55),
-        );
+    pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
-    /// Builds the request `tell` with these values. Section 4.
-    ///
-    /// `all`: nobody answers.
+    /// Builds the request [`tell`](TELL_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -150,20 +144,10 @@ impl KeepAlive {
     }
 }
 
-impl Layout for KeepAlive {
-    fn decode(data: &Data) -> Self {
-        Self {
-            outputs: Self::OUTPUTS.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::OUTPUTS.put(self.outputs, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::OUTPUTS]
-    }
+impl Single for KeepAlive {
+    const SIGNAL: &'static dyn AnySignal = &Self::OUTPUTS;
+    const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::OUTPUTS.put(message.outputs, payload);
 }
 
 /// Signed numbers across byte borders. Section 5.
@@ -177,22 +161,15 @@ pub struct Drift {
 
 impl Drift {
     /// The signal `drift`.
-    pub const DRIFT: Signal<i32> = Signal::new("drift", Place::bytes(3, 1))
-        .unit("V")
-        .scale(1, 1024);
+    pub const DRIFT: Signal<i32> = Signal::new("drift", Place::bytes(3, 1)).unit("V").scale(1, 1024);
     /// The signal `turns`.
     pub const TURNS: Signal<i16> = Signal::new("turns", Place::bytes(5, 4)).unit("rpm");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `ask`.
-    pub const ASK: Exchange = Exchange::new("drift", "ask", &ASK_ANSWERS)
-        .length(6)
-        .request(FRAME.id(Identifier::FUNCTION, 0x6))
-        .reply(FRAME.id(Identifier::FUNCTION, 0x5));
+    pub const ASK: Exchange = ASK_ACCESS.of("drift", FRAME).length(6);
 
-    /// Builds the request `ask`. Section 5.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`ask`](ASK_ACCESS).
     ///
     /// # Errors
     ///
@@ -204,10 +181,7 @@ impl Drift {
 
 impl Layout for Drift {
     fn decode(data: &Data) -> Self {
-        Self {
-            drift_v: Self::DRIFT.decode(data),
-            turns_rpm: Self::TURNS.get(data),
-        }
+        Self { drift_v: Self::DRIFT.decode(data), turns_rpm: Self::TURNS.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -256,14 +230,12 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[ALL_MODE, SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::FUNCTION.of(id),
-            SIGN_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (Identifier::FUNCTION.of(id), SIGN_SELECTOR.place.get(data)) {
             (0xF, 0x55) => Recognised::request(&KeepAlive::TELL, Self::KeepAlive(Layout::decode(data))),
             (0x6, _) => Recognised::request(&Drift::ASK, Self::AskDrift),
             _ => return None,
@@ -298,3 +270,9 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Keeps the outputs on", &[("sign", 0x55)], &[&KeepAlive::OUTPUTS], &[&KeepAlive::TELL]),
+    Entry::new("Signed numbers across byte borders", &[], &[&Drift::DRIFT, &Drift::TURNS], &[&Drift::ASK]),
+];

@@ -4,8 +4,8 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, Legend,
+    Mode, Pattern, Place, Protocol, Recognised, Signal, Who,
 };
 
 /// What every frame shows.
@@ -33,11 +33,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -96,8 +92,10 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Read. Section 2.
+///
+/// `single`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
 
 /// State of a heater. Section 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -162,13 +160,9 @@ impl Status {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0x00, 0xFF, 0xCC, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("status", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x04))
-        .reply(FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("status", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -180,11 +174,7 @@ impl Status {
 
 impl Layout for Status {
     fn decode(data: &Data) -> Self {
-        Self {
-            state: Self::STATE.get(data),
-            red: Self::RED.get(data),
-            green: Self::GREEN.get(data),
-        }
+        Self { state: Self::STATE.get(data), red: Self::RED.get(data), green: Self::GREEN.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -232,6 +222,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -243,10 +234,7 @@ impl Protocol for Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x04)
-            .then(|| Recognised::reply(
-                &Status::READ,
-                Self::Status(Layout::decode(data)),
-            ))
+            .then(|| Recognised::reply(&Status::READ, Self::Status(Layout::decode(data))))
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
@@ -264,3 +252,13 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Status of a heater",
+        &[("command", 0x04)],
+        &[&Status::STATE, &Status::RED, &Status::GREEN],
+        &[&Status::READ],
+    ),
+];

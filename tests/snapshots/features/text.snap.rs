@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern,
-    Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Mode, Pattern, Place, Protocol, Recognised, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -31,11 +31,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -94,8 +90,10 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Read. Section 2.
+///
+/// `single`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
 
 /// Version of the firmware. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -110,13 +108,9 @@ impl Version {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("version", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x05))
-        .reply(FRAME.id(Identifier::COMMAND, 0x05));
+    pub const READ: Exchange = READ_ACCESS.of("version", FRAME.id(Identifier::COMMAND, 0x05));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -126,20 +120,10 @@ impl Version {
     }
 }
 
-impl Layout for Version {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Version {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Every message that a frame can carry.
@@ -176,6 +160,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -187,10 +172,7 @@ impl Protocol for Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x05)
-            .then(|| Recognised::reply(
-                &Version::READ,
-                Self::Version(Layout::decode(data)),
-            ))
+            .then(|| Recognised::reply(&Version::READ, Self::Version(Layout::decode(data))))
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
@@ -208,3 +190,8 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Version of the firmware", &[("command", 0x05)], &[&Version::VALUE], &[&Version::READ]),
+];

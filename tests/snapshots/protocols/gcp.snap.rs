@@ -4,18 +4,16 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Selector, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Place, Protocol, Recognised, Selector, Signal, Single,
+    Who,
 };
 
 /// What every frame shows.
 const FRAME: Filter = Filter::EXTENDED;
 
 /// Limit the input current: bytes 0..1. Section 3.3.
-pub const SUB_COMMAND_SELECTOR: Selector = Selector::new(
-    "sub_command",
-    Place::bytes(0, 1),
-);
+pub const SUB_COMMAND_SELECTOR: Selector = Selector::new("sub_command", Place::bytes(0, 1));
 
 /// The 29-bit identifier of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -134,9 +132,7 @@ impl Destination for Target {
 }
 
 /// Address of a controller: `0xF0..=0xF8`. Section 3.2.4.
-pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF8)
-    .strict()
-    .default_number(0xF0);
+pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF8).strict().default_number(0xF0);
 
 /// Address of a module: `0x00..=0x3B`. Section 3.2.4.
 ///
@@ -162,9 +158,7 @@ pub const MODULE_ADDRESS: AddressType = AddressType::new("module", 0x00, 0x3B);
 /// Erratum C24: printed is "automatic addresses, and the DIP switch for the group (3.2.4); an address
 /// that is the value of the DIP switch in DC/DC mode (3.3)", used is "addresses 0x00 to 0x3B, wherever
 /// they come from".
-pub const MPPT_MODULE_ADDRESS: AddressType = AddressType::new("mppt_module", 0x00, 0x3B)
-    .offset(-128)
-    .strict();
+pub const MPPT_MODULE_ADDRESS: AddressType = AddressType::new("mppt_module", 0x00, 0x3B).offset(-128).strict();
 
 /// Number of a group: `0x00..=0x3E`. Section 3.2.4.
 ///
@@ -278,45 +272,65 @@ pub const BROADCAST_MODE: Mode = Mode {
     }),
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 4] = [
-    Some(Who::One),
-    Some(Who::One),
-    Some(Who::Each),
-    None,
-];
+/// Read from modules. Section 3.3, 3.5.
+///
+/// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), Some(Who::One), Some(Who::Each), None])
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `read_total`, by addressing mode.
-const READ_TOTAL_ANSWERS: [Option<Who>; 4] = [
-    None,
-    None,
-    Some(Who::Coordinator),
-    Some(Who::Coordinator),
-];
+/// Read from the system or a group. Section 3.3, 3.5.
+///
+/// `group`: one answers for all. `broadcast`: one answers for all.
+pub const READ_TOTAL_ACCESS: Exchange = Exchange::new(
+        "read_total",
+        &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)],
+    )
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 4] = [
-    Some(Who::One),
-    Some(Who::One),
-    Some(Who::Each),
-    Some(Who::Nobody),
-];
+/// Set in modules. Section 3.3, 3.5.
+///
+/// The reply carries the values now in effect.
+///
+/// Erratum C18: printed is "lists of commands: groups with replies of modules without 0x13 and 0x14,
+/// broadcasts without reply without 0x0F, 0x13 and 0x14", used is "what 3.3 says about each command".
+///
+/// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+/// `broadcast`: nobody answers.
+pub const SET_ACCESS: Exchange = Exchange::new(
+        "set",
+        &[Some(Who::One), Some(Who::One), Some(Who::Each), Some(Who::Nobody)],
+    )
+    .with_values()
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `set_total`, by addressing mode.
-const SET_TOTAL_ANSWERS: [Option<Who>; 4] = [
-    None,
-    None,
-    Some(Who::Coordinator),
-    Some(Who::Coordinator),
-];
+/// Set for the system or a group. Section 3.3, 3.5.
+///
+/// The reply carries the values now in effect.
+///
+/// `group`: one answers for all. `broadcast`: one answers for all.
+pub const SET_TOTAL_ACCESS: Exchange = Exchange::new(
+        "set_total",
+        &[None, None, Some(Who::Coordinator), Some(Who::Coordinator)],
+    )
+    .with_values()
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `set_unanswered`, by addressing mode.
-const SET_UNANSWERED_ANSWERS: [Option<Who>; 4] = [
-    Some(Who::Nobody),
-    None,
-    Some(Who::Nobody),
-    Some(Who::Nobody),
-];
+/// Set in modules without a reply. Section 3.3.
+///
+/// Erratum U0F: printed is "yes in each of the three modes of 0x0F, no layout of a reply, and No
+/// response beside two broadcasts and the request to 0x80", used is "no reply in any mode".
+///
+/// `point_to_point`: nobody answers. `group`: nobody answers. `broadcast`: nobody answers.
+pub const SET_UNANSWERED_ACCESS: Exchange = Exchange::new(
+        "set_unanswered",
+        &[Some(Who::Nobody), None, Some(Who::Nobody), Some(Who::Nobody)],
+    )
+    .with_values()
+    .request(FRAME.selectors(&[SUB_COMMAND_SELECTOR]));
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -430,9 +444,7 @@ pub enum OperatingMode {
 
 impl Word for OperatingMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Dcdc, "dcdc"), (Self::Mppt, "mppt")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Dcdc, "dcdc"), (Self::Mppt, "mppt")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -466,9 +478,7 @@ pub enum WalkIn {
 
 impl Word for WalkIn {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -505,9 +515,7 @@ pub enum Led {
 
 impl Word for Led {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Normal, "normal"), (Self::Flashing, "flashing")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Normal, "normal"), (Self::Flashing, "flashing")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -732,11 +740,7 @@ impl Word for Status0 {
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
             StatusBit::fault(0, "output_short_circuit", "Output short-circuited"),
-            StatusBit::fault(
-                2,
-                "internal_communication_fault",
-                "Communication inside the module failed",
-            ),
+            StatusBit::fault(2, "internal_communication_fault", "Communication inside the module failed"),
             StatusBit::alarm(3, "pfc_abnormal", "PFC circuit abnormal"),
             StatusBit::alarm(5, "discharge_abnormal", "Abnormal discharge"),
         ],
@@ -772,25 +776,15 @@ pub struct SystemOutput {
 
 impl SystemOutput {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V");
+    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`.
-    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A");
+    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read_total`.
-    pub const READ_TOTAL: Exchange = Exchange::new(
-            "system_output",
-            "read_total",
-            &READ_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x01))
-        .reply(FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request `read_total`. Section 3.3, 3.5.
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     ///
     /// # Errors
     ///
@@ -802,10 +796,7 @@ impl SystemOutput {
 
 impl Layout for SystemOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.get(data),
-            current_a: Self::CURRENT.get(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -833,17 +824,9 @@ impl ModuleCount {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read_total`.
-    pub const READ_TOTAL: Exchange = Exchange::new(
-            "module_count",
-            "read_total",
-            &READ_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x02))
-        .reply(FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
 
-    /// Builds the request `read_total`. Section 3.3, 3.5.
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     ///
     /// # Errors
     ///
@@ -853,20 +836,10 @@ impl ModuleCount {
     }
 }
 
-impl Layout for ModuleCount {
-    fn decode(data: &Data) -> Self {
-        Self {
-            count: Self::COUNT.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::COUNT.put(self.count, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::COUNT]
-    }
+impl Single for ModuleCount {
+    const SIGNAL: &'static dyn AnySignal = &Self::COUNT;
+    const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
 }
 
 /// Output voltage and current of one module. Section 3.3.
@@ -883,21 +856,15 @@ pub struct ModuleOutput {
 
 impl ModuleOutput {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V");
+    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`.
-    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A");
+    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_output", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x03))
-        .reply(FRAME.id(Identifier::COMMAND, 0x03));
+    pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
 
-    /// Builds the request `read`. Section 3.3, 3.5.
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -909,10 +876,7 @@ impl ModuleOutput {
 
 impl Layout for ModuleOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.get(data),
-            current_a: Self::CURRENT.get(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -947,8 +911,7 @@ impl ModuleStatus {
     /// The signal `group`.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2));
     /// The signal `temperature`.
-    pub const TEMPERATURE: Signal<i8> = Signal::new("temperature", Place::byte(4))
-        .unit("°C");
+    pub const TEMPERATURE: Signal<i8> = Signal::new("temperature", Place::byte(4)).unit("°C");
     /// The signal `status_2`.
     pub const STATUS_2: Signal<Status2> = Signal::new("status_2", Place::byte(5));
     /// The signal `status_1`.
@@ -958,13 +921,9 @@ impl ModuleStatus {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_status", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x04))
-        .reply(FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request `read`. Section 3.3, 3.5.
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -994,13 +953,7 @@ impl Layout for ModuleStatus {
     }
 
     fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[
-            &Self::GROUP,
-            &Self::TEMPERATURE,
-            &Self::STATUS_2,
-            &Self::STATUS_1,
-            &Self::STATUS_0,
-        ]
+        &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0]
     }
 }
 
@@ -1023,34 +976,19 @@ pub struct InputVoltage {
 
 impl InputVoltage {
     /// The signal `ab`.
-    pub const AB: Signal<u16> = Signal::new("ab", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const AB: Signal<u16> = Signal::new("ab", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `bc`.
-    pub const BC: Signal<u16> = Signal::new("bc", Place::bytes(2, 3))
-        .unit("V")
-        .scale(1, 10);
+    pub const BC: Signal<u16> = Signal::new("bc", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `ca`.
-    pub const CA: Signal<u16> = Signal::new("ca", Place::bytes(4, 5))
-        .unit("V")
-        .scale(1, 10);
+    pub const CA: Signal<u16> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_voltage", "read", &READ_ANSWERS)
-        .models(
-            &[
-                Model::PsM2_3ac1000dc30kw as u8,
-                Model::Ps3ac500dc20kw as u8,
-                Model::PsM2_3ac500dc20kw as u8,
-            ],
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x06))
-        .reply(FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS
+        .of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06))
+        .models(&[Model::PsM2_3ac1000dc30kw as u8, Model::Ps3ac500dc20kw as u8, Model::PsM2_3ac500dc20kw as u8]);
 
-    /// Builds the request `read`. Section 3.3, 3.5.
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1062,11 +1000,7 @@ impl InputVoltage {
 
 impl Layout for InputVoltage {
     fn decode(data: &Data) -> Self {
-        Self {
-            ab_v: Self::AB.decode(data),
-            bc_v: Self::BC.decode(data),
-            ca_v: Self::CA.decode(data),
-        }
+        Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1097,28 +1031,19 @@ pub struct InputVoltageDc {
 
 impl InputVoltageDc {
     /// The signal `plus_minus`.
-    pub const PLUS_MINUS: Signal<u16> = Signal::new("plus_minus", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const PLUS_MINUS: Signal<u16> = Signal::new("plus_minus", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `plus_pe`.
-    pub const PLUS_PE: Signal<u16> = Signal::new("plus_pe", Place::bytes(2, 3))
-        .unit("V")
-        .scale(1, 10);
+    pub const PLUS_PE: Signal<u16> = Signal::new("plus_pe", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `minus_pe`.
-    pub const MINUS_PE: Signal<u16> = Signal::new("minus_pe", Place::bytes(4, 5))
-        .unit("V")
-        .scale(1, 10);
+    pub const MINUS_PE: Signal<u16> = Signal::new("minus_pe", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_voltage_dc", "read", &READ_ANSWERS)
-        .models(&[Model::PsM2_825dc1000dc30kw as u8])
-        .request(FRAME.id(Identifier::COMMAND, 0x06))
-        .reply(FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS
+        .of("input_voltage_dc", FRAME.id(Identifier::COMMAND, 0x06))
+        .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
-    /// Builds the request `read`. Section 3.3, 3.5.
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1162,26 +1087,15 @@ pub struct ExternalVoltage {
 
 impl ExternalVoltage {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `allowed_current`.
-    pub const ALLOWED_CURRENT: Signal<u16> = Signal::new(
-            "allowed_current",
-            Place::bytes(2, 3),
-        )
-        .unit("A")
-        .scale(1, 10);
+    pub const ALLOWED_CURRENT: Signal<u16> = Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("external_voltage", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x0C))
-        .reply(FRAME.id(Identifier::COMMAND, 0x0C));
+    pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
 
-    /// Builds the request `read`. Section 3.3, 3.5.
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1193,10 +1107,7 @@ impl ExternalVoltage {
 
 impl Layout for ExternalVoltage {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            allowed_current_a: Self::ALLOWED_CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1221,29 +1132,13 @@ pub struct LimitInputCurrent {
 
 impl LimitInputCurrent {
     /// The signal `current`.
-    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A");
+    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `set_unanswered`.
-    pub const SET_UNANSWERED: Exchange = Exchange::new(
-            "limit_input_current",
-            "set_unanswered",
-            &SET_UNANSWERED_ANSWERS,
-        )
-        .models(
-            &[
-                Model::PsM2_3ac1000dc30kw as u8,
-                Model::Ps3ac500dc20kw as u8,
-                Model::PsM2_3ac500dc20kw as u8,
-            ],
-        )
-        .request(
-            FRAME
-                .selectors(&[SUB_COMMAND_SELECTOR])
-                .id(Identifier::COMMAND, 0x0F)
-                .data(SUB_COMMAND_SELECTOR.place, 0x1205),
-        );
+    pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
+        .of("limit_input_current", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1205))
+        .models(&[Model::PsM2_3ac1000dc30kw as u8, Model::Ps3ac500dc20kw as u8, Model::PsM2_3ac500dc20kw as u8]);
 
     /// Returns the values if a device model takes them.
     ///
@@ -1255,38 +1150,20 @@ impl LimitInputCurrent {
         Ok(self)
     }
 
-    /// Builds the request `set_unanswered` with these values. Section 3.3.
-    ///
-    /// Erratum U0F: printed is "yes in each of the three modes of 0x0F, no layout of a reply, and No
-    /// response beside two broadcasts and the request to 0x80", used is "no reply in any mode".
-    ///
-    /// `point_to_point`: nobody answers. `group`: nobody answers. `broadcast`: nobody answers.
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set_unanswered(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<()>, Error> {
+    pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.request_to(route, self)
     }
 }
 
-impl Layout for LimitInputCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            current_a: Self::CURRENT.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::CURRENT.put(self.current_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::CURRENT]
-    }
+impl Single for LimitInputCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::CURRENT;
+    const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.put(message.current_a, payload);
 }
 
 /// Set the DC input of DC/DC modules to DC/DC or MPPT mode. Section 3.3.
@@ -1305,18 +1182,10 @@ impl SetOperatingMode {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     /// How it travels by `set_unanswered`.
-    pub const SET_UNANSWERED: Exchange = Exchange::new(
-            "set_operating_mode",
-            "set_unanswered",
-            &[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)],
-        )
-        .models(&[Model::PsM2_825dc1000dc30kw as u8])
-        .request(
-            FRAME
-                .selectors(&[SUB_COMMAND_SELECTOR])
-                .id(Identifier::COMMAND, 0x0F)
-                .data(SUB_COMMAND_SELECTOR.place, 0x1111),
-        );
+    pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
+        .of("set_operating_mode", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1111))
+        .answers(&[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
+        .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
     /// Returns the values if a device model takes them.
     ///
@@ -1328,10 +1197,7 @@ impl SetOperatingMode {
         Ok(self)
     }
 
-    /// Builds the request `set_unanswered` with these values. Section 3.3.
-    ///
-    /// Erratum U0F: printed is "yes in each of the three modes of 0x0F, no layout of a reply, and No
-    /// response beside two broadcasts and the request to 0x80", used is "no reply in any mode".
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     ///
     /// `point_to_point`: nobody answers. `mppt`: nobody answers. `group`: nobody answers. `broadcast`:
     /// nobody answers.
@@ -1339,26 +1205,15 @@ impl SetOperatingMode {
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set_unanswered(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<()>, Error> {
+    pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.request_to(route, self)
     }
 }
 
-impl Layout for SetOperatingMode {
-    fn decode(data: &Data) -> Self {
-        Self { mode: Self::MODE.get(data) }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::MODE]
-    }
+impl Single for SetOperatingMode {
+    const SIGNAL: &'static dyn AnySignal = &Self::MODE;
+    const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::MODE.put(message.mode, payload);
 }
 
 /// Enable or disable slow startup. Section 3.3.
@@ -1392,37 +1247,21 @@ impl SetWalkIn {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_walk_in", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x13))
-        .reply(FRAME.id(Identifier::COMMAND, 0x13));
+    pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
-    /// Builds the request `set` with these values. Section 3.3, 3.5.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// Erratum C18: printed is "lists of commands: groups with replies of modules without 0x13 and 0x14,
-    /// broadcasts without reply without 0x0F, 0x13 and 0x14", used is "what 3.3 says about each command".
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<SetWalkInReply>, Error> {
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetWalkInReply>, Error> {
         Self::SET.request_to(route, self)
     }
 }
 
 impl Layout for SetWalkIn {
     fn decode(data: &Data) -> Self {
-        Self {
-            walk_in: Self::WALK_IN.get(data),
-            interval_s: Self::INTERVAL.decode(data),
-        }
+        Self { walk_in: Self::WALK_IN.get(data), interval_s: Self::INTERVAL.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1447,20 +1286,10 @@ impl SetWalkInReply {
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
 }
 
-impl Layout for SetWalkInReply {
-    fn decode(data: &Data) -> Self {
-        Self {
-            walk_in: SetWalkIn::WALK_IN.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        SetWalkIn::WALK_IN.put(self.walk_in, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&SetWalkIn::WALK_IN]
-    }
+impl Single for SetWalkInReply {
+    const SIGNAL: &'static dyn AnySignal = &SetWalkIn::WALK_IN;
+    const DECODE: Decode<Self> = |data| Self { walk_in: SetWalkIn::WALK_IN.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| SetWalkIn::WALK_IN.put(message.walk_in, payload);
 }
 
 /// Make the green LED flash. Section 3.3.
@@ -1479,19 +1308,9 @@ impl SetLed {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_led", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x14))
-        .reply(FRAME.id(Identifier::COMMAND, 0x14));
+    pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
-    /// Builds the request `set` with these values. Section 3.3, 3.5.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// Erratum C18: printed is "lists of commands: groups with replies of modules without 0x13 and 0x14,
-    /// broadcasts without reply without 0x0F, 0x13 and 0x14", used is "what 3.3 says about each command".
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1501,18 +1320,10 @@ impl SetLed {
     }
 }
 
-impl Layout for SetLed {
-    fn decode(data: &Data) -> Self {
-        Self { led: Self::LED.get(data) }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::LED.put(self.led, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::LED]
-    }
+impl Single for SetLed {
+    const SIGNAL: &'static dyn AnySignal = &Self::LED;
+    const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::LED.put(message.led, payload);
 }
 
 /// Switch operational readiness on or off. Section 3.3.
@@ -1533,19 +1344,9 @@ impl SwitchModules {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("switch_modules", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x1A))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1A));
+    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A));
 
-    /// Builds the request `set` with these values. Section 3.3, 3.5.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// Erratum C18: printed is "lists of commands: groups with replies of modules without 0x13 and 0x14,
-    /// broadcasts without reply without 0x0F, 0x13 and 0x14", used is "what 3.3 says about each command".
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1555,20 +1356,10 @@ impl SwitchModules {
     }
 }
 
-impl Layout for SwitchModules {
-    fn decode(data: &Data) -> Self {
-        Self {
-            power: Self::POWER.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::POWER]
-    }
+impl Single for SwitchModules {
+    const SIGNAL: &'static dyn AnySignal = &Self::POWER;
+    const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
 }
 
 /// Set voltage and total current of the system or of a group. Section 3.3.
@@ -1586,47 +1377,27 @@ pub struct SetTotalOutput {
 
 impl SetTotalOutput {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V")
-        .scale(1, 1000);
+    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`.
-    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1000);
+    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set_total`.
-    pub const SET_TOTAL: Exchange = Exchange::new(
-            "set_total_output",
-            "set_total",
-            &SET_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x1B))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1B));
+    pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
-    /// Builds the request `set_total` with these values. Section 3.3, 3.5.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all.
+    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set_total(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.request_to(route, self)
     }
 }
 
 impl Layout for SetTotalOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            current_a: Self::CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1655,29 +1426,15 @@ pub struct SetModuleOutput {
 
 impl SetModuleOutput {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V")
-        .scale(1, 1000);
+    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`.
-    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1000);
+    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_module_output", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x1C))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1C));
+    pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
-    /// Builds the request `set` with these values. Section 3.3, 3.5.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// Erratum C18: printed is "lists of commands: groups with replies of modules without 0x13 and 0x14,
-    /// broadcasts without reply without 0x0F, 0x13 and 0x14", used is "what 3.3 says about each command".
-    ///
-    /// `point_to_point`: the module answers. `mppt`: the module answers. `group`: each module answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1689,10 +1446,7 @@ impl SetModuleOutput {
 
 impl Layout for SetModuleOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            current_a: Self::CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1778,10 +1532,7 @@ impl Message {
     /// # Errors
     ///
     /// Says why the frame is not recognised.
-    pub fn decode_for(
-        model: Model,
-        frame: &impl embedded_can::Frame,
-    ) -> Result<Received, Problem> {
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
@@ -1790,31 +1541,18 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
-    const MODES: &'static [Mode] = &[
-        POINT_TO_POINT_MODE,
-        MPPT_MODE,
-        GROUP_MODE,
-        BROADCAST_MODE,
-    ];
+    const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, MPPT_MODE, GROUP_MODE, BROADCAST_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SUB_COMMAND_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (Identifier::COMMAND.of(id), SUB_COMMAND_SELECTOR.place.get(data)) {
             (0x0F, 0x1205) => {
-                Recognised::request(
-                    &LimitInputCurrent::SET_UNANSWERED,
-                    Self::LimitInputCurrent(Layout::decode(data)),
-                )
+                Recognised::request(&LimitInputCurrent::SET_UNANSWERED, Self::LimitInputCurrent(Layout::decode(data)))
             }
             (0x0F, 0x1111) => {
-                Recognised::request(
-                    &SetOperatingMode::SET_UNANSWERED,
-                    Self::SetOperatingMode(Layout::decode(data)),
-                )
+                Recognised::request(&SetOperatingMode::SET_UNANSWERED, Self::SetOperatingMode(Layout::decode(data)))
             }
             (0x01, _) => Recognised::request(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput),
             (0x02, _) => Recognised::request(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount),
@@ -1822,14 +1560,7 @@ impl Protocol for Message {
             (0x04, _) => Recognised::request(&ModuleStatus::READ, Self::ReadModuleStatus),
             (0x06, _) => {
                 Recognised::request(&InputVoltage::READ, Self::ReadInputVoltage)
-                    .or(
-                        Recognised::request(
-                            &InputVoltageDc::READ,
-                            Self::ReadInputVoltageDc,
-                        ),
-                        frame,
-                        model,
-                    )
+                    .or(Recognised::request(&InputVoltageDc::READ, Self::ReadInputVoltageDc), frame, model)
             }
             (0x0C, _) => Recognised::request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
             (0x13, _) => Recognised::request(&SetWalkIn::SET, Self::SetWalkIn(Layout::decode(data))),
@@ -1851,15 +1582,9 @@ impl Protocol for Message {
             0x03 => Recognised::reply(&ModuleOutput::READ, Self::ModuleOutput(Layout::decode(data))),
             0x04 => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
             0x06 => {
-                Recognised::reply(
-                        &InputVoltage::READ,
-                        Self::InputVoltage(Layout::decode(data)),
-                    )
+                Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data)))
                     .or(
-                        Recognised::reply(
-                            &InputVoltageDc::READ,
-                            Self::InputVoltageDc(Layout::decode(data)),
-                        ),
+                        Recognised::reply(&InputVoltageDc::READ, Self::InputVoltageDc(Layout::decode(data))),
                         frame,
                         model,
                     )
@@ -1910,3 +1635,92 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Output voltage and total current of the system or of a group",
+        &[("command", 0x01)],
+        &[&SystemOutput::VOLTAGE, &SystemOutput::CURRENT],
+        &[&SystemOutput::READ_TOTAL],
+    ),
+    Entry::new(
+        "Number of modules in the system or in a group",
+        &[("command", 0x02)],
+        &[&ModuleCount::COUNT],
+        &[&ModuleCount::READ_TOTAL],
+    ),
+    Entry::new(
+        "Output voltage and current of one module",
+        &[("command", 0x03)],
+        &[&ModuleOutput::VOLTAGE, &ModuleOutput::CURRENT],
+        &[&ModuleOutput::READ],
+    ),
+    Entry::new(
+        "Group, temperature and status of one module",
+        &[("command", 0x04)],
+        &[
+            &ModuleStatus::GROUP,
+            &ModuleStatus::TEMPERATURE,
+            &ModuleStatus::STATUS_2,
+            &ModuleStatus::STATUS_1,
+            &ModuleStatus::STATUS_0,
+        ],
+        &[&ModuleStatus::READ],
+    ),
+    Entry::new(
+        "Line-to-line AC input voltages of one module",
+        &[("command", 0x06)],
+        &[&InputVoltage::AB, &InputVoltage::BC, &InputVoltage::CA],
+        &[&InputVoltage::READ],
+    ),
+    Entry::new(
+        "DC input voltages of one module",
+        &[("command", 0x06)],
+        &[&InputVoltageDc::PLUS_MINUS, &InputVoltageDc::PLUS_PE, &InputVoltageDc::MINUS_PE],
+        &[&InputVoltageDc::READ],
+    ),
+    Entry::new(
+        "External voltage of one module and the current that the module can deliver",
+        &[("command", 0x0C)],
+        &[&ExternalVoltage::VOLTAGE, &ExternalVoltage::ALLOWED_CURRENT],
+        &[&ExternalVoltage::READ],
+    ),
+    Entry::new(
+        "Limit the input current of AC/DC modules",
+        &[("command", 0x0F), ("sub_command", 0x1205)],
+        &[&LimitInputCurrent::CURRENT],
+        &[&LimitInputCurrent::SET_UNANSWERED],
+    ),
+    Entry::new(
+        "Set the DC input of DC/DC modules to DC/DC or MPPT mode",
+        &[("command", 0x0F), ("sub_command", 0x1111)],
+        &[&SetOperatingMode::MODE],
+        &[&SetOperatingMode::SET_UNANSWERED],
+    ),
+    Entry::new(
+        "Enable or disable slow startup",
+        &[("command", 0x13)],
+        &[&SetWalkIn::WALK_IN, &SetWalkIn::INTERVAL],
+        &[&SetWalkIn::SET],
+    ),
+    Entry::new("Make the green LED flash", &[("command", 0x14)], &[&SetLed::LED], &[&SetLed::SET]),
+    Entry::new(
+        "Switch operational readiness on or off",
+        &[("command", 0x1A)],
+        &[&SwitchModules::POWER],
+        &[&SwitchModules::SET],
+    ),
+    Entry::new(
+        "Set voltage and total current of the system or of a group",
+        &[("command", 0x1B)],
+        &[&SetTotalOutput::VOLTAGE, &SetTotalOutput::CURRENT],
+        &[&SetTotalOutput::SET_TOTAL],
+    ),
+    Entry::new(
+        "Set voltage and current of every module addressed",
+        &[("command", 0x1C)],
+        &[&SetModuleOutput::VOLTAGE, &SetModuleOutput::CURRENT],
+        &[&SetModuleOutput::SET],
+    ),
+];

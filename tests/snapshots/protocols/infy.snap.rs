@@ -5,8 +5,9 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Piece, Place, Protocol, Recognised, Signal, Who, left_aligned, right_aligned,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Piece, Place, Protocol, Recognised, Signal, Single,
+    Who, left_aligned, right_aligned,
 };
 
 /// What every frame shows.
@@ -116,9 +117,7 @@ impl Destination for Target {
 }
 
 /// Address of a controller: `0xF0..=0xF8`. Section 2.2.
-pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF8)
-    .strict()
-    .default_number(0xF0);
+pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF8).strict().default_number(0xF0);
 
 /// Address of a module: `0x00..=0x3B`. Section 2.2.
 ///
@@ -234,32 +233,48 @@ pub const ALL_GROUPS_MODE: Mode = Mode {
     }),
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 4] = [Some(Who::One), Some(Who::Each), None, None];
+/// Read from modules. Section 2.4.
+///
+/// `point_to_point`: the module answers. `group`: each module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), Some(Who::Each), None, None])
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `read_total`, by addressing mode.
-const READ_TOTAL_ANSWERS: [Option<Who>; 4] = [
-    None,
-    Some(Who::Coordinator),
-    Some(Who::Coordinator),
-    Some(Who::Coordinator),
-];
+/// Read from the system or a group. Section 2.4.
+///
+/// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
+pub const READ_TOTAL_ACCESS: Exchange = Exchange::new(
+        "read_total",
+        &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)],
+    )
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 4] = [
-    Some(Who::One),
-    Some(Who::Each),
-    Some(Who::Nobody),
-    None,
-];
+/// Set in modules. Section 2.4.
+///
+/// The reply carries the values now in effect.
+///
+/// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody), None])
+    .with_values()
+    .request(FRAME)
+    .reply(FRAME);
 
-/// Who answers `set_total`, by addressing mode.
-const SET_TOTAL_ANSWERS: [Option<Who>; 4] = [
-    None,
-    Some(Who::Coordinator),
-    Some(Who::Coordinator),
-    Some(Who::Coordinator),
-];
+/// Set for the system or a group. Section 2.4.
+///
+/// The reply carries the values now in effect.
+///
+/// Erratum D40: printed is "only 0x01, 0x02 and 0x08 are answered when broadcast", used is "0x1B is
+/// answered too".
+///
+/// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
+pub const SET_TOTAL_ACCESS: Exchange = Exchange::new(
+        "set_total",
+        &[None, Some(Who::Coordinator), Some(Who::Coordinator), Some(Who::Coordinator)],
+    )
+    .with_values()
+    .request(FRAME)
+    .reply(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -457,9 +472,7 @@ pub enum WalkIn {
 
 impl Word for WalkIn {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -493,9 +506,7 @@ pub enum Led {
 
 impl Word for Led {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Normal, "normal"), (Self::Flashing, "flashing")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Normal, "normal"), (Self::Flashing, "flashing")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -529,9 +540,7 @@ pub enum Sleep {
 
 impl Word for Sleep {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Awake, "awake"), (Self::Asleep, "asleep")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Awake, "awake"), (Self::Asleep, "asleep")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -605,9 +614,7 @@ pub enum AddressMode {
 
 impl Word for AddressMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Automatic, "automatic"), (Self::DipSwitch, "dip_switch")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Automatic, "automatic"), (Self::DipSwitch, "dip_switch")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -660,11 +667,7 @@ impl Word for Status2 {
         &[
             StatusBit::state(0, "power_limited", "Power of the module limited"),
             StatusBit::fault(1, "duplicate_id", "ID of the module used twice"),
-            StatusBit::fault(
-                2,
-                "current_imbalance",
-                "Severe current imbalance between modules",
-            ),
+            StatusBit::fault(2, "current_imbalance", "Severe current imbalance between modules"),
             StatusBit::alarm(3, "input_phase_lost", "Input phase lost"),
             StatusBit::alarm(4, "input_unbalanced", "Three-phase input unbalanced"),
             StatusBit::alarm(5, "input_undervoltage", "Input voltage too low"),
@@ -772,11 +775,7 @@ impl Word for Status0 {
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
             StatusBit::fault(0, "output_short_circuit", "Output short-circuited"),
-            StatusBit::fault(
-                2,
-                "internal_communication_fault",
-                "Communication inside the module failed",
-            ),
+            StatusBit::fault(2, "internal_communication_fault", "Communication inside the module failed"),
             StatusBit::fault(3, "input_or_bus_abnormal", "Input or power bus abnormal"),
             StatusBit::state(4, "sleeping", "Module is asleep"),
             StatusBit::fault(5, "discharge_abnormal", "Abnormal discharge"),
@@ -832,11 +831,7 @@ impl Word for BarcodeValue {
 
     fn from_raw(raw: u64) -> Self {
         let data = left_aligned(raw, 8);
-        Self {
-            letter: Self::LETTER.read(&data),
-            number: Self::NUMBER.read(&data),
-            suffix: Self::SUFFIX.read(&data),
-        }
+        Self { letter: Self::LETTER.read(&data), number: Self::NUMBER.read(&data), suffix: Self::SUFFIX.read(&data) }
     }
 
     fn raw(self) -> u64 {
@@ -869,25 +864,15 @@ pub struct SystemOutput {
 
 impl SystemOutput {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V");
+    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`.
-    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A");
+    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read_total`.
-    pub const READ_TOTAL: Exchange = Exchange::new(
-            "system_output",
-            "read_total",
-            &READ_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x01))
-        .reply(FRAME.id(Identifier::COMMAND, 0x01));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
 
-    /// Builds the request `read_total`. Section 2.4.
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     ///
     /// # Errors
     ///
@@ -899,10 +884,7 @@ impl SystemOutput {
 
 impl Layout for SystemOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.get(data),
-            current_a: Self::CURRENT.get(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -928,17 +910,9 @@ impl ModuleCount {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read_total`.
-    pub const READ_TOTAL: Exchange = Exchange::new(
-            "module_count",
-            "read_total",
-            &READ_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x02))
-        .reply(FRAME.id(Identifier::COMMAND, 0x02));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
 
-    /// Builds the request `read_total`. Section 2.4.
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     ///
     /// # Errors
     ///
@@ -948,20 +922,10 @@ impl ModuleCount {
     }
 }
 
-impl Layout for ModuleCount {
-    fn decode(data: &Data) -> Self {
-        Self {
-            count: Self::COUNT.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::COUNT.put(self.count, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::COUNT]
-    }
+impl Single for ModuleCount {
+    const SIGNAL: &'static dyn AnySignal = &Self::COUNT;
+    const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
 }
 
 /// Output voltage and current of one module. Section 2.4.
@@ -977,21 +941,15 @@ pub struct ModuleOutput {
 
 impl ModuleOutput {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V");
+    pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`.
-    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A");
+    pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_output", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x03))
-        .reply(FRAME.id(Identifier::COMMAND, 0x03));
+    pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1003,10 +961,7 @@ impl ModuleOutput {
 
 impl Layout for ModuleOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.get(data),
-            current_a: Self::CURRENT.get(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1038,8 +993,7 @@ impl ModuleStatus {
     /// The signal `group`.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2));
     /// The signal `temperature`.
-    pub const TEMPERATURE: Signal<i8> = Signal::new("temperature", Place::byte(4))
-        .unit("°C");
+    pub const TEMPERATURE: Signal<i8> = Signal::new("temperature", Place::byte(4)).unit("°C");
     /// The signal `status_2`.
     pub const STATUS_2: Signal<Status2> = Signal::new("status_2", Place::byte(5));
     /// The signal `status_1`.
@@ -1049,13 +1003,9 @@ impl ModuleStatus {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_status", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x04))
-        .reply(FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1085,13 +1035,7 @@ impl Layout for ModuleStatus {
     }
 
     fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[
-            &Self::GROUP,
-            &Self::TEMPERATURE,
-            &Self::STATUS_2,
-            &Self::STATUS_1,
-            &Self::STATUS_0,
-        ]
+        &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0]
     }
 }
 
@@ -1110,27 +1054,17 @@ pub struct InputVoltage {
 
 impl InputVoltage {
     /// The signal `ab`.
-    pub const AB: Signal<u16> = Signal::new("ab", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const AB: Signal<u16> = Signal::new("ab", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `bc`.
-    pub const BC: Signal<u16> = Signal::new("bc", Place::bytes(2, 3))
-        .unit("V")
-        .scale(1, 10);
+    pub const BC: Signal<u16> = Signal::new("bc", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `ca`.
-    pub const CA: Signal<u16> = Signal::new("ca", Place::bytes(4, 5))
-        .unit("V")
-        .scale(1, 10);
+    pub const CA: Signal<u16> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_voltage", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x06))
-        .reply(FRAME.id(Identifier::COMMAND, 0x06));
+    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1142,11 +1076,7 @@ impl InputVoltage {
 
 impl Layout for InputVoltage {
     fn decode(data: &Data) -> Self {
-        Self {
-            ab_v: Self::AB.decode(data),
-            bc_v: Self::BC.decode(data),
-            ca_v: Self::CA.decode(data),
-        }
+        Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1171,27 +1101,15 @@ pub struct SystemOutputFixed {
 
 impl SystemOutputFixed {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V")
-        .scale(1, 1000);
+    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`.
-    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1000);
+    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read_total`.
-    pub const READ_TOTAL: Exchange = Exchange::new(
-            "system_output_fixed",
-            "read_total",
-            &READ_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x08))
-        .reply(FRAME.id(Identifier::COMMAND, 0x08));
+    pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output_fixed", FRAME.id(Identifier::COMMAND, 0x08));
 
-    /// Builds the request `read_total`. Section 2.4.
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
+    /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     ///
     /// # Errors
     ///
@@ -1203,10 +1121,7 @@ impl SystemOutputFixed {
 
 impl Layout for SystemOutputFixed {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            current_a: Self::CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1230,27 +1145,15 @@ pub struct ModuleOutputFixed {
 
 impl ModuleOutputFixed {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
-        .unit("V")
-        .scale(1, 1000);
+    pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`.
-    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1000);
+    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "module_output_fixed",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x09))
-        .reply(FRAME.id(Identifier::COMMAND, 0x09));
+    pub const READ: Exchange = READ_ACCESS.of("module_output_fixed", FRAME.id(Identifier::COMMAND, 0x09));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1262,10 +1165,7 @@ impl ModuleOutputFixed {
 
 impl Layout for ModuleOutputFixed {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            current_a: Self::CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1293,38 +1193,19 @@ pub struct ModuleLimits {
 
 impl ModuleLimits {
     /// The signal `maximum_voltage`.
-    pub const MAXIMUM_VOLTAGE: Signal<u16> = Signal::new(
-            "maximum_voltage",
-            Place::bytes(0, 1),
-        )
-        .unit("V");
+    pub const MAXIMUM_VOLTAGE: Signal<u16> = Signal::new("maximum_voltage", Place::bytes(0, 1)).unit("V");
     /// The signal `minimum_voltage`.
-    pub const MINIMUM_VOLTAGE: Signal<u16> = Signal::new(
-            "minimum_voltage",
-            Place::bytes(2, 3),
-        )
-        .unit("V");
+    pub const MINIMUM_VOLTAGE: Signal<u16> = Signal::new("minimum_voltage", Place::bytes(2, 3)).unit("V");
     /// The signal `maximum_current`.
-    pub const MAXIMUM_CURRENT: Signal<u16> = Signal::new(
-            "maximum_current",
-            Place::bytes(4, 5),
-        )
-        .unit("A")
-        .scale(1, 10);
+    pub const MAXIMUM_CURRENT: Signal<u16> = Signal::new("maximum_current", Place::bytes(4, 5)).unit("A").scale(1, 10);
     /// The signal `rated_power`.
-    pub const RATED_POWER: Signal<u16> = Signal::new("rated_power", Place::bytes(6, 7))
-        .unit("W")
-        .scale(10, 1);
+    pub const RATED_POWER: Signal<u16> = Signal::new("rated_power", Place::bytes(6, 7)).unit("W").scale(10, 1);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_limits", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x0A))
-        .reply(FRAME.id(Identifier::COMMAND, 0x0A));
+    pub const READ: Exchange = READ_ACCESS.of("module_limits", FRAME.id(Identifier::COMMAND, 0x0A));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1352,12 +1233,7 @@ impl Layout for ModuleLimits {
     }
 
     fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[
-            &Self::MAXIMUM_VOLTAGE,
-            &Self::MINIMUM_VOLTAGE,
-            &Self::MAXIMUM_CURRENT,
-            &Self::RATED_POWER,
-        ]
+        &[&Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE, &Self::MAXIMUM_CURRENT, &Self::RATED_POWER]
     }
 }
 
@@ -1377,13 +1253,9 @@ impl Barcode {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("barcode", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x0B))
-        .reply(FRAME.id(Identifier::COMMAND, 0x0B));
+    pub const READ: Exchange = READ_ACCESS.of("barcode", FRAME.id(Identifier::COMMAND, 0x0B));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1393,20 +1265,10 @@ impl Barcode {
     }
 }
 
-impl Layout for Barcode {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Barcode {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// External voltage of one module and the current that the module can deliver. Section 2.4.
@@ -1428,26 +1290,15 @@ pub struct ExternalVoltage {
 
 impl ExternalVoltage {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `allowed_current`.
-    pub const ALLOWED_CURRENT: Signal<u16> = Signal::new(
-            "allowed_current",
-            Place::bytes(2, 3),
-        )
-        .unit("A")
-        .scale(1, 10);
+    pub const ALLOWED_CURRENT: Signal<u16> = Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("external_voltage", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x0C))
-        .reply(FRAME.id(Identifier::COMMAND, 0x0C));
+    pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
 
-    /// Builds the request `read`. Section 2.4.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1459,10 +1310,7 @@ impl ExternalVoltage {
 
 impl Layout for ExternalVoltage {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            allowed_current_a: Self::ALLOWED_CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1490,15 +1338,9 @@ impl SetWalkIn {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_walk_in", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x13))
-        .reply(FRAME.id(Identifier::COMMAND, 0x13));
+    pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1508,20 +1350,10 @@ impl SetWalkIn {
     }
 }
 
-impl Layout for SetWalkIn {
-    fn decode(data: &Data) -> Self {
-        Self {
-            walk_in: Self::WALK_IN.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::WALK_IN.put(self.walk_in, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::WALK_IN]
-    }
+impl Single for SetWalkIn {
+    const SIGNAL: &'static dyn AnySignal = &Self::WALK_IN;
+    const DECODE: Decode<Self> = |data| Self { walk_in: Self::WALK_IN.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::WALK_IN.put(message.walk_in, payload);
 }
 
 /// Make the green LED flash. Section 2.4.
@@ -1537,15 +1369,9 @@ impl SetLed {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_led", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x14))
-        .reply(FRAME.id(Identifier::COMMAND, 0x14));
+    pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1555,18 +1381,10 @@ impl SetLed {
     }
 }
 
-impl Layout for SetLed {
-    fn decode(data: &Data) -> Self {
-        Self { led: Self::LED.get(data) }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::LED.put(self.led, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::LED]
-    }
+impl Single for SetLed {
+    const SIGNAL: &'static dyn AnySignal = &Self::LED;
+    const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::LED.put(message.led, payload);
 }
 
 /// Put modules into a group. Section 2.4.
@@ -1588,15 +1406,9 @@ impl SetGroup {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_group", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x16))
-        .reply(FRAME.id(Identifier::COMMAND, 0x16));
+    pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.id(Identifier::COMMAND, 0x16));
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1606,20 +1418,10 @@ impl SetGroup {
     }
 }
 
-impl Layout for SetGroup {
-    fn decode(data: &Data) -> Self {
-        Self {
-            group: Self::GROUP.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::GROUP]
-    }
+impl Single for SetGroup {
+    const SIGNAL: &'static dyn AnySignal = &Self::GROUP;
+    const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::GROUP.put(message.group, payload);
 }
 
 /// Send modules to sleep. Section 2.4.
@@ -1635,15 +1437,9 @@ impl SetSleep {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_sleep", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x19))
-        .reply(FRAME.id(Identifier::COMMAND, 0x19));
+    pub const SET: Exchange = SET_ACCESS.of("set_sleep", FRAME.id(Identifier::COMMAND, 0x19));
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1653,20 +1449,10 @@ impl SetSleep {
     }
 }
 
-impl Layout for SetSleep {
-    fn decode(data: &Data) -> Self {
-        Self {
-            sleep: Self::SLEEP.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::SLEEP.put(self.sleep, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::SLEEP]
-    }
+impl Single for SetSleep {
+    const SIGNAL: &'static dyn AnySignal = &Self::SLEEP;
+    const DECODE: Decode<Self> = |data| Self { sleep: Self::SLEEP.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::SLEEP.put(message.sleep, payload);
 }
 
 /// Switch modules on or off. Section 2.4.
@@ -1686,17 +1472,11 @@ impl SwitchModules {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "switch_modules",
-            "set",
-            &[Some(Who::One), Some(Who::Each), Some(Who::Nobody), Some(Who::Nobody)],
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x1A))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1A));
+    pub const SET: Exchange = SET_ACCESS
+        .of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A))
+        .answers(&[Some(Who::One), Some(Who::Each), Some(Who::Nobody), Some(Who::Nobody)]);
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
     /// `all_groups`: nobody answers.
@@ -1709,20 +1489,10 @@ impl SwitchModules {
     }
 }
 
-impl Layout for SwitchModules {
-    fn decode(data: &Data) -> Self {
-        Self {
-            power: Self::POWER.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.put(self.power, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::POWER]
-    }
+impl Single for SwitchModules {
+    const SIGNAL: &'static dyn AnySignal = &Self::POWER;
+    const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
 }
 
 /// Set voltage and total current of the system or of a group. Section 2.4.
@@ -1746,19 +1516,11 @@ impl SetTotalOutput {
         .scale(1, 1000)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`.
-    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1000);
+    pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set_total`.
-    pub const SET_TOTAL: Exchange = Exchange::new(
-            "set_total_output",
-            "set_total",
-            &SET_TOTAL_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x1B))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1B));
+    pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
     /// Returns the values if a device model takes them.
     ///
@@ -1770,32 +1532,19 @@ impl SetTotalOutput {
         Ok(self)
     }
 
-    /// Builds the request `set_total` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// Erratum D40: printed is "only 0x01, 0x02 and 0x08 are answered when broadcast", used is "0x1B is
-    /// answered too".
-    ///
-    /// `group`: one answers for all. `broadcast`: one answers for all. `all_groups`: one answers for all.
+    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set_total(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.request_to(route, self)
     }
 }
 
 impl Layout for SetTotalOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            current_a: Self::CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1839,9 +1588,7 @@ impl SetModuleOutput {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_module_output", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x1C))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1C));
+    pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
     /// Returns the values if a device model takes them.
     ///
@@ -1853,11 +1600,7 @@ impl SetModuleOutput {
         Ok(self)
     }
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1869,10 +1612,7 @@ impl SetModuleOutput {
 
 impl Layout for SetModuleOutput {
     fn decode(data: &Data) -> Self {
-        Self {
-            voltage_v: Self::VOLTAGE.decode(data),
-            current_a: Self::CURRENT.decode(data),
-        }
+        Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1905,15 +1645,9 @@ impl SetAddressMode {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_address_mode", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x1F))
-        .reply(FRAME.id(Identifier::COMMAND, 0x1F));
+    pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.id(Identifier::COMMAND, 0x1F));
 
-    /// Builds the request `set` with these values. Section 2.4.
-    ///
-    /// The reply carries the values now in effect.
-    ///
-    /// `point_to_point`: the module answers. `group`: each module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1923,18 +1657,10 @@ impl SetAddressMode {
     }
 }
 
-impl Layout for SetAddressMode {
-    fn decode(data: &Data) -> Self {
-        Self { mode: Self::MODE.get(data) }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::MODE.put(self.mode, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::MODE]
-    }
+impl Single for SetAddressMode {
+    const SIGNAL: &'static dyn AnySignal = &Self::MODE;
+    const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::MODE.put(message.mode, payload);
 }
 
 /// Every message that a frame can carry.
@@ -2022,10 +1748,7 @@ impl Message {
     /// # Errors
     ///
     /// Says why the frame is not recognised.
-    pub fn decode_for(
-        model: Model,
-        frame: &impl embedded_can::Frame,
-    ) -> Result<Received, Problem> {
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
@@ -2034,12 +1757,8 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
-    const MODES: &'static [Mode] = &[
-        POINT_TO_POINT_MODE,
-        GROUP_MODE,
-        BROADCAST_MODE,
-        ALL_GROUPS_MODE,
-    ];
+    const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -2147,3 +1866,96 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Output voltage and total current of the system or of a group",
+        &[("command", 0x01)],
+        &[&SystemOutput::VOLTAGE, &SystemOutput::CURRENT],
+        &[&SystemOutput::READ_TOTAL],
+    ),
+    Entry::new(
+        "Number of modules in the system or in a group",
+        &[("command", 0x02)],
+        &[&ModuleCount::COUNT],
+        &[&ModuleCount::READ_TOTAL],
+    ),
+    Entry::new(
+        "Output voltage and current of one module",
+        &[("command", 0x03)],
+        &[&ModuleOutput::VOLTAGE, &ModuleOutput::CURRENT],
+        &[&ModuleOutput::READ],
+    ),
+    Entry::new(
+        "Group, temperature and status of one module",
+        &[("command", 0x04)],
+        &[
+            &ModuleStatus::GROUP,
+            &ModuleStatus::TEMPERATURE,
+            &ModuleStatus::STATUS_2,
+            &ModuleStatus::STATUS_1,
+            &ModuleStatus::STATUS_0,
+        ],
+        &[&ModuleStatus::READ],
+    ),
+    Entry::new(
+        "Line-to-line AC input voltages of one module",
+        &[("command", 0x06)],
+        &[&InputVoltage::AB, &InputVoltage::BC, &InputVoltage::CA],
+        &[&InputVoltage::READ],
+    ),
+    Entry::new(
+        "Output voltage and total current of the system or of a group in fixed point",
+        &[("command", 0x08)],
+        &[&SystemOutputFixed::VOLTAGE, &SystemOutputFixed::CURRENT],
+        &[&SystemOutputFixed::READ_TOTAL],
+    ),
+    Entry::new(
+        "Output voltage and current of one module in fixed point",
+        &[("command", 0x09)],
+        &[&ModuleOutputFixed::VOLTAGE, &ModuleOutputFixed::CURRENT],
+        &[&ModuleOutputFixed::READ],
+    ),
+    Entry::new(
+        "Limits of one module",
+        &[("command", 0x0A)],
+        &[
+            &ModuleLimits::MAXIMUM_VOLTAGE,
+            &ModuleLimits::MINIMUM_VOLTAGE,
+            &ModuleLimits::MAXIMUM_CURRENT,
+            &ModuleLimits::RATED_POWER,
+        ],
+        &[&ModuleLimits::READ],
+    ),
+    Entry::new("Barcode of one module", &[("command", 0x0B)], &[&Barcode::VALUE], &[&Barcode::READ]),
+    Entry::new(
+        "External voltage of one module and the current that the module can deliver",
+        &[("command", 0x0C)],
+        &[&ExternalVoltage::VOLTAGE, &ExternalVoltage::ALLOWED_CURRENT],
+        &[&ExternalVoltage::READ],
+    ),
+    Entry::new("Enable or disable soft start", &[("command", 0x13)], &[&SetWalkIn::WALK_IN], &[&SetWalkIn::SET]),
+    Entry::new("Make the green LED flash", &[("command", 0x14)], &[&SetLed::LED], &[&SetLed::SET]),
+    Entry::new("Put modules into a group", &[("command", 0x16)], &[&SetGroup::GROUP], &[&SetGroup::SET]),
+    Entry::new("Send modules to sleep", &[("command", 0x19)], &[&SetSleep::SLEEP], &[&SetSleep::SET]),
+    Entry::new("Switch modules on or off", &[("command", 0x1A)], &[&SwitchModules::POWER], &[&SwitchModules::SET]),
+    Entry::new(
+        "Set voltage and total current of the system or of a group",
+        &[("command", 0x1B)],
+        &[&SetTotalOutput::VOLTAGE, &SetTotalOutput::CURRENT],
+        &[&SetTotalOutput::SET_TOTAL],
+    ),
+    Entry::new(
+        "Set voltage and current of every module addressed",
+        &[("command", 0x1C)],
+        &[&SetModuleOutput::VOLTAGE, &SetModuleOutput::CURRENT],
+        &[&SetModuleOutput::SET],
+    ),
+    Entry::new(
+        "Choose where modules get their address from",
+        &[("command", 0x1F)],
+        &[&SetAddressMode::MODE],
+        &[&SetAddressMode::SET],
+    ),
+];

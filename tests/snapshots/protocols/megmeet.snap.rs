@@ -4,31 +4,23 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Selector, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Place, Protocol, Recognised, Selector, Signal, Single,
+    Who,
 };
 
 /// What every frame shows.
-const FRAME: Filter = Filter::EXTENDED
-    .id_bits(0x0000_007E, 0x0000_007E)
-    .id(Identifier::PROTOCOL, 0x21);
+const FRAME: Filter = Filter::EXTENDED.id_bits(0x0000_007E, 0x0000_007E).id(Identifier::PROTOCOL, 0x21);
 
 /// Why a module did not do what was asked: byte 0, bits 7..4. Section 2.2.1, 4.
 ///
 /// 0 in a request; while modules recognise their addresses they answer with 3.
 ///
 /// Erratum M33: printed is "electronic tags and electronic label", used is "label for both".
-pub const ERROR_TYPE_SELECTOR: Selector = Selector::new(
-        "error_type",
-        Place::byte(0).bits(7, 4),
-    )
-    .normal(0x0);
+pub const ERROR_TYPE_SELECTOR: Selector = Selector::new("error_type", Place::byte(0).bits(7, 4)).normal(0x0);
 
 /// Number of the signal: bytes 0..1, bits 11..0. Section 2.2.2.
-pub const SIGNAL_SELECTOR: Selector = Selector::new(
-    "signal",
-    Place::bytes(0, 1).bits(11, 0),
-);
+pub const SIGNAL_SELECTOR: Selector = Selector::new("signal", Place::bytes(0, 1).bits(11, 0));
 
 /// The 29-bit identifier of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -141,9 +133,7 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
     target: Some(&MODULE_ADDRESS),
     request: Some(Pattern {
         constants: &[(Identifier::SENDER, 0x1)],
-        addresses: &[
-            Address::new(Identifier::NODE, &MODULE_ADDRESS).excluding(&[(0x00, 0x00)]),
-        ],
+        addresses: &[Address::new(Identifier::NODE, &MODULE_ADDRESS).excluding(&[(0x00, 0x00)])],
     }),
     one: Some(Pattern {
         constants: &[(Identifier::SENDER, 0x0)],
@@ -166,23 +156,66 @@ pub const BROADCAST_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 2] = [Some(Who::One), None];
+/// Read from one module. Section 2.1, 4.
+///
+/// `point_to_point`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None])
+    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82))
+    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82));
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 2] = [Some(Who::One), Some(Who::Nobody)];
+/// Set in modules. Section 2.1, 3.1, 3.2, 4.
+///
+/// The control command; a module that is addressed alone replies with the value.
+///
+/// `point_to_point`: the module answers. `broadcast`: nobody answers.
+pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Nobody)])
+    .with_values()
+    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80))
+    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x80));
 
-/// Who answers `store`, by addressing mode.
-const STORE_ANSWERS: [Option<Who>; 2] = [Some(Who::One), Some(Who::Nobody)];
+/// Set in modules and keep in their EEPROM. Section 2.1, 2.2.2, 4.
+///
+/// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
+/// alone replies with the value.
+///
+/// Erratum M27: printed is "control command, configuration command and query command, and not which
+/// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
+/// what is kept in the EEPROM".
+///
+/// `point_to_point`: the module answers. `broadcast`: nobody answers.
+pub const STORE_ACCESS: Exchange = Exchange::new("store", &[Some(Who::One), Some(Who::Nobody)])
+    .with_values()
+    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81))
+    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81));
 
-/// Who answers `read_inherent`, by addressing mode.
-const READ_INHERENT_ANSWERS: [Option<Who>; 2] = [Some(Who::One), None];
+/// Read from one module what does not change. Section 2.1, 3.3.
+///
+/// The three signals are asked for in three frames, of which the last has `more` 0, and answered in
+/// three frames.
+///
+/// Erratum M6: printed is "after receiving the point-to-point setting command", used is "the query
+/// before it".
+///
+/// Erratum M7: printed is "three rows of data for one query, CNT 0/1, and an explanation of two of
+/// them", used is "three frames, CNT 1 in the first two and 0 in the last".
+///
+/// `point_to_point`: the module answers.
+pub const READ_INHERENT_ACCESS: Exchange = Exchange::new("read_inherent", &[Some(Who::One), None])
+    .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50))
+    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50));
 
-/// Who answers `ask_real_time`, by addressing mode.
-const ASK_REAL_TIME_ANSWERS: [Option<Who>; 2] = [Some(Who::Nobody), None];
+/// Ask one module for all that changes. Section 2.1, 3.4.
+///
+/// The answer is a frame of each message with `real_time`, of which the last has `more` 0.
+///
+/// `point_to_point`: nobody answers.
+pub const ASK_REAL_TIME_ACCESS: Exchange = Exchange::new("ask_real_time", &[Some(Who::Nobody), None]).request(FRAME);
 
-/// Who answers `real_time`, by addressing mode.
-const REAL_TIME_ANSWERS: [Option<Who>; 2] = [Some(Who::One), None];
+/// Part of the answer to `real_time_data`. Section 2.1, 3.4.
+///
+/// `point_to_point`: the module answers.
+pub const REAL_TIME_ACCESS: Exchange = Exchange::new("real_time", &[Some(Who::One), None])
+    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x40));
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -236,9 +269,7 @@ impl From<Model> for u8 {
 const OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 41.5, 58.5)];
 
 /// Limits of `default_output_voltage` by device model.
-const DEFAULT_OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[
-    (Model::V48 as u8, 48.0, 58.0),
-];
+const DEFAULT_OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 48.0, 58.0)];
 
 /// Limits of `overvoltage_point` by device model.
 const OVERVOLTAGE_POINT_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 58.5, 60.5)];
@@ -319,9 +350,7 @@ pub enum SenderCode {
 
 impl Word for SenderCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Module, "module"), (Self::Controller, "controller")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Module, "module"), (Self::Controller, "controller")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -360,9 +389,7 @@ pub enum MoreCode {
 
 impl Word for MoreCode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Last, "last"), (Self::More, "more")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Last, "last"), (Self::More, "more")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -474,9 +501,7 @@ pub enum Supply {
 
 impl Word for Supply {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Single, "single"), (Self::Dual, "dual")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Single, "single"), (Self::Dual, "dual")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -576,9 +601,7 @@ pub enum OutputType {
 
 impl Word for OutputType {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::V48, "v48"), (Self::V48OrV60, "v48_or_v60")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::V48, "v48"), (Self::V48OrV60, "v48_or_v60")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -725,9 +748,7 @@ pub enum Reset {
 
 impl Word for Reset {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Forbid, "forbid"), (Self::Reset, "reset")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Forbid, "forbid"), (Self::Reset, "reset")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -761,9 +782,7 @@ pub enum Flicker {
 
 impl Word for Flicker {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Forbid, "forbid"), (Self::Flicker, "flicker")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Forbid, "forbid"), (Self::Flicker, "flicker")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -799,9 +818,7 @@ pub enum Assignment {
 
 impl Word for Assignment {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Forbid, "forbid"), (Self::Assign, "assign")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Forbid, "forbid"), (Self::Assign, "assign")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -842,12 +859,7 @@ pub enum Light {
 impl Word for Light {
     type Raw = u8;
     const LEGEND: Legend<Self> = Legend::Names(
-        &[
-            (Self::Auto, "auto"),
-            (Self::Slow, "slow"),
-            (Self::Quick, "quick"),
-            (Self::Steady, "steady"),
-        ],
+        &[(Self::Auto, "auto"), (Self::Slow, "slow"), (Self::Quick, "quick"), (Self::Steady, "steady")],
     );
 
     fn from_raw(raw: u8) -> Self {
@@ -886,9 +898,7 @@ pub enum Shielding {
 
 impl Word for Shielding {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::NoShield, "no_shield"), (Self::Shield, "shield")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::NoShield, "no_shield"), (Self::Shield, "shield")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -930,11 +940,7 @@ pub enum AddressMode {
 impl Word for AddressMode {
     type Raw = u8;
     const LEGEND: Legend<Self> = Legend::Names(
-        &[
-            (Self::Hardware, "hardware"),
-            (Self::Slot, "slot"),
-            (Self::Software, "software"),
-        ],
+        &[(Self::Hardware, "hardware"), (Self::Slot, "slot"), (Self::Software, "software")],
     );
 
     fn from_raw(raw: u8) -> Self {
@@ -973,9 +979,7 @@ pub enum AutoBoot {
 
 impl Word for AutoBoot {
     type Raw = u16;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Automatic, "automatic"), (Self::Manual, "manual")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Automatic, "automatic"), (Self::Manual, "manual")]);
 
     fn from_raw(raw: u16) -> Self {
         match raw {
@@ -1009,9 +1013,7 @@ pub enum Scan {
 
 impl Word for Scan {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Enabled, "enabled")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -1053,21 +1055,9 @@ impl Word for ExtendedShield {
     type Raw = u16;
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
-            StatusBit::new(
-                0,
-                "hardware_address_abnormal",
-                "Hardware address of the module abnormal",
-            ),
-            StatusBit::new(
-                1,
-                "input_common_mode_voltage_abnormal",
-                "Common-mode voltage of the input abnormal",
-            ),
-            StatusBit::new(
-                2,
-                "main_relay_coil_short_circuit",
-                "Coil of the main relay short-circuited",
-            ),
+            StatusBit::new(0, "hardware_address_abnormal", "Hardware address of the module abnormal"),
+            StatusBit::new(1, "input_common_mode_voltage_abnormal", "Common-mode voltage of the input abnormal"),
+            StatusBit::new(2, "main_relay_coil_short_circuit", "Coil of the main relay short-circuited"),
             StatusBit::new(3, "input_reversed", "Input connected with reversed polarity"),
         ],
     );
@@ -1138,42 +1128,22 @@ impl Word for Shield {
     type Raw = u32;
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
-            StatusBit::new(
-                0,
-                "output_overvoltage_lockout",
-                "Locked out after an output overvoltage",
-            ),
+            StatusBit::new(0, "output_overvoltage_lockout", "Locked out after an output overvoltage"),
             StatusBit::new(1, "ambient_overtemperature", "Ambient temperature too high"),
             StatusBit::new(4, "fan_failure", "Fan failure"),
             StatusBit::new(17, "input_undervoltage", "Input voltage too low"),
             StatusBit::new(18, "ac_imbalance", "AC unbalanced"),
             StatusBit::new(19, "ac_phase_loss", "AC phase lost"),
-            StatusBit::new(
-                20,
-                "severe_current_imbalance",
-                "Currents severely unbalanced",
-            ),
+            StatusBit::new(20, "severe_current_imbalance", "Currents severely unbalanced"),
             StatusBit::new(22, "input_overvoltage", "Input voltage too high"),
             StatusBit::new(23, "pfc_fault", "PFC fault"),
             StatusBit::new(24, "current_imbalance", "Currents unbalanced"),
             StatusBit::new(25, "drop_line", "Drop line"),
-            StatusBit::new(
-                26,
-                "internal_communication_abnormal",
-                "Communication inside the module abnormal",
-            ),
+            StatusBit::new(26, "internal_communication_abnormal", "Communication inside the module abnormal"),
             StatusBit::new(27, "output_fuse_broken", "Output fuse broken"),
             StatusBit::new(29, "input_power_failure", "Input power failed"),
-            StatusBit::new(
-                30,
-                "severe_bus_voltage_imbalance",
-                "Bus voltage severely unbalanced",
-            ),
-            StatusBit::new(
-                31,
-                "cabinet_address_conflict",
-                "Conflict of cabinet addresses",
-            ),
+            StatusBit::new(30, "severe_bus_voltage_imbalance", "Bus voltage severely unbalanced"),
+            StatusBit::new(31, "cabinet_address_conflict", "Conflict of cabinet addresses"),
         ],
     );
 
@@ -1215,26 +1185,10 @@ impl Word for ExtendedAlarms {
     type Raw = u16;
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
-            StatusBit::alarm(
-                0,
-                "hardware_address_abnormal",
-                "Hardware address of the module abnormal",
-            ),
-            StatusBit::alarm(
-                1,
-                "input_common_mode_voltage_abnormal",
-                "Common-mode voltage of the input abnormal",
-            ),
-            StatusBit::fault(
-                2,
-                "main_relay_coil_short_circuit",
-                "Coil of the main relay short-circuited",
-            ),
-            StatusBit::alarm(
-                3,
-                "input_reversed",
-                "Input connected with reversed polarity",
-            ),
+            StatusBit::alarm(0, "hardware_address_abnormal", "Hardware address of the module abnormal"),
+            StatusBit::alarm(1, "input_common_mode_voltage_abnormal", "Common-mode voltage of the input abnormal"),
+            StatusBit::fault(2, "main_relay_coil_short_circuit", "Coil of the main relay short-circuited"),
+            StatusBit::alarm(3, "input_reversed", "Input connected with reversed polarity"),
         ],
     );
 
@@ -1318,70 +1272,30 @@ impl Word for Alarms {
     type Raw = u32;
     const LEGEND: Legend<Self> = Legend::Bits(
         &[
-            StatusBit::alarm(
-                0,
-                "output_overvoltage_lockout",
-                "Locked out after an output overvoltage",
-            ),
-            StatusBit::alarm(
-                1,
-                "ambient_overtemperature",
-                "Ambient temperature too high",
-            ),
+            StatusBit::alarm(0, "output_overvoltage_lockout", "Locked out after an output overvoltage"),
+            StatusBit::alarm(1, "ambient_overtemperature", "Ambient temperature too high"),
             StatusBit::fault(2, "module_failure", "Module failure"),
             StatusBit::alarm(3, "protection", "Module protection"),
             StatusBit::fault(4, "fan_failure", "Fan failure"),
-            StatusBit::alarm(
-                8,
-                "low_temperature_shutdown",
-                "Shut down because of a low temperature",
-            ),
+            StatusBit::alarm(8, "low_temperature_shutdown", "Shut down because of a low temperature"),
             StatusBit::state(9, "shut_down", "Module is shut down"),
             StatusBit::state(11, "walk_in_enabled", "Walk-in is enabled"),
-            StatusBit::alarm(
-                12,
-                "internal_overtemperature",
-                "Internal temperature too high",
-            ),
-            StatusBit::alarm(
-                14,
-                "output_overvoltage_protection",
-                "Output overvoltage protection",
-            ),
-            StatusBit::state(
-                16,
-                "sequence_start_enabled",
-                "Sequential start is enabled",
-            ),
+            StatusBit::alarm(12, "internal_overtemperature", "Internal temperature too high"),
+            StatusBit::alarm(14, "output_overvoltage_protection", "Output overvoltage protection"),
+            StatusBit::state(16, "sequence_start_enabled", "Sequential start is enabled"),
             StatusBit::alarm(17, "input_undervoltage", "Input voltage too low"),
             StatusBit::alarm(18, "ac_imbalance", "AC unbalanced"),
             StatusBit::alarm(19, "ac_phase_loss", "AC phase lost"),
-            StatusBit::alarm(
-                20,
-                "severe_current_imbalance",
-                "Currents severely unbalanced",
-            ),
+            StatusBit::alarm(20, "severe_current_imbalance", "Currents severely unbalanced"),
             StatusBit::alarm(22, "input_overvoltage", "Input voltage too high"),
             StatusBit::fault(23, "pfc_fault", "PFC fault"),
             StatusBit::alarm(24, "current_imbalance", "Currents unbalanced"),
             StatusBit::alarm(25, "drop_line", "Drop line"),
-            StatusBit::alarm(
-                26,
-                "internal_communication_abnormal",
-                "Communication inside the module abnormal",
-            ),
+            StatusBit::alarm(26, "internal_communication_abnormal", "Communication inside the module abnormal"),
             StatusBit::fault(27, "output_fuse_broken", "Output fuse broken"),
             StatusBit::alarm(29, "input_power_failure", "Input power failed"),
-            StatusBit::alarm(
-                30,
-                "severe_bus_voltage_imbalance",
-                "Bus voltage severely unbalanced",
-            ),
-            StatusBit::alarm(
-                31,
-                "cabinet_address_conflict",
-                "Conflict of cabinet addresses",
-            ),
+            StatusBit::alarm(30, "severe_bus_voltage_imbalance", "Bus voltage severely unbalanced"),
+            StatusBit::alarm(31, "cabinet_address_conflict", "Conflict of cabinet addresses"),
         ],
     );
 
@@ -1440,79 +1354,28 @@ impl CharacteristicWord {
     /// The signal `phases`.
     pub const PHASES: Signal<Phases> = Signal::new("phases", Place::byte(4).bits(5, 4));
     /// The signal `input_type`.
-    pub const INPUT_TYPE: Signal<InputType> = Signal::new(
-        "input_type",
-        Place::byte(4).bits(3, 2),
-    );
+    pub const INPUT_TYPE: Signal<InputType> = Signal::new("input_type", Place::byte(4).bits(3, 2));
     /// The signal `rated_current`.
-    pub const RATED_CURRENT: Signal<u16> = Signal::new(
-            "rated_current",
-            Place::bytes(4, 5).bits(9, 0),
-        )
+    pub const RATED_CURRENT: Signal<u16> = Signal::new("rated_current", Place::bytes(4, 5).bits(9, 0))
         .unit("A")
         .scale(1, 2);
     /// The signal `output_type`.
-    pub const OUTPUT_TYPE: Signal<OutputType> = Signal::new(
-        "output_type",
-        Place::byte(6).bits(7, 5),
-    );
+    pub const OUTPUT_TYPE: Signal<OutputType> = Signal::new("output_type", Place::byte(6).bits(7, 5));
     /// The signal `efficiency`.
-    pub const EFFICIENCY: Signal<Efficiency> = Signal::new(
-        "efficiency",
-        Place::byte(6).bits(4, 1),
-    );
+    pub const EFFICIENCY: Signal<Efficiency> = Signal::new("efficiency", Place::byte(6).bits(4, 1));
     /// The signal `minor_version`.
-    pub const MINOR_VERSION: Signal<u8> = Signal::new(
-        "minor_version",
-        Place::bytes(6, 7).bits(8, 5),
-    );
+    pub const MINOR_VERSION: Signal<u8> = Signal::new("minor_version", Place::bytes(6, 7).bits(8, 5));
     /// The signal `generation`.
-    pub const GENERATION: Signal<u8> = Signal::new(
-        "generation",
-        Place::byte(7).bits(4, 2),
-    );
+    pub const GENERATION: Signal<u8> = Signal::new("generation", Place::byte(7).bits(4, 2));
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x03];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "characteristic_word",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x001)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x001)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
     /// How it travels by `read_inherent`.
-    pub const READ_INHERENT: Exchange = Exchange::new(
-            "characteristic_word",
-            "read_inherent",
-            &READ_INHERENT_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x001)
-                .id(Identifier::COMMAND, 0x50),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x001)
-                .id(Identifier::COMMAND, 0x50),
-        );
+    pub const READ_INHERENT: Exchange = READ_INHERENT_ACCESS
+        .of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1521,25 +1384,12 @@ impl CharacteristicWord {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `read_inherent`. Section 2.1, 3.3.
-    ///
-    /// The three signals are asked for in three frames, of which the last has `more` 0, and answered in
-    /// three frames.
-    ///
-    /// Erratum M6: printed is "after receiving the point-to-point setting command", used is "the query
-    /// before it".
-    ///
-    /// Erratum M7: printed is "three rows of data for one query, CNT 0/1, and an explanation of two of
-    /// them", used is "three frames, CNT 1 in the first two and 0 in the last".
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read_inherent`](READ_INHERENT_ACCESS).
     ///
     /// # Errors
     ///
     /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_inherent(
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn read_inherent(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_INHERENT.request_to(route, &())
     }
 }
@@ -1606,41 +1456,11 @@ impl Versions {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("versions", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x005)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x005)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
     /// How it travels by `read_inherent`.
-    pub const READ_INHERENT: Exchange = Exchange::new(
-            "versions",
-            "read_inherent",
-            &READ_INHERENT_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x005)
-                .id(Identifier::COMMAND, 0x50),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x005)
-                .id(Identifier::COMMAND, 0x50),
-        );
+    pub const READ_INHERENT: Exchange = READ_INHERENT_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1649,36 +1469,19 @@ impl Versions {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `read_inherent`. Section 2.1, 3.3.
-    ///
-    /// The three signals are asked for in three frames, of which the last has `more` 0, and answered in
-    /// three frames.
-    ///
-    /// Erratum M6: printed is "after receiving the point-to-point setting command", used is "the query
-    /// before it".
-    ///
-    /// Erratum M7: printed is "three rows of data for one query, CNT 0/1, and an explanation of two of
-    /// them", used is "three frames, CNT 1 in the first two and 0 in the last".
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read_inherent`](READ_INHERENT_ACCESS).
     ///
     /// # Errors
     ///
     /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_inherent(
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn read_inherent(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_INHERENT.request_to(route, &())
     }
 }
 
 impl Layout for Versions {
     fn decode(data: &Data) -> Self {
-        Self {
-            hardware: Self::HARDWARE.get(data),
-            dcdc: Self::DCDC.get(data),
-            pfc: Self::PFC.get(data),
-        }
+        Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1712,55 +1515,22 @@ pub struct HardwareAddress {
 
 impl HardwareAddress {
     /// The signal `group`.
-    pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2))
-        .limits(1.0, 255.0)
-        .specials(&[(0, "none")]);
+    pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(2)).limits(1.0, 255.0).specials(&[(0, "none")]);
     /// The value of `group` that stands for `none`.
     pub const GROUP_NONE: u8 = 0;
     /// The signal `slave`.
-    pub const SLAVE: Signal<u8> = Signal::new("slave", Place::byte(3))
-        .limits(1.0, 8.0)
-        .specials(&[(0, "none")]);
+    pub const SLAVE: Signal<u8> = Signal::new("slave", Place::byte(3)).limits(1.0, 8.0).specials(&[(0, "none")]);
     /// The value of `slave` that stands for `none`.
     pub const SLAVE_NONE: u8 = 0;
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("hardware_address", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x006)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x006)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
     /// How it travels by `read_inherent`.
-    pub const READ_INHERENT: Exchange = Exchange::new(
-            "hardware_address",
-            "read_inherent",
-            &READ_INHERENT_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x006)
-                .id(Identifier::COMMAND, 0x50),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x006)
-                .id(Identifier::COMMAND, 0x50),
-        );
+    pub const READ_INHERENT: Exchange = READ_INHERENT_ACCESS
+        .of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1769,35 +1539,19 @@ impl HardwareAddress {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `read_inherent`. Section 2.1, 3.3.
-    ///
-    /// The three signals are asked for in three frames, of which the last has `more` 0, and answered in
-    /// three frames.
-    ///
-    /// Erratum M6: printed is "after receiving the point-to-point setting command", used is "the query
-    /// before it".
-    ///
-    /// Erratum M7: printed is "three rows of data for one query, CNT 0/1, and an explanation of two of
-    /// them", used is "three frames, CNT 1 in the first two and 0 in the last".
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read_inherent`](READ_INHERENT_ACCESS).
     ///
     /// # Errors
     ///
     /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_inherent(
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn read_inherent(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_INHERENT.request_to(route, &())
     }
 }
 
 impl Layout for HardwareAddress {
     fn decode(data: &Data) -> Self {
-        Self {
-            group: Self::GROUP.get(data),
-            slave: Self::SLAVE.get(data),
-        }
+        Self { group: Self::GROUP.get(data), slave: Self::SLAVE.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -1829,45 +1583,11 @@ impl OutputVoltageSetting {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "output_voltage_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x100)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x100)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "output_voltage_setting",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x100)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x100)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1876,11 +1596,7 @@ impl OutputVoltageSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1890,20 +1606,10 @@ impl OutputVoltageSetting {
     }
 }
 
-impl Layout for OutputVoltageSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputVoltageSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// DC output voltage by default. Section 2.2.2, 4.
@@ -1931,63 +1637,13 @@ impl DefaultOutputVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "default_output_voltage",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x101)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x101)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "default_output_voltage",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x101)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x101)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "default_output_voltage",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x101)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x101)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1996,11 +1652,7 @@ impl DefaultOutputVoltage {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2009,42 +1661,20 @@ impl DefaultOutputVoltage {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for DefaultOutputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for DefaultOutputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// DC output overvoltage protection point. Section 2.2.2.
@@ -2064,63 +1694,14 @@ impl OvervoltageProtectionPoint {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "overvoltage_protection_point",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x102)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x102)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "overvoltage_protection_point",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x102)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x102)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "overvoltage_protection_point",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x102)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x102)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS
+        .of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -2129,11 +1710,7 @@ impl OvervoltageProtectionPoint {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2142,42 +1719,20 @@ impl OvervoltageProtectionPoint {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for OvervoltageProtectionPoint {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OvervoltageProtectionPoint {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// DC output current limit set. Section 2.2.2, 4.
@@ -2194,47 +1749,15 @@ pub struct CurrentLimitSetting {
 
 impl CurrentLimitSetting {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .scale(1, 1024)
-        .limits(0.0, 1.22);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "current_limit_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x103)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x103)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x103));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("current_limit_setting", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x103)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x103)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x103));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -2243,11 +1766,7 @@ impl CurrentLimitSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2257,20 +1776,10 @@ impl CurrentLimitSetting {
     }
 }
 
-impl Layout for CurrentLimitSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CurrentLimitSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
 
 /// Current limit by default. Section 2.2.2, 4.
@@ -2287,65 +1796,17 @@ pub struct DefaultCurrentLimit {
 
 impl DefaultCurrentLimit {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .scale(1, 1024)
-        .limits(0.0, 1.22);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "default_current_limit",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x104)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x104)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("default_current_limit", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x104)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x104)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "default_current_limit",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x104)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x104)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -2354,11 +1815,7 @@ impl DefaultCurrentLimit {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2367,42 +1824,20 @@ impl DefaultCurrentLimit {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for DefaultCurrentLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for DefaultCurrentLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
 
 /// Walk-in time. Section 2.2.2.
@@ -2423,51 +1858,13 @@ impl WalkInTime {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("walk_in_time", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10C)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10C)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("walk_in_time", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10C)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10C)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("walk_in_time", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10C)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10C)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -2476,11 +1873,7 @@ impl WalkInTime {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2489,42 +1882,20 @@ impl WalkInTime {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for WalkInTime {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_s: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_s, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for WalkInTime {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_s, payload);
 }
 
 /// Total running time. Section 2.2.2, 3.4.
@@ -2545,67 +1916,15 @@ impl TotalRunningTime {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("total_running_time", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("total_running_time", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "total_running_time",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "total_running_time",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x10E)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -2614,11 +1933,7 @@ impl TotalRunningTime {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2627,42 +1942,20 @@ impl TotalRunningTime {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for TotalRunningTime {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_h: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_h, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for TotalRunningTime {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_h, payload);
 }
 
 /// Switch modules on or off. Section 2.2.2.
@@ -2680,25 +1973,9 @@ impl SwitchModules {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("switch_modules", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x132)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x132)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(SIGNAL_SELECTOR.place, 0x132));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2708,20 +1985,10 @@ impl SwitchModules {
     }
 }
 
-impl Layout for SwitchModules {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SwitchModules {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Reset the lockout after an overvoltage. Section 2.2.2.
@@ -2737,29 +2004,9 @@ impl ResetOvervoltageLockout {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "reset_overvoltage_lockout",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x133)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x133)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage_lockout", FRAME.data(SIGNAL_SELECTOR.place, 0x133));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2769,20 +2016,10 @@ impl ResetOvervoltageLockout {
     }
 }
 
-impl Layout for ResetOvervoltageLockout {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ResetOvervoltageLockout {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Make the green light of a module flash. Section 2.2.2, 4.
@@ -2800,25 +2037,9 @@ impl FlashGreenLight {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("flash_green_light", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x135)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x135)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("flash_green_light", FRAME.data(SIGNAL_SELECTOR.place, 0x135));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2828,20 +2049,10 @@ impl FlashGreenLight {
     }
 }
 
-impl Layout for FlashGreenLight {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for FlashGreenLight {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Make modules assign their addresses anew. Section 2.2.2, 4.
@@ -2861,25 +2072,9 @@ impl AssignAddresses {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("assign_addresses", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x13A)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x13A)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("assign_addresses", FRAME.data(SIGNAL_SELECTOR.place, 0x13A));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2889,20 +2084,10 @@ impl AssignAddresses {
     }
 }
 
-impl Layout for AssignAddresses {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for AssignAddresses {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Control the lights of modules. Section 2.2.2, 2.2.3.
@@ -2926,25 +2111,9 @@ impl ControlLights {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xC0, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("control_lights", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x140)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x140)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("control_lights", FRAME.data(SIGNAL_SELECTOR.place, 0x140));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2956,11 +2125,7 @@ impl ControlLights {
 
 impl Layout for ControlLights {
     fn decode(data: &Data) -> Self {
-        Self {
-            red: Self::RED.get(data),
-            yellow: Self::YELLOW.get(data),
-            green: Self::GREEN.get(data),
-        }
+        Self { red: Self::RED.get(data), yellow: Self::YELLOW.get(data), green: Self::GREEN.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -2987,34 +2152,15 @@ pub struct ShieldAlarms {
 
 impl ShieldAlarms {
     /// The signal `extended`.
-    pub const EXTENDED: Signal<ExtendedShield> = Signal::new(
-        "extended",
-        Place::bytes(2, 3),
-    );
+    pub const EXTENDED: Signal<ExtendedShield> = Signal::new("extended", Place::bytes(2, 3));
     /// The signal `alarms`.
     pub const ALARMS: Signal<Shield> = Signal::new("alarms", Place::bytes(4, 7));
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("shield_alarms", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x142)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x142)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("shield_alarms", FRAME.data(SIGNAL_SELECTOR.place, 0x142));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -3026,10 +2172,7 @@ impl ShieldAlarms {
 
 impl Layout for ShieldAlarms {
     fn decode(data: &Data) -> Self {
-        Self {
-            extended: Self::EXTENDED.get(data),
-            alarms: Self::ALARMS.get(data),
-        }
+        Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -3055,47 +2198,11 @@ impl ShieldCommunicationAlarm {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "shield_communication_alarm",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x143)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x143)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "shield_communication_alarm",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x143)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x143)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -3104,42 +2211,20 @@ impl ShieldCommunicationAlarm {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for ShieldCommunicationAlarm {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ShieldCommunicationAlarm {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Input power. Section 2.2.2, 3.4.
@@ -3151,41 +2236,15 @@ pub struct InputPower {
 
 impl InputPower {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("W")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_power", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x170)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x170)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "input_power",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x170)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3195,20 +2254,10 @@ impl InputPower {
     }
 }
 
-impl Layout for InputPower {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_w: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputPower {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
 
 /// Input frequency. Section 2.2.2, 3.4.
@@ -3220,41 +2269,15 @@ pub struct InputFrequency {
 
 impl InputFrequency {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("Hz")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("Hz").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_frequency", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x171)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x171)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "input_frequency",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x171)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3264,20 +2287,10 @@ impl InputFrequency {
     }
 }
 
-impl Layout for InputFrequency {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_hz: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_hz, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputFrequency {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_hz, payload);
 }
 
 /// Input current. Section 2.2.2, 3.4.
@@ -3289,41 +2302,15 @@ pub struct InputCurrent {
 
 impl InputCurrent {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_current", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x172)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x172)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "input_current",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x172)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3333,20 +2320,10 @@ impl InputCurrent {
     }
 }
 
-impl Layout for InputCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// DC output power. Section 2.2.2, 3.4.
@@ -3358,41 +2335,15 @@ pub struct OutputPower {
 
 impl OutputPower {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("W")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_power", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x173)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x173)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "output_power",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x173)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3402,20 +2353,10 @@ impl OutputPower {
     }
 }
 
-impl Layout for OutputPower {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_w: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputPower {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
 
 /// DC output voltage measured. Section 2.2.2, 3.4.
@@ -3427,41 +2368,15 @@ pub struct OutputVoltage {
 
 impl OutputVoltage {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("V")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x175)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x175)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "output_voltage",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x175)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3471,20 +2386,10 @@ impl OutputVoltage {
     }
 }
 
-impl Layout for OutputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Output current limit in effect. Section 2.2.2, 3.4.
@@ -3496,45 +2401,16 @@ pub struct ActualCurrentLimit {
 
 impl ActualCurrentLimit {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "actual_current_limit",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x176)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x176)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "actual_current_limit",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x176)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS
+        .of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3544,20 +2420,10 @@ impl ActualCurrentLimit {
     }
 }
 
-impl Layout for ActualCurrentLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ActualCurrentLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// Output power limit in effect. Section 2.2.2.
@@ -3572,29 +2438,13 @@ pub struct ActualPowerLimit {
 
 impl ActualPowerLimit {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("W")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("actual_power_limit", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x177)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x177)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("actual_power_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x177));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3604,20 +2454,10 @@ impl ActualPowerLimit {
     }
 }
 
-impl Layout for ActualPowerLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_w: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_w, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ActualPowerLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
 
 /// Input voltage of a single-phase module. Section 2.2.2, 3.4.
@@ -3632,41 +2472,15 @@ pub struct InputVoltage {
 
 impl InputVoltage {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("V")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x178)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x178)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "input_voltage",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x178)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3676,20 +2490,10 @@ impl InputVoltage {
     }
 }
 
-impl Layout for InputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Ambient temperature at the air inlet. Section 2.2.2, 3.4.
@@ -3704,45 +2508,16 @@ pub struct AmbientTemperature {
 
 impl AmbientTemperature {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("°C")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "ambient_temperature",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x180)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x180)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "ambient_temperature",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x180)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS
+        .of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3752,20 +2527,10 @@ impl AmbientTemperature {
     }
 }
 
-impl Layout for AmbientTemperature {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_c: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for AmbientTemperature {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
 
 /// Output current shown. Section 2.2.2, 3.4.
@@ -3777,41 +2542,15 @@ pub struct OutputCurrent {
 
 impl OutputCurrent {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_current", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x182)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x182)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "output_current",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x182)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3821,20 +2560,10 @@ impl OutputCurrent {
     }
 }
 
-impl Layout for OutputCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// Alarms and states. Section 2.2.2, 2.2.3, 3.4, 4.
@@ -3850,44 +2579,17 @@ pub struct ModuleStatus {
 
 impl ModuleStatus {
     /// The signal `extended`.
-    pub const EXTENDED: Signal<ExtendedAlarms> = Signal::new(
-        "extended",
-        Place::bytes(2, 3),
-    );
+    pub const EXTENDED: Signal<ExtendedAlarms> = Signal::new("extended", Place::bytes(2, 3));
     /// The signal `alarms`.
     pub const ALARMS: Signal<Alarms> = Signal::new("alarms", Place::bytes(4, 7));
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_status", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x183)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x183)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
     /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = Exchange::new(
-            "module_status",
-            "real_time",
-            &REAL_TIME_ANSWERS,
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x183)
-                .id(Identifier::COMMAND, 0x40),
-        );
+    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3899,10 +2601,7 @@ impl ModuleStatus {
 
 impl Layout for ModuleStatus {
     fn decode(data: &Data) -> Self {
-        Self {
-            extended: Self::EXTENDED.get(data),
-            alarms: Self::ALARMS.get(data),
-        }
+        Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -3927,29 +2626,13 @@ pub struct ExternalVoltage {
 
 impl ExternalVoltage {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("V")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("external_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x184)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x184)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x184));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -3959,20 +2642,10 @@ impl ExternalVoltage {
     }
 }
 
-impl Layout for ExternalVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ExternalVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Rated current. Section 2.2.2.
@@ -3984,29 +2657,13 @@ pub struct RatedCurrent {
 
 impl RatedCurrent {
     /// The signal `value`.
-    pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3))
-        .unit("A")
-        .scale(1, 100);
+    pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3)).unit("A").scale(1, 100);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("rated_current", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x188)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x188)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(SIGNAL_SELECTOR.place, 0x188));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4016,20 +2673,10 @@ impl RatedCurrent {
     }
 }
 
-impl Layout for RatedCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for RatedCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// Which addresses modules use. Section 2.2.2, 4.
@@ -4047,62 +2694,19 @@ impl AddressModeSwitch {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "address_mode_switch",
-            "read",
-            &READ_ANSWERS,
-        )
-        .models(&[Model::V48 as u8])
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x21D)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x21D)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS
+        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .models(&[Model::V48 as u8]);
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("address_mode_switch", "set", &SET_ANSWERS)
-        .models(&[Model::V48 as u8])
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x21D)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x21D)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS
+        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .models(&[Model::V48 as u8]);
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "address_mode_switch",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .models(&[Model::V48 as u8])
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x21D)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x21D)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS
+        .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
+        .models(&[Model::V48 as u8]);
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4111,11 +2715,7 @@ impl AddressModeSwitch {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4124,42 +2724,20 @@ impl AddressModeSwitch {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for AddressModeSwitch {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for AddressModeSwitch {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Version of the barcode. Section 2.2.2.
@@ -4177,51 +2755,13 @@ impl BarcodeVersion {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("barcode_version", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x222)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x222)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("barcode_version", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x222)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x222)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("barcode_version", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x222)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x222)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4230,11 +2770,7 @@ impl BarcodeVersion {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4243,42 +2779,20 @@ impl BarcodeVersion {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for BarcodeVersion {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for BarcodeVersion {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Barcode part 1. Section 2.2.2.
@@ -4296,51 +2810,13 @@ impl Barcode1 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("barcode_1", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x223)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x223)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("barcode_1", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x223)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x223)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("barcode_1", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x223)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x223)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4349,11 +2825,7 @@ impl Barcode1 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4362,42 +2834,20 @@ impl Barcode1 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for Barcode1 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Barcode1 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Barcode part 2. Section 2.2.2.
@@ -4415,51 +2865,13 @@ impl Barcode2 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("barcode_2", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x224)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x224)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("barcode_2", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x224)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x224)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("barcode_2", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x224)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x224)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4468,11 +2880,7 @@ impl Barcode2 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4481,42 +2889,20 @@ impl Barcode2 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for Barcode2 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Barcode2 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Barcode part 3. Section 2.2.2.
@@ -4534,51 +2920,13 @@ impl Barcode3 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("barcode_3", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x225)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x225)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("barcode_3", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x225)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x225)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("barcode_3", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x225)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x225)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4587,11 +2935,7 @@ impl Barcode3 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4600,42 +2944,20 @@ impl Barcode3 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for Barcode3 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Barcode3 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Barcode part 4. Section 2.2.2.
@@ -4653,51 +2975,13 @@ impl Barcode4 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("barcode_4", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x226)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x226)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("barcode_4", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x226)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x226)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("barcode_4", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x226)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x226)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4706,11 +2990,7 @@ impl Barcode4 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4719,42 +2999,20 @@ impl Barcode4 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for Barcode4 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Barcode4 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Duty cycle of the fan. Section 2.2.2.
@@ -4766,29 +3024,13 @@ pub struct FanDutyCycle {
 
 impl FanDutyCycle {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("%")
-        .scale(1, 1024);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).unit("%").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("fan_duty_cycle", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22B)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22B)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("fan_duty_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x22B));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4798,20 +3040,10 @@ impl FanDutyCycle {
     }
 }
 
-impl Layout for FanDutyCycle {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_percent: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_percent, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for FanDutyCycle {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_percent, payload);
 }
 
 /// Output current limit set in rectifier modules. Section 2.2.2.
@@ -4825,51 +3057,17 @@ pub struct RectifierCurrentLimitSetting {
 
 impl RectifierCurrentLimitSetting {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .scale(1, 1024)
-        .limits(0.0, 1.22);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "rectifier_current_limit_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22D)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22D)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS
+        .of("rectifier_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22D));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "rectifier_current_limit_setting",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22D)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22D)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS
+        .of("rectifier_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22D));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4878,11 +3076,7 @@ impl RectifierCurrentLimitSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4892,20 +3086,10 @@ impl RectifierCurrentLimitSetting {
     }
 }
 
-impl Layout for RectifierCurrentLimitSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for RectifierCurrentLimitSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
 
 /// Output current limit set in PV modules. Section 2.2.2.
@@ -4919,51 +3103,15 @@ pub struct PvCurrentLimitSetting {
 
 impl PvCurrentLimitSetting {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
-        .scale(1, 1024)
-        .limits(0.0, 1.22);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "pv_current_limit_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22E)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22E)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pv_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22E));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "pv_current_limit_setting",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22E)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22E)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("pv_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22E));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -4972,11 +3120,7 @@ impl PvCurrentLimitSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -4986,20 +3130,10 @@ impl PvCurrentLimitSetting {
     }
 }
 
-impl Layout for PvCurrentLimitSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PvCurrentLimitSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
 
 /// Output voltage set in rectifier modules. Section 2.2.2.
@@ -5024,45 +3158,13 @@ impl RectifierOutputVoltageSetting {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "rectifier_output_voltage_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22F)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22F)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS
+        .of("rectifier_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22F));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "rectifier_output_voltage_setting",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22F)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x22F)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS
+        .of("rectifier_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22F));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5071,11 +3173,7 @@ impl RectifierOutputVoltageSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -5085,20 +3183,10 @@ impl RectifierOutputVoltageSetting {
     }
 }
 
-impl Layout for RectifierOutputVoltageSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for RectifierOutputVoltageSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Output voltage set in PV modules. Section 2.2.2.
@@ -5120,45 +3208,11 @@ impl PvOutputVoltageSetting {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "pv_output_voltage_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x230)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x230)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "pv_output_voltage_setting",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x230)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x230)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5167,11 +3221,7 @@ impl PvOutputVoltageSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -5181,20 +3231,10 @@ impl PvOutputVoltageSetting {
     }
 }
 
-impl Layout for PvOutputVoltageSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PvOutputVoltageSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Alarm word of the PFC side. Section 2.2.2.
@@ -5213,23 +3253,9 @@ impl PfcAlarmWord {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pfc_alarm_word", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x236)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x236)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pfc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x236));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5239,20 +3265,10 @@ impl PfcAlarmWord {
     }
 }
 
-impl Layout for PfcAlarmWord {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PfcAlarmWord {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Fault word of the PFC side. Section 2.2.2.
@@ -5268,23 +3284,9 @@ impl PfcFaultWord {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pfc_fault_word", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x237)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x237)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pfc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x237));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5294,20 +3296,10 @@ impl PfcFaultWord {
     }
 }
 
-impl Layout for PfcFaultWord {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PfcFaultWord {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Status word of the PFC side. Section 2.2.2.
@@ -5323,23 +3315,9 @@ impl PfcStatusWord {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pfc_status_word", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x238)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x238)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pfc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x238));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5349,20 +3327,10 @@ impl PfcStatusWord {
     }
 }
 
-impl Layout for PfcStatusWord {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PfcStatusWord {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Alarm word of the DC/DC side. Section 2.2.2.
@@ -5378,23 +3346,9 @@ impl DcdcAlarmWord {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("dcdc_alarm_word", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x239)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x239)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("dcdc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x239));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5404,20 +3358,10 @@ impl DcdcAlarmWord {
     }
 }
 
-impl Layout for DcdcAlarmWord {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for DcdcAlarmWord {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Fault word of the DC/DC side. Section 2.2.2.
@@ -5433,23 +3377,9 @@ impl DcdcFaultWord {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("dcdc_fault_word", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x23A)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x23A)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("dcdc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23A));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5459,20 +3389,10 @@ impl DcdcFaultWord {
     }
 }
 
-impl Layout for DcdcFaultWord {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for DcdcFaultWord {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Status word of the DC/DC side. Section 2.2.2.
@@ -5488,23 +3408,9 @@ impl DcdcStatusWord {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("dcdc_status_word", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x23B)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x23B)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("dcdc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23B));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5514,20 +3420,10 @@ impl DcdcStatusWord {
     }
 }
 
-impl Layout for DcdcStatusWord {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for DcdcStatusWord {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Whether modules start by themselves, by default. Section 2.2.2.
@@ -5547,43 +3443,11 @@ impl AutoBootSetting {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("auto_boot_setting", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x24E)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x24E)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "auto_boot_setting",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x24E)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x24E)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -5592,42 +3456,20 @@ impl AutoBootSetting {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for AutoBootSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for AutoBootSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// PV voltage set. Section 2.2.2.
@@ -5648,37 +3490,11 @@ impl PvVoltageSetting {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pv_voltage_setting", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x270)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x270)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pv_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x270));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("pv_voltage_setting", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x270)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x270)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("pv_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x270));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5687,11 +3503,7 @@ impl PvVoltageSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -5701,20 +3513,10 @@ impl PvVoltageSetting {
     }
 }
 
-impl Layout for PvVoltageSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PvVoltageSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Reserved. Section 2.2.2.
@@ -5726,23 +3528,9 @@ pub struct Reserved271;
 
 impl Reserved271 {
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("reserved_271", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x271)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x271)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("reserved_271", FRAME.data(SIGNAL_SELECTOR.place, 0x271));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5761,23 +3549,9 @@ pub struct Reserved272;
 
 impl Reserved272 {
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("reserved_272", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x272)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x272)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("reserved_272", FRAME.data(SIGNAL_SELECTOR.place, 0x272));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5800,37 +3574,11 @@ impl MpptSingleScan {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("mppt_single_scan", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x273)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x273)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("mppt_single_scan", FRAME.data(SIGNAL_SELECTOR.place, 0x273));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("mppt_single_scan", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x273)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x273)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("mppt_single_scan", FRAME.data(SIGNAL_SELECTOR.place, 0x273));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5839,11 +3587,7 @@ impl MpptSingleScan {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -5853,20 +3597,10 @@ impl MpptSingleScan {
     }
 }
 
-impl Layout for MpptSingleScan {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for MpptSingleScan {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Cycle of scans for the maximum power point. Section 2.2.2.
@@ -5887,51 +3621,13 @@ impl MpptScanCycle {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("mppt_scan_cycle", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x274)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x274)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("mppt_scan_cycle", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x274)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x274)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new("mppt_scan_cycle", "store", &STORE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x274)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x274)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -5940,11 +3636,7 @@ impl MpptScanCycle {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -5953,42 +3645,20 @@ impl MpptScanCycle {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for MpptScanCycle {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_s: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_s, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for MpptScanCycle {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_s, payload);
 }
 
 /// Wind energy voltage set. Section 2.2.2.
@@ -6009,41 +3679,11 @@ impl WindVoltageSetting {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "wind_voltage_setting",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x275)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x275)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x275));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("wind_voltage_setting", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x275)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x275)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x275));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6052,11 +3692,7 @@ impl WindVoltageSetting {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6066,20 +3702,10 @@ impl WindVoltageSetting {
     }
 }
 
-impl Layout for WindVoltageSetting {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for WindVoltageSetting {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Upper limit of the voltage range for wind energy. Section 2.2.2.
@@ -6100,45 +3726,11 @@ impl WindVoltageUpperLimit {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "wind_voltage_upper_limit",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x276)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x276)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_upper_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x276));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "wind_voltage_upper_limit",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x276)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x276)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_upper_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x276));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6147,11 +3739,7 @@ impl WindVoltageUpperLimit {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6161,20 +3749,10 @@ impl WindVoltageUpperLimit {
     }
 }
 
-impl Layout for WindVoltageUpperLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for WindVoltageUpperLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Lower limit of the voltage range for wind energy. Section 2.2.2.
@@ -6195,45 +3773,11 @@ impl WindVoltageLowerLimit {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "wind_voltage_lower_limit",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x277)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x277)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("wind_voltage_lower_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x277));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "wind_voltage_lower_limit",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x277)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x277)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("wind_voltage_lower_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x277));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6242,11 +3786,7 @@ impl WindVoltageLowerLimit {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6256,20 +3796,10 @@ impl WindVoltageLowerLimit {
     }
 }
 
-impl Layout for WindVoltageLowerLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for WindVoltageLowerLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Customer information part 1. Section 2.2.2.
@@ -6287,63 +3817,13 @@ impl CustomerInformation1 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_1",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x301)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x301)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_1",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x301)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x301)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_1",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x301)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x301)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6352,11 +3832,7 @@ impl CustomerInformation1 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6365,42 +3841,20 @@ impl CustomerInformation1 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation1 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation1 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 2. Section 2.2.2.
@@ -6418,63 +3872,13 @@ impl CustomerInformation2 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_2",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x302)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x302)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_2",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x302)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x302)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_2",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x302)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x302)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6483,11 +3887,7 @@ impl CustomerInformation2 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6496,42 +3896,20 @@ impl CustomerInformation2 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation2 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation2 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 3. Section 2.2.2.
@@ -6549,63 +3927,13 @@ impl CustomerInformation3 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_3",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x303)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x303)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_3",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x303)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x303)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_3",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x303)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x303)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6614,11 +3942,7 @@ impl CustomerInformation3 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6627,42 +3951,20 @@ impl CustomerInformation3 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation3 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation3 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 4. Section 2.2.2.
@@ -6680,63 +3982,13 @@ impl CustomerInformation4 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_4",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x304)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x304)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_4",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x304)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x304)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_4",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x304)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x304)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6745,11 +3997,7 @@ impl CustomerInformation4 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6758,42 +4006,20 @@ impl CustomerInformation4 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation4 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation4 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 5. Section 2.2.2.
@@ -6811,63 +4037,13 @@ impl CustomerInformation5 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_5",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x305)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x305)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_5",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x305)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x305)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_5",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x305)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x305)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -6876,11 +4052,7 @@ impl CustomerInformation5 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -6889,42 +4061,20 @@ impl CustomerInformation5 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation5 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation5 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 6. Section 2.2.2.
@@ -6942,63 +4092,13 @@ impl CustomerInformation6 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_6",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x306)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x306)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_6",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x306)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x306)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_6",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x306)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x306)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -7007,11 +4107,7 @@ impl CustomerInformation6 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -7020,42 +4116,20 @@ impl CustomerInformation6 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation6 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation6 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 7. Section 2.2.2.
@@ -7073,63 +4147,13 @@ impl CustomerInformation7 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_7",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x307)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x307)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_7",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x307)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x307)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_7",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x307)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x307)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -7138,11 +4162,7 @@ impl CustomerInformation7 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -7151,42 +4171,20 @@ impl CustomerInformation7 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation7 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation7 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Customer information part 8. Section 2.2.2.
@@ -7204,63 +4202,13 @@ impl CustomerInformation8 {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "customer_information_8",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x308)
-                .id(Identifier::COMMAND, 0x82),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x308)
-                .id(Identifier::COMMAND, 0x82),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "customer_information_8",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x308)
-                .id(Identifier::COMMAND, 0x80),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x308)
-                .id(Identifier::COMMAND, 0x80),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
     /// How it travels by `store`.
-    pub const STORE: Exchange = Exchange::new(
-            "customer_information_8",
-            "store",
-            &STORE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x308)
-                .id(Identifier::COMMAND, 0x81),
-        )
-        .reply(
-            FRAME
-                .selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR])
-                .data(SIGNAL_SELECTOR.place, 0x308)
-                .id(Identifier::COMMAND, 0x81),
-        );
+    pub const STORE: Exchange = STORE_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
 
-    /// Builds the request `read`. Section 2.1, 4.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -7269,11 +4217,7 @@ impl CustomerInformation8 {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `set` with these values. Section 2.1, 3.1, 3.2, 4.
-    ///
-    /// The control command; a module that is addressed alone replies with the value.
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -7282,42 +4226,20 @@ impl CustomerInformation8 {
         Self::SET.request_to(route, self)
     }
 
-    /// Builds the request `store` with these values. Section 2.1, 2.2.2, 4.
-    ///
-    /// The configuration command; the EEPROM keeps every message that has it; a module that is addressed
-    /// alone replies with the value.
-    ///
-    /// Erratum M27: printed is "control command, configuration command and query command, and not which
-    /// signal takes which", used is "0x82 for what is read, 0x80 for what is written, and also 0x81 for
-    /// what is kept in the EEPROM".
-    ///
-    /// `point_to_point`: the module answers. `broadcast`: nobody answers.
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn store(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
 }
 
-impl Layout for CustomerInformation8 {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CustomerInformation8 {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Ask one module for all that changes. Section 3.4, 4.
@@ -7334,18 +4256,9 @@ pub struct RealTimeData;
 
 impl RealTimeData {
     /// How it travels by `ask_real_time`.
-    pub const ASK_REAL_TIME: Exchange = Exchange::new(
-            "real_time_data",
-            "ask_real_time",
-            &ASK_REAL_TIME_ANSWERS,
-        )
-        .request(FRAME.id(Identifier::COMMAND, 0x40).id(Identifier::COMMAND, 0x40));
+    pub const ASK_REAL_TIME: Exchange = ASK_REAL_TIME_ACCESS.of("real_time_data", FRAME.id(Identifier::COMMAND, 0x40));
 
-    /// Builds the request `ask_real_time`. Section 2.1, 3.4.
-    ///
-    /// The answer is a frame of each message with `real_time`, of which the last has `more` 0.
-    ///
-    /// `point_to_point`: nobody answers.
+    /// Builds the request [`ask_real_time`](ASK_REAL_TIME_ACCESS).
     ///
     /// # Errors
     ///
@@ -7632,38 +4545,14 @@ impl Message {
     /// # Errors
     ///
     /// Says why the frame is not recognised.
-    pub fn decode_for(
-        model: Model,
-        frame: &impl embedded_can::Frame,
-    ) -> Result<Received, Problem> {
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 
     fn request_2(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
-            (0x82, 0x10C) => Recognised::request(&WalkInTime::READ, Self::ReadWalkInTime),
-            (0x80, 0x10C) => Recognised::request(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
-            (0x81, 0x10C) => Recognised::request(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
-            (0x82, 0x10E) => Recognised::request(&TotalRunningTime::READ, Self::ReadTotalRunningTime),
-            (0x80, 0x10E) => Recognised::request(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
-            (0x81, 0x10E) => {
-                Recognised::request(
-                    &TotalRunningTime::STORE,
-                    Self::TotalRunningTime(Layout::decode(data)),
-                )
-            }
-            (0x80, 0x132) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            (0x80, 0x133) => {
-                Recognised::request(
-                    &ResetOvervoltageLockout::SET,
-                    Self::ResetOvervoltageLockout(Layout::decode(data)),
-                )
-            }
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x80, 0x135) => Recognised::request(&FlashGreenLight::SET, Self::FlashGreenLight(Layout::decode(data))),
             (0x80, 0x13A) => Recognised::request(&AssignAddresses::SET, Self::AssignAddresses(Layout::decode(data))),
             (0x80, 0x140) => Recognised::request(&ControlLights::SET, Self::ControlLights(Layout::decode(data))),
@@ -7695,16 +4584,10 @@ impl Message {
             (0x82, 0x188) => Recognised::request(&RatedCurrent::READ, Self::ReadRatedCurrent),
             (0x82, 0x21D) => Recognised::request(&AddressModeSwitch::READ, Self::ReadAddressModeSwitch),
             (0x80, 0x21D) => {
-                Recognised::request(
-                    &AddressModeSwitch::SET,
-                    Self::AddressModeSwitch(Layout::decode(data)),
-                )
+                Recognised::request(&AddressModeSwitch::SET, Self::AddressModeSwitch(Layout::decode(data)))
             }
             (0x81, 0x21D) => {
-                Recognised::request(
-                    &AddressModeSwitch::STORE,
-                    Self::AddressModeSwitch(Layout::decode(data)),
-                )
+                Recognised::request(&AddressModeSwitch::STORE, Self::AddressModeSwitch(Layout::decode(data)))
             }
             (0x82, 0x222) => Recognised::request(&BarcodeVersion::READ, Self::ReadBarcodeVersion),
             (0x80, 0x222) => Recognised::request(&BarcodeVersion::SET, Self::BarcodeVersion(Layout::decode(data))),
@@ -7712,18 +4595,6 @@ impl Message {
             (0x82, 0x223) => Recognised::request(&Barcode1::READ, Self::ReadBarcode1),
             (0x80, 0x223) => Recognised::request(&Barcode1::SET, Self::Barcode1(Layout::decode(data))),
             (0x81, 0x223) => Recognised::request(&Barcode1::STORE, Self::Barcode1(Layout::decode(data))),
-            _ => return Self::request_3(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn request_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
             (0x82, 0x224) => Recognised::request(&Barcode2::READ, Self::ReadBarcode2),
             (0x80, 0x224) => Recognised::request(&Barcode2::SET, Self::Barcode2(Layout::decode(data))),
             (0x81, 0x224) => Recognised::request(&Barcode2::STORE, Self::Barcode2(Layout::decode(data))),
@@ -7735,10 +4606,7 @@ impl Message {
             (0x81, 0x226) => Recognised::request(&Barcode4::STORE, Self::Barcode4(Layout::decode(data))),
             (0x82, 0x22B) => Recognised::request(&FanDutyCycle::READ, Self::ReadFanDutyCycle),
             (0x82, 0x22D) => {
-                Recognised::request(
-                    &RectifierCurrentLimitSetting::READ,
-                    Self::ReadRectifierCurrentLimitSetting,
-                )
+                Recognised::request(&RectifierCurrentLimitSetting::READ, Self::ReadRectifierCurrentLimitSetting)
             }
             (0x80, 0x22D) => {
                 Recognised::request(
@@ -7746,18 +4614,21 @@ impl Message {
                     Self::RectifierCurrentLimitSetting(Layout::decode(data)),
                 )
             }
+            _ => return Self::request_3(frame, model),
+        };
+        Some(recognised)
+    }
+
+    fn request_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+        let id = frame.raw_id();
+        let data = &frame.bytes();
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x22E) => Recognised::request(&PvCurrentLimitSetting::READ, Self::ReadPvCurrentLimitSetting),
             (0x80, 0x22E) => {
-                Recognised::request(
-                    &PvCurrentLimitSetting::SET,
-                    Self::PvCurrentLimitSetting(Layout::decode(data)),
-                )
+                Recognised::request(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(Layout::decode(data)))
             }
             (0x82, 0x22F) => {
-                Recognised::request(
-                    &RectifierOutputVoltageSetting::READ,
-                    Self::ReadRectifierOutputVoltageSetting,
-                )
+                Recognised::request(&RectifierOutputVoltageSetting::READ, Self::ReadRectifierOutputVoltageSetting)
             }
             (0x80, 0x22F) => {
                 Recognised::request(
@@ -7767,10 +4638,7 @@ impl Message {
             }
             (0x82, 0x230) => Recognised::request(&PvOutputVoltageSetting::READ, Self::ReadPvOutputVoltageSetting),
             (0x80, 0x230) => {
-                Recognised::request(
-                    &PvOutputVoltageSetting::SET,
-                    Self::PvOutputVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::request(&PvOutputVoltageSetting::SET, Self::PvOutputVoltageSetting(Layout::decode(data)))
             }
             (0x82, 0x236) => Recognised::request(&PfcAlarmWord::READ, Self::ReadPfcAlarmWord),
             (0x82, 0x237) => Recognised::request(&PfcFaultWord::READ, Self::ReadPfcFaultWord),
@@ -7790,153 +4658,81 @@ impl Message {
             (0x80, 0x274) => Recognised::request(&MpptScanCycle::SET, Self::MpptScanCycle(Layout::decode(data))),
             (0x81, 0x274) => Recognised::request(&MpptScanCycle::STORE, Self::MpptScanCycle(Layout::decode(data))),
             (0x82, 0x275) => Recognised::request(&WindVoltageSetting::READ, Self::ReadWindVoltageSetting),
+            (0x80, 0x275) => {
+                Recognised::request(&WindVoltageSetting::SET, Self::WindVoltageSetting(Layout::decode(data)))
+            }
+            (0x82, 0x276) => Recognised::request(&WindVoltageUpperLimit::READ, Self::ReadWindVoltageUpperLimit),
+            (0x80, 0x276) => {
+                Recognised::request(&WindVoltageUpperLimit::SET, Self::WindVoltageUpperLimit(Layout::decode(data)))
+            }
+            (0x82, 0x277) => Recognised::request(&WindVoltageLowerLimit::READ, Self::ReadWindVoltageLowerLimit),
+            (0x80, 0x277) => {
+                Recognised::request(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(Layout::decode(data)))
+            }
+            (0x82, 0x301) => Recognised::request(&CustomerInformation1::READ, Self::ReadCustomerInformation1),
+            (0x80, 0x301) => {
+                Recognised::request(&CustomerInformation1::SET, Self::CustomerInformation1(Layout::decode(data)))
+            }
+            (0x81, 0x301) => {
+                Recognised::request(&CustomerInformation1::STORE, Self::CustomerInformation1(Layout::decode(data)))
+            }
+            (0x82, 0x302) => Recognised::request(&CustomerInformation2::READ, Self::ReadCustomerInformation2),
+            (0x80, 0x302) => {
+                Recognised::request(&CustomerInformation2::SET, Self::CustomerInformation2(Layout::decode(data)))
+            }
             _ => return Self::request_4(frame, model),
         };
         Some(recognised)
     }
 
-    fn request_4(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+    fn request_4(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
-            (0x80, 0x275) => {
-                Recognised::request(
-                    &WindVoltageSetting::SET,
-                    Self::WindVoltageSetting(Layout::decode(data)),
-                )
-            }
-            (0x82, 0x276) => Recognised::request(&WindVoltageUpperLimit::READ, Self::ReadWindVoltageUpperLimit),
-            (0x80, 0x276) => {
-                Recognised::request(
-                    &WindVoltageUpperLimit::SET,
-                    Self::WindVoltageUpperLimit(Layout::decode(data)),
-                )
-            }
-            (0x82, 0x277) => Recognised::request(&WindVoltageLowerLimit::READ, Self::ReadWindVoltageLowerLimit),
-            (0x80, 0x277) => {
-                Recognised::request(
-                    &WindVoltageLowerLimit::SET,
-                    Self::WindVoltageLowerLimit(Layout::decode(data)),
-                )
-            }
-            (0x82, 0x301) => Recognised::request(&CustomerInformation1::READ, Self::ReadCustomerInformation1),
-            (0x80, 0x301) => {
-                Recognised::request(
-                    &CustomerInformation1::SET,
-                    Self::CustomerInformation1(Layout::decode(data)),
-                )
-            }
-            (0x81, 0x301) => {
-                Recognised::request(
-                    &CustomerInformation1::STORE,
-                    Self::CustomerInformation1(Layout::decode(data)),
-                )
-            }
-            (0x82, 0x302) => Recognised::request(&CustomerInformation2::READ, Self::ReadCustomerInformation2),
-            (0x80, 0x302) => {
-                Recognised::request(
-                    &CustomerInformation2::SET,
-                    Self::CustomerInformation2(Layout::decode(data)),
-                )
-            }
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x81, 0x302) => {
-                Recognised::request(
-                    &CustomerInformation2::STORE,
-                    Self::CustomerInformation2(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation2::STORE, Self::CustomerInformation2(Layout::decode(data)))
             }
             (0x82, 0x303) => Recognised::request(&CustomerInformation3::READ, Self::ReadCustomerInformation3),
             (0x80, 0x303) => {
-                Recognised::request(
-                    &CustomerInformation3::SET,
-                    Self::CustomerInformation3(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation3::SET, Self::CustomerInformation3(Layout::decode(data)))
             }
             (0x81, 0x303) => {
-                Recognised::request(
-                    &CustomerInformation3::STORE,
-                    Self::CustomerInformation3(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation3::STORE, Self::CustomerInformation3(Layout::decode(data)))
             }
             (0x82, 0x304) => Recognised::request(&CustomerInformation4::READ, Self::ReadCustomerInformation4),
             (0x80, 0x304) => {
-                Recognised::request(
-                    &CustomerInformation4::SET,
-                    Self::CustomerInformation4(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation4::SET, Self::CustomerInformation4(Layout::decode(data)))
             }
-            _ => return Self::request_5(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn request_5(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
             (0x81, 0x304) => {
-                Recognised::request(
-                    &CustomerInformation4::STORE,
-                    Self::CustomerInformation4(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation4::STORE, Self::CustomerInformation4(Layout::decode(data)))
             }
             (0x82, 0x305) => Recognised::request(&CustomerInformation5::READ, Self::ReadCustomerInformation5),
             (0x80, 0x305) => {
-                Recognised::request(
-                    &CustomerInformation5::SET,
-                    Self::CustomerInformation5(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation5::SET, Self::CustomerInformation5(Layout::decode(data)))
             }
             (0x81, 0x305) => {
-                Recognised::request(
-                    &CustomerInformation5::STORE,
-                    Self::CustomerInformation5(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation5::STORE, Self::CustomerInformation5(Layout::decode(data)))
             }
             (0x82, 0x306) => Recognised::request(&CustomerInformation6::READ, Self::ReadCustomerInformation6),
             (0x80, 0x306) => {
-                Recognised::request(
-                    &CustomerInformation6::SET,
-                    Self::CustomerInformation6(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation6::SET, Self::CustomerInformation6(Layout::decode(data)))
             }
             (0x81, 0x306) => {
-                Recognised::request(
-                    &CustomerInformation6::STORE,
-                    Self::CustomerInformation6(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation6::STORE, Self::CustomerInformation6(Layout::decode(data)))
             }
             (0x82, 0x307) => Recognised::request(&CustomerInformation7::READ, Self::ReadCustomerInformation7),
             (0x80, 0x307) => {
-                Recognised::request(
-                    &CustomerInformation7::SET,
-                    Self::CustomerInformation7(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation7::SET, Self::CustomerInformation7(Layout::decode(data)))
             }
             (0x81, 0x307) => {
-                Recognised::request(
-                    &CustomerInformation7::STORE,
-                    Self::CustomerInformation7(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation7::STORE, Self::CustomerInformation7(Layout::decode(data)))
             }
             (0x82, 0x308) => Recognised::request(&CustomerInformation8::READ, Self::ReadCustomerInformation8),
             (0x80, 0x308) => {
-                Recognised::request(
-                    &CustomerInformation8::SET,
-                    Self::CustomerInformation8(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation8::SET, Self::CustomerInformation8(Layout::decode(data)))
             }
             (0x81, 0x308) => {
-                Recognised::request(
-                    &CustomerInformation8::STORE,
-                    Self::CustomerInformation8(Layout::decode(data)),
-                )
+                Recognised::request(&CustomerInformation8::STORE, Self::CustomerInformation8(Layout::decode(data)))
             }
             (0x40, _) => Recognised::request(&RealTimeData::ASK_REAL_TIME, Self::AskRealTimeRealTimeData),
             _ => return None,
@@ -7947,68 +4743,16 @@ impl Message {
     fn reply_2(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
-            (0x82, 0x103) => {
-                Recognised::reply(
-                    &CurrentLimitSetting::READ,
-                    Self::CurrentLimitSetting(Layout::decode(data)),
-                )
-            }
-            (0x80, 0x103) => {
-                Recognised::reply(
-                    &CurrentLimitSetting::SET,
-                    Self::CurrentLimitSetting(Layout::decode(data)),
-                )
-            }
-            (0x82, 0x104) => {
-                Recognised::reply(
-                    &DefaultCurrentLimit::READ,
-                    Self::DefaultCurrentLimit(Layout::decode(data)),
-                )
-            }
-            (0x80, 0x104) => {
-                Recognised::reply(
-                    &DefaultCurrentLimit::SET,
-                    Self::DefaultCurrentLimit(Layout::decode(data)),
-                )
-            }
-            (0x81, 0x104) => {
-                Recognised::reply(
-                    &DefaultCurrentLimit::STORE,
-                    Self::DefaultCurrentLimit(Layout::decode(data)),
-                )
-            }
-            (0x82, 0x10C) => Recognised::reply(&WalkInTime::READ, Self::WalkInTime(Layout::decode(data))),
-            (0x80, 0x10C) => Recognised::reply(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
-            (0x81, 0x10C) => Recognised::reply(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
-            (0x82, 0x10E) => Recognised::reply(&TotalRunningTime::READ, Self::TotalRunningTime(Layout::decode(data))),
-            (0x80, 0x10E) => Recognised::reply(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
-            (0x81, 0x10E) => Recognised::reply(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data))),
-            (0x40, 0x10E) => {
-                Recognised::reply(
-                    &TotalRunningTime::REAL_TIME,
-                    Self::TotalRunningTime(Layout::decode(data)),
-                )
-            }
-            (0x80, 0x132) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x80, 0x133) => {
-                Recognised::reply(
-                    &ResetOvervoltageLockout::SET,
-                    Self::ResetOvervoltageLockout(Layout::decode(data)),
-                )
+                Recognised::reply(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
             }
             (0x80, 0x135) => Recognised::reply(&FlashGreenLight::SET, Self::FlashGreenLight(Layout::decode(data))),
             (0x80, 0x13A) => Recognised::reply(&AssignAddresses::SET, Self::AssignAddresses(Layout::decode(data))),
             (0x80, 0x140) => Recognised::reply(&ControlLights::SET, Self::ControlLights(Layout::decode(data))),
             (0x80, 0x142) => Recognised::reply(&ShieldAlarms::SET, Self::ShieldAlarms(Layout::decode(data))),
             (0x80, 0x143) => {
-                Recognised::reply(
-                    &ShieldCommunicationAlarm::SET,
-                    Self::ShieldCommunicationAlarm(Layout::decode(data)),
-                )
+                Recognised::reply(&ShieldCommunicationAlarm::SET, Self::ShieldCommunicationAlarm(Layout::decode(data)))
             }
             (0x81, 0x143) => {
                 Recognised::reply(
@@ -8016,18 +4760,6 @@ impl Message {
                     Self::ShieldCommunicationAlarm(Layout::decode(data)),
                 )
             }
-            _ => return Self::reply_3(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
             (0x82, 0x170) => Recognised::reply(&InputPower::READ, Self::InputPower(Layout::decode(data))),
             (0x40, 0x170) => Recognised::reply(&InputPower::REAL_TIME, Self::InputPower(Layout::decode(data))),
             (0x82, 0x171) => Recognised::reply(&InputFrequency::READ, Self::InputFrequency(Layout::decode(data))),
@@ -8039,31 +4771,19 @@ impl Message {
             (0x82, 0x175) => Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data))),
             (0x40, 0x175) => Recognised::reply(&OutputVoltage::REAL_TIME, Self::OutputVoltage(Layout::decode(data))),
             (0x82, 0x176) => {
-                Recognised::reply(
-                    &ActualCurrentLimit::READ,
-                    Self::ActualCurrentLimit(Layout::decode(data)),
-                )
+                Recognised::reply(&ActualCurrentLimit::READ, Self::ActualCurrentLimit(Layout::decode(data)))
             }
             (0x40, 0x176) => {
-                Recognised::reply(
-                    &ActualCurrentLimit::REAL_TIME,
-                    Self::ActualCurrentLimit(Layout::decode(data)),
-                )
+                Recognised::reply(&ActualCurrentLimit::REAL_TIME, Self::ActualCurrentLimit(Layout::decode(data)))
             }
             (0x82, 0x177) => Recognised::reply(&ActualPowerLimit::READ, Self::ActualPowerLimit(Layout::decode(data))),
             (0x82, 0x178) => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))),
             (0x40, 0x178) => Recognised::reply(&InputVoltage::REAL_TIME, Self::InputVoltage(Layout::decode(data))),
             (0x82, 0x180) => {
-                Recognised::reply(
-                    &AmbientTemperature::READ,
-                    Self::AmbientTemperature(Layout::decode(data)),
-                )
+                Recognised::reply(&AmbientTemperature::READ, Self::AmbientTemperature(Layout::decode(data)))
             }
             (0x40, 0x180) => {
-                Recognised::reply(
-                    &AmbientTemperature::REAL_TIME,
-                    Self::AmbientTemperature(Layout::decode(data)),
-                )
+                Recognised::reply(&AmbientTemperature::REAL_TIME, Self::AmbientTemperature(Layout::decode(data)))
             }
             (0x82, 0x182) => Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data))),
             (0x40, 0x182) => Recognised::reply(&OutputCurrent::REAL_TIME, Self::OutputCurrent(Layout::decode(data))),
@@ -8074,10 +4794,7 @@ impl Message {
             (0x82, 0x21D) => Recognised::reply(&AddressModeSwitch::READ, Self::AddressModeSwitch(Layout::decode(data))),
             (0x80, 0x21D) => Recognised::reply(&AddressModeSwitch::SET, Self::AddressModeSwitch(Layout::decode(data))),
             (0x81, 0x21D) => {
-                Recognised::reply(
-                    &AddressModeSwitch::STORE,
-                    Self::AddressModeSwitch(Layout::decode(data)),
-                )
+                Recognised::reply(&AddressModeSwitch::STORE, Self::AddressModeSwitch(Layout::decode(data)))
             }
             (0x82, 0x222) => Recognised::reply(&BarcodeVersion::READ, Self::BarcodeVersion(Layout::decode(data))),
             (0x80, 0x222) => Recognised::reply(&BarcodeVersion::SET, Self::BarcodeVersion(Layout::decode(data))),
@@ -8092,21 +4809,18 @@ impl Message {
             (0x80, 0x225) => Recognised::reply(&Barcode3::SET, Self::Barcode3(Layout::decode(data))),
             (0x81, 0x225) => Recognised::reply(&Barcode3::STORE, Self::Barcode3(Layout::decode(data))),
             (0x82, 0x226) => Recognised::reply(&Barcode4::READ, Self::Barcode4(Layout::decode(data))),
-            _ => return Self::reply_4(frame, model),
+            (0x80, 0x226) => Recognised::reply(&Barcode4::SET, Self::Barcode4(Layout::decode(data))),
+            (0x81, 0x226) => Recognised::reply(&Barcode4::STORE, Self::Barcode4(Layout::decode(data))),
+            (0x82, 0x22B) => Recognised::reply(&FanDutyCycle::READ, Self::FanDutyCycle(Layout::decode(data))),
+            _ => return Self::reply_3(frame, model),
         };
         Some(recognised)
     }
 
-    fn reply_4(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+    fn reply_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
-            (0x80, 0x226) => Recognised::reply(&Barcode4::SET, Self::Barcode4(Layout::decode(data))),
-            (0x81, 0x226) => Recognised::reply(&Barcode4::STORE, Self::Barcode4(Layout::decode(data))),
-            (0x82, 0x22B) => Recognised::reply(&FanDutyCycle::READ, Self::FanDutyCycle(Layout::decode(data))),
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x22D) => {
                 Recognised::reply(
                     &RectifierCurrentLimitSetting::READ,
@@ -8120,16 +4834,10 @@ impl Message {
                 )
             }
             (0x82, 0x22E) => {
-                Recognised::reply(
-                    &PvCurrentLimitSetting::READ,
-                    Self::PvCurrentLimitSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&PvCurrentLimitSetting::READ, Self::PvCurrentLimitSetting(Layout::decode(data)))
             }
             (0x80, 0x22E) => {
-                Recognised::reply(
-                    &PvCurrentLimitSetting::SET,
-                    Self::PvCurrentLimitSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(Layout::decode(data)))
             }
             (0x82, 0x22F) => {
                 Recognised::reply(
@@ -8144,16 +4852,10 @@ impl Message {
                 )
             }
             (0x82, 0x230) => {
-                Recognised::reply(
-                    &PvOutputVoltageSetting::READ,
-                    Self::PvOutputVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&PvOutputVoltageSetting::READ, Self::PvOutputVoltageSetting(Layout::decode(data)))
             }
             (0x80, 0x230) => {
-                Recognised::reply(
-                    &PvOutputVoltageSetting::SET,
-                    Self::PvOutputVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&PvOutputVoltageSetting::SET, Self::PvOutputVoltageSetting(Layout::decode(data)))
             }
             (0x82, 0x236) => Recognised::reply(&PfcAlarmWord::READ, Self::PfcAlarmWord(Layout::decode(data))),
             (0x82, 0x237) => Recognised::reply(&PfcFaultWord::READ, Self::PfcFaultWord(Layout::decode(data))),
@@ -8168,225 +4870,108 @@ impl Message {
             (0x82, 0x271) => Recognised::reply(&Reserved271::READ, Self::Reserved271ReadReply),
             (0x82, 0x272) => Recognised::reply(&Reserved272::READ, Self::Reserved272ReadReply),
             (0x82, 0x273) => Recognised::reply(&MpptSingleScan::READ, Self::MpptSingleScan(Layout::decode(data))),
-            _ => return Self::reply_5(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_5(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
             (0x80, 0x273) => Recognised::reply(&MpptSingleScan::SET, Self::MpptSingleScan(Layout::decode(data))),
             (0x82, 0x274) => Recognised::reply(&MpptScanCycle::READ, Self::MpptScanCycle(Layout::decode(data))),
             (0x80, 0x274) => Recognised::reply(&MpptScanCycle::SET, Self::MpptScanCycle(Layout::decode(data))),
             (0x81, 0x274) => Recognised::reply(&MpptScanCycle::STORE, Self::MpptScanCycle(Layout::decode(data))),
             (0x82, 0x275) => {
-                Recognised::reply(
-                    &WindVoltageSetting::READ,
-                    Self::WindVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&WindVoltageSetting::READ, Self::WindVoltageSetting(Layout::decode(data)))
             }
             (0x80, 0x275) => {
-                Recognised::reply(
-                    &WindVoltageSetting::SET,
-                    Self::WindVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&WindVoltageSetting::SET, Self::WindVoltageSetting(Layout::decode(data)))
             }
             (0x82, 0x276) => {
-                Recognised::reply(
-                    &WindVoltageUpperLimit::READ,
-                    Self::WindVoltageUpperLimit(Layout::decode(data)),
-                )
+                Recognised::reply(&WindVoltageUpperLimit::READ, Self::WindVoltageUpperLimit(Layout::decode(data)))
             }
             (0x80, 0x276) => {
-                Recognised::reply(
-                    &WindVoltageUpperLimit::SET,
-                    Self::WindVoltageUpperLimit(Layout::decode(data)),
-                )
+                Recognised::reply(&WindVoltageUpperLimit::SET, Self::WindVoltageUpperLimit(Layout::decode(data)))
             }
             (0x82, 0x277) => {
-                Recognised::reply(
-                    &WindVoltageLowerLimit::READ,
-                    Self::WindVoltageLowerLimit(Layout::decode(data)),
-                )
+                Recognised::reply(&WindVoltageLowerLimit::READ, Self::WindVoltageLowerLimit(Layout::decode(data)))
             }
             (0x80, 0x277) => {
-                Recognised::reply(
-                    &WindVoltageLowerLimit::SET,
-                    Self::WindVoltageLowerLimit(Layout::decode(data)),
-                )
+                Recognised::reply(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(Layout::decode(data)))
             }
+            _ => return Self::reply_4(frame, model),
+        };
+        Some(recognised)
+    }
+
+    fn reply_4(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
+        let id = frame.raw_id();
+        let data = &frame.bytes();
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x301) => {
-                Recognised::reply(
-                    &CustomerInformation1::READ,
-                    Self::CustomerInformation1(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation1::READ, Self::CustomerInformation1(Layout::decode(data)))
             }
             (0x80, 0x301) => {
-                Recognised::reply(
-                    &CustomerInformation1::SET,
-                    Self::CustomerInformation1(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation1::SET, Self::CustomerInformation1(Layout::decode(data)))
             }
             (0x81, 0x301) => {
-                Recognised::reply(
-                    &CustomerInformation1::STORE,
-                    Self::CustomerInformation1(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation1::STORE, Self::CustomerInformation1(Layout::decode(data)))
             }
             (0x82, 0x302) => {
-                Recognised::reply(
-                    &CustomerInformation2::READ,
-                    Self::CustomerInformation2(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation2::READ, Self::CustomerInformation2(Layout::decode(data)))
             }
-            _ => return Self::reply_6(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_6(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
             (0x80, 0x302) => {
-                Recognised::reply(
-                    &CustomerInformation2::SET,
-                    Self::CustomerInformation2(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation2::SET, Self::CustomerInformation2(Layout::decode(data)))
             }
             (0x81, 0x302) => {
-                Recognised::reply(
-                    &CustomerInformation2::STORE,
-                    Self::CustomerInformation2(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation2::STORE, Self::CustomerInformation2(Layout::decode(data)))
             }
             (0x82, 0x303) => {
-                Recognised::reply(
-                    &CustomerInformation3::READ,
-                    Self::CustomerInformation3(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation3::READ, Self::CustomerInformation3(Layout::decode(data)))
             }
             (0x80, 0x303) => {
-                Recognised::reply(
-                    &CustomerInformation3::SET,
-                    Self::CustomerInformation3(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation3::SET, Self::CustomerInformation3(Layout::decode(data)))
             }
             (0x81, 0x303) => {
-                Recognised::reply(
-                    &CustomerInformation3::STORE,
-                    Self::CustomerInformation3(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation3::STORE, Self::CustomerInformation3(Layout::decode(data)))
             }
             (0x82, 0x304) => {
-                Recognised::reply(
-                    &CustomerInformation4::READ,
-                    Self::CustomerInformation4(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation4::READ, Self::CustomerInformation4(Layout::decode(data)))
             }
             (0x80, 0x304) => {
-                Recognised::reply(
-                    &CustomerInformation4::SET,
-                    Self::CustomerInformation4(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation4::SET, Self::CustomerInformation4(Layout::decode(data)))
             }
             (0x81, 0x304) => {
-                Recognised::reply(
-                    &CustomerInformation4::STORE,
-                    Self::CustomerInformation4(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation4::STORE, Self::CustomerInformation4(Layout::decode(data)))
             }
             (0x82, 0x305) => {
-                Recognised::reply(
-                    &CustomerInformation5::READ,
-                    Self::CustomerInformation5(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation5::READ, Self::CustomerInformation5(Layout::decode(data)))
             }
             (0x80, 0x305) => {
-                Recognised::reply(
-                    &CustomerInformation5::SET,
-                    Self::CustomerInformation5(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation5::SET, Self::CustomerInformation5(Layout::decode(data)))
             }
             (0x81, 0x305) => {
-                Recognised::reply(
-                    &CustomerInformation5::STORE,
-                    Self::CustomerInformation5(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation5::STORE, Self::CustomerInformation5(Layout::decode(data)))
             }
-            _ => return Self::reply_7(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_7(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
             (0x82, 0x306) => {
-                Recognised::reply(
-                    &CustomerInformation6::READ,
-                    Self::CustomerInformation6(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation6::READ, Self::CustomerInformation6(Layout::decode(data)))
             }
             (0x80, 0x306) => {
-                Recognised::reply(
-                    &CustomerInformation6::SET,
-                    Self::CustomerInformation6(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation6::SET, Self::CustomerInformation6(Layout::decode(data)))
             }
             (0x81, 0x306) => {
-                Recognised::reply(
-                    &CustomerInformation6::STORE,
-                    Self::CustomerInformation6(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation6::STORE, Self::CustomerInformation6(Layout::decode(data)))
             }
             (0x82, 0x307) => {
-                Recognised::reply(
-                    &CustomerInformation7::READ,
-                    Self::CustomerInformation7(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation7::READ, Self::CustomerInformation7(Layout::decode(data)))
             }
             (0x80, 0x307) => {
-                Recognised::reply(
-                    &CustomerInformation7::SET,
-                    Self::CustomerInformation7(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation7::SET, Self::CustomerInformation7(Layout::decode(data)))
             }
             (0x81, 0x307) => {
-                Recognised::reply(
-                    &CustomerInformation7::STORE,
-                    Self::CustomerInformation7(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation7::STORE, Self::CustomerInformation7(Layout::decode(data)))
             }
             (0x82, 0x308) => {
-                Recognised::reply(
-                    &CustomerInformation8::READ,
-                    Self::CustomerInformation8(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation8::READ, Self::CustomerInformation8(Layout::decode(data)))
             }
             (0x80, 0x308) => {
-                Recognised::reply(
-                    &CustomerInformation8::SET,
-                    Self::CustomerInformation8(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation8::SET, Self::CustomerInformation8(Layout::decode(data)))
             }
             (0x81, 0x308) => {
-                Recognised::reply(
-                    &CustomerInformation8::STORE,
-                    Self::CustomerInformation8(Layout::decode(data)),
-                )
+                Recognised::reply(&CustomerInformation8::STORE, Self::CustomerInformation8(Layout::decode(data)))
             }
             _ => return None,
         };
@@ -8399,20 +4984,15 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x001) => Recognised::request(&CharacteristicWord::READ, Self::ReadCharacteristicWord),
             (0x50, 0x001) => {
-                Recognised::request(
-                    &CharacteristicWord::READ_INHERENT,
-                    Self::ReadInherentCharacteristicWord,
-                )
+                Recognised::request(&CharacteristicWord::READ_INHERENT, Self::ReadInherentCharacteristicWord)
             }
             (0x82, 0x005) => Recognised::request(&Versions::READ, Self::ReadVersions),
             (0x50, 0x005) => Recognised::request(&Versions::READ_INHERENT, Self::ReadInherentVersions),
@@ -8420,29 +5000,17 @@ impl Protocol for Message {
             (0x50, 0x006) => Recognised::request(&HardwareAddress::READ_INHERENT, Self::ReadInherentHardwareAddress),
             (0x82, 0x100) => Recognised::request(&OutputVoltageSetting::READ, Self::ReadOutputVoltageSetting),
             (0x80, 0x100) => {
-                Recognised::request(
-                    &OutputVoltageSetting::SET,
-                    Self::OutputVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
             }
             (0x82, 0x101) => Recognised::request(&DefaultOutputVoltage::READ, Self::ReadDefaultOutputVoltage),
             (0x80, 0x101) => {
-                Recognised::request(
-                    &DefaultOutputVoltage::SET,
-                    Self::DefaultOutputVoltage(Layout::decode(data)),
-                )
+                Recognised::request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
             }
             (0x81, 0x101) => {
-                Recognised::request(
-                    &DefaultOutputVoltage::STORE,
-                    Self::DefaultOutputVoltage(Layout::decode(data)),
-                )
+                Recognised::request(&DefaultOutputVoltage::STORE, Self::DefaultOutputVoltage(Layout::decode(data)))
             }
             (0x82, 0x102) => {
-                Recognised::request(
-                    &OvervoltageProtectionPoint::READ,
-                    Self::ReadOvervoltageProtectionPoint,
-                )
+                Recognised::request(&OvervoltageProtectionPoint::READ, Self::ReadOvervoltageProtectionPoint)
             }
             (0x80, 0x102) => {
                 Recognised::request(
@@ -8458,23 +5026,26 @@ impl Protocol for Message {
             }
             (0x82, 0x103) => Recognised::request(&CurrentLimitSetting::READ, Self::ReadCurrentLimitSetting),
             (0x80, 0x103) => {
-                Recognised::request(
-                    &CurrentLimitSetting::SET,
-                    Self::CurrentLimitSetting(Layout::decode(data)),
-                )
+                Recognised::request(&CurrentLimitSetting::SET, Self::CurrentLimitSetting(Layout::decode(data)))
             }
             (0x82, 0x104) => Recognised::request(&DefaultCurrentLimit::READ, Self::ReadDefaultCurrentLimit),
             (0x80, 0x104) => {
-                Recognised::request(
-                    &DefaultCurrentLimit::SET,
-                    Self::DefaultCurrentLimit(Layout::decode(data)),
-                )
+                Recognised::request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
             }
             (0x81, 0x104) => {
-                Recognised::request(
-                    &DefaultCurrentLimit::STORE,
-                    Self::DefaultCurrentLimit(Layout::decode(data)),
-                )
+                Recognised::request(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(Layout::decode(data)))
+            }
+            (0x82, 0x10C) => Recognised::request(&WalkInTime::READ, Self::ReadWalkInTime),
+            (0x80, 0x10C) => Recognised::request(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
+            (0x81, 0x10C) => Recognised::request(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
+            (0x82, 0x10E) => Recognised::request(&TotalRunningTime::READ, Self::ReadTotalRunningTime),
+            (0x80, 0x10E) => Recognised::request(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
+            (0x81, 0x10E) => {
+                Recognised::request(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data)))
+            }
+            (0x80, 0x132) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
+            (0x80, 0x133) => {
+                Recognised::request(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
             }
             _ => return Self::request_2(frame, model),
         };
@@ -8484,60 +5055,33 @@ impl Protocol for Message {
     fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match (
-            Identifier::COMMAND.of(id),
-            SIGNAL_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x001) => {
-                Recognised::reply(
-                    &CharacteristicWord::READ,
-                    Self::CharacteristicWord(Layout::decode(data)),
-                )
+                Recognised::reply(&CharacteristicWord::READ, Self::CharacteristicWord(Layout::decode(data)))
             }
             (0x50, 0x001) => {
-                Recognised::reply(
-                    &CharacteristicWord::READ_INHERENT,
-                    Self::CharacteristicWord(Layout::decode(data)),
-                )
+                Recognised::reply(&CharacteristicWord::READ_INHERENT, Self::CharacteristicWord(Layout::decode(data)))
             }
             (0x82, 0x005) => Recognised::reply(&Versions::READ, Self::Versions(Layout::decode(data))),
             (0x50, 0x005) => Recognised::reply(&Versions::READ_INHERENT, Self::Versions(Layout::decode(data))),
             (0x82, 0x006) => Recognised::reply(&HardwareAddress::READ, Self::HardwareAddress(Layout::decode(data))),
             (0x50, 0x006) => {
-                Recognised::reply(
-                    &HardwareAddress::READ_INHERENT,
-                    Self::HardwareAddress(Layout::decode(data)),
-                )
+                Recognised::reply(&HardwareAddress::READ_INHERENT, Self::HardwareAddress(Layout::decode(data)))
             }
             (0x82, 0x100) => {
-                Recognised::reply(
-                    &OutputVoltageSetting::READ,
-                    Self::OutputVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&OutputVoltageSetting::READ, Self::OutputVoltageSetting(Layout::decode(data)))
             }
             (0x80, 0x100) => {
-                Recognised::reply(
-                    &OutputVoltageSetting::SET,
-                    Self::OutputVoltageSetting(Layout::decode(data)),
-                )
+                Recognised::reply(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
             }
             (0x82, 0x101) => {
-                Recognised::reply(
-                    &DefaultOutputVoltage::READ,
-                    Self::DefaultOutputVoltage(Layout::decode(data)),
-                )
+                Recognised::reply(&DefaultOutputVoltage::READ, Self::DefaultOutputVoltage(Layout::decode(data)))
             }
             (0x80, 0x101) => {
-                Recognised::reply(
-                    &DefaultOutputVoltage::SET,
-                    Self::DefaultOutputVoltage(Layout::decode(data)),
-                )
+                Recognised::reply(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
             }
             (0x81, 0x101) => {
-                Recognised::reply(
-                    &DefaultOutputVoltage::STORE,
-                    Self::DefaultOutputVoltage(Layout::decode(data)),
-                )
+                Recognised::reply(&DefaultOutputVoltage::STORE, Self::DefaultOutputVoltage(Layout::decode(data)))
             }
             (0x82, 0x102) => {
                 Recognised::reply(
@@ -8557,6 +5101,31 @@ impl Protocol for Message {
                     Self::OvervoltageProtectionPoint(Layout::decode(data)),
                 )
             }
+            (0x82, 0x103) => {
+                Recognised::reply(&CurrentLimitSetting::READ, Self::CurrentLimitSetting(Layout::decode(data)))
+            }
+            (0x80, 0x103) => {
+                Recognised::reply(&CurrentLimitSetting::SET, Self::CurrentLimitSetting(Layout::decode(data)))
+            }
+            (0x82, 0x104) => {
+                Recognised::reply(&DefaultCurrentLimit::READ, Self::DefaultCurrentLimit(Layout::decode(data)))
+            }
+            (0x80, 0x104) => {
+                Recognised::reply(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
+            }
+            (0x81, 0x104) => {
+                Recognised::reply(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(Layout::decode(data)))
+            }
+            (0x82, 0x10C) => Recognised::reply(&WalkInTime::READ, Self::WalkInTime(Layout::decode(data))),
+            (0x80, 0x10C) => Recognised::reply(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
+            (0x81, 0x10C) => Recognised::reply(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
+            (0x82, 0x10E) => Recognised::reply(&TotalRunningTime::READ, Self::TotalRunningTime(Layout::decode(data))),
+            (0x80, 0x10E) => Recognised::reply(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
+            (0x81, 0x10E) => Recognised::reply(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data))),
+            (0x40, 0x10E) => {
+                Recognised::reply(&TotalRunningTime::REAL_TIME, Self::TotalRunningTime(Layout::decode(data)))
+            }
+            (0x80, 0x132) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
             _ => return Self::reply_2(frame, model),
         };
         Some(recognised)
@@ -8644,3 +5213,346 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Characteristic word",
+        &[("signal", 0x001)],
+        &[
+            &CharacteristicWord::SUPPLY,
+            &CharacteristicWord::PHASES,
+            &CharacteristicWord::INPUT_TYPE,
+            &CharacteristicWord::RATED_CURRENT,
+            &CharacteristicWord::OUTPUT_TYPE,
+            &CharacteristicWord::EFFICIENCY,
+            &CharacteristicWord::MINOR_VERSION,
+            &CharacteristicWord::GENERATION,
+        ],
+        &[&CharacteristicWord::READ, &CharacteristicWord::READ_INHERENT],
+    ),
+    Entry::new(
+        "Versions of hardware and software",
+        &[("signal", 0x005)],
+        &[&Versions::HARDWARE, &Versions::DCDC, &Versions::PFC],
+        &[&Versions::READ, &Versions::READ_INHERENT],
+    ),
+    Entry::new(
+        "Place of the module in the system",
+        &[("signal", 0x006)],
+        &[&HardwareAddress::GROUP, &HardwareAddress::SLAVE],
+        &[&HardwareAddress::READ, &HardwareAddress::READ_INHERENT],
+    ),
+    Entry::new(
+        "DC output voltage set",
+        &[("signal", 0x100)],
+        &[&OutputVoltageSetting::VALUE],
+        &[&OutputVoltageSetting::READ, &OutputVoltageSetting::SET],
+    ),
+    Entry::new(
+        "DC output voltage by default",
+        &[("signal", 0x101)],
+        &[&DefaultOutputVoltage::VALUE],
+        &[&DefaultOutputVoltage::READ, &DefaultOutputVoltage::SET, &DefaultOutputVoltage::STORE],
+    ),
+    Entry::new(
+        "DC output overvoltage protection point",
+        &[("signal", 0x102)],
+        &[&OvervoltageProtectionPoint::VALUE],
+        &[&OvervoltageProtectionPoint::READ, &OvervoltageProtectionPoint::SET, &OvervoltageProtectionPoint::STORE],
+    ),
+    Entry::new(
+        "DC output current limit set",
+        &[("signal", 0x103)],
+        &[&CurrentLimitSetting::VALUE],
+        &[&CurrentLimitSetting::READ, &CurrentLimitSetting::SET],
+    ),
+    Entry::new(
+        "Current limit by default",
+        &[("signal", 0x104)],
+        &[&DefaultCurrentLimit::VALUE],
+        &[&DefaultCurrentLimit::READ, &DefaultCurrentLimit::SET, &DefaultCurrentLimit::STORE],
+    ),
+    Entry::new(
+        "Walk-in time",
+        &[("signal", 0x10C)],
+        &[&WalkInTime::VALUE],
+        &[&WalkInTime::READ, &WalkInTime::SET, &WalkInTime::STORE],
+    ),
+    Entry::new(
+        "Total running time",
+        &[("signal", 0x10E)],
+        &[&TotalRunningTime::VALUE],
+        &[&TotalRunningTime::READ, &TotalRunningTime::SET, &TotalRunningTime::STORE, &TotalRunningTime::REAL_TIME],
+    ),
+    Entry::new("Switch modules on or off", &[("signal", 0x132)], &[&SwitchModules::VALUE], &[&SwitchModules::SET]),
+    Entry::new(
+        "Reset the lockout after an overvoltage",
+        &[("signal", 0x133)],
+        &[&ResetOvervoltageLockout::VALUE],
+        &[&ResetOvervoltageLockout::SET],
+    ),
+    Entry::new(
+        "Make the green light of a module flash",
+        &[("signal", 0x135)],
+        &[&FlashGreenLight::VALUE],
+        &[&FlashGreenLight::SET],
+    ),
+    Entry::new(
+        "Make modules assign their addresses anew",
+        &[("signal", 0x13A)],
+        &[&AssignAddresses::VALUE],
+        &[&AssignAddresses::SET],
+    ),
+    Entry::new(
+        "Control the lights of modules",
+        &[("signal", 0x140)],
+        &[&ControlLights::RED, &ControlLights::YELLOW, &ControlLights::GREEN],
+        &[&ControlLights::SET],
+    ),
+    Entry::new(
+        "Choose the alarms that are not shown",
+        &[("signal", 0x142)],
+        &[&ShieldAlarms::EXTENDED, &ShieldAlarms::ALARMS],
+        &[&ShieldAlarms::SET],
+    ),
+    Entry::new(
+        "Shield the yellow light while the controller is not heard",
+        &[("signal", 0x143)],
+        &[&ShieldCommunicationAlarm::VALUE],
+        &[&ShieldCommunicationAlarm::SET, &ShieldCommunicationAlarm::STORE],
+    ),
+    Entry::new(
+        "Input power",
+        &[("signal", 0x170)],
+        &[&InputPower::VALUE],
+        &[&InputPower::READ, &InputPower::REAL_TIME],
+    ),
+    Entry::new(
+        "Input frequency",
+        &[("signal", 0x171)],
+        &[&InputFrequency::VALUE],
+        &[&InputFrequency::READ, &InputFrequency::REAL_TIME],
+    ),
+    Entry::new(
+        "Input current",
+        &[("signal", 0x172)],
+        &[&InputCurrent::VALUE],
+        &[&InputCurrent::READ, &InputCurrent::REAL_TIME],
+    ),
+    Entry::new(
+        "DC output power",
+        &[("signal", 0x173)],
+        &[&OutputPower::VALUE],
+        &[&OutputPower::READ, &OutputPower::REAL_TIME],
+    ),
+    Entry::new(
+        "DC output voltage measured",
+        &[("signal", 0x175)],
+        &[&OutputVoltage::VALUE],
+        &[&OutputVoltage::READ, &OutputVoltage::REAL_TIME],
+    ),
+    Entry::new(
+        "Output current limit in effect",
+        &[("signal", 0x176)],
+        &[&ActualCurrentLimit::VALUE],
+        &[&ActualCurrentLimit::READ, &ActualCurrentLimit::REAL_TIME],
+    ),
+    Entry::new(
+        "Output power limit in effect",
+        &[("signal", 0x177)],
+        &[&ActualPowerLimit::VALUE],
+        &[&ActualPowerLimit::READ],
+    ),
+    Entry::new(
+        "Input voltage of a single-phase module",
+        &[("signal", 0x178)],
+        &[&InputVoltage::VALUE],
+        &[&InputVoltage::READ, &InputVoltage::REAL_TIME],
+    ),
+    Entry::new(
+        "Ambient temperature at the air inlet",
+        &[("signal", 0x180)],
+        &[&AmbientTemperature::VALUE],
+        &[&AmbientTemperature::READ, &AmbientTemperature::REAL_TIME],
+    ),
+    Entry::new(
+        "Output current shown",
+        &[("signal", 0x182)],
+        &[&OutputCurrent::VALUE],
+        &[&OutputCurrent::READ, &OutputCurrent::REAL_TIME],
+    ),
+    Entry::new(
+        "Alarms and states",
+        &[("signal", 0x183)],
+        &[&ModuleStatus::EXTENDED, &ModuleStatus::ALARMS],
+        &[&ModuleStatus::READ, &ModuleStatus::REAL_TIME],
+    ),
+    Entry::new("Output external voltage", &[("signal", 0x184)], &[&ExternalVoltage::VALUE], &[&ExternalVoltage::READ]),
+    Entry::new("Rated current", &[("signal", 0x188)], &[&RatedCurrent::VALUE], &[&RatedCurrent::READ]),
+    Entry::new(
+        "Which addresses modules use",
+        &[("signal", 0x21D)],
+        &[&AddressModeSwitch::VALUE],
+        &[&AddressModeSwitch::READ, &AddressModeSwitch::SET, &AddressModeSwitch::STORE],
+    ),
+    Entry::new(
+        "Version of the barcode",
+        &[("signal", 0x222)],
+        &[&BarcodeVersion::VALUE],
+        &[&BarcodeVersion::READ, &BarcodeVersion::SET, &BarcodeVersion::STORE],
+    ),
+    Entry::new(
+        "Barcode part 1",
+        &[("signal", 0x223)],
+        &[&Barcode1::VALUE],
+        &[&Barcode1::READ, &Barcode1::SET, &Barcode1::STORE],
+    ),
+    Entry::new(
+        "Barcode part 2",
+        &[("signal", 0x224)],
+        &[&Barcode2::VALUE],
+        &[&Barcode2::READ, &Barcode2::SET, &Barcode2::STORE],
+    ),
+    Entry::new(
+        "Barcode part 3",
+        &[("signal", 0x225)],
+        &[&Barcode3::VALUE],
+        &[&Barcode3::READ, &Barcode3::SET, &Barcode3::STORE],
+    ),
+    Entry::new(
+        "Barcode part 4",
+        &[("signal", 0x226)],
+        &[&Barcode4::VALUE],
+        &[&Barcode4::READ, &Barcode4::SET, &Barcode4::STORE],
+    ),
+    Entry::new("Duty cycle of the fan", &[("signal", 0x22B)], &[&FanDutyCycle::VALUE], &[&FanDutyCycle::READ]),
+    Entry::new(
+        "Output current limit set in rectifier modules",
+        &[("signal", 0x22D)],
+        &[&RectifierCurrentLimitSetting::VALUE],
+        &[&RectifierCurrentLimitSetting::READ, &RectifierCurrentLimitSetting::SET],
+    ),
+    Entry::new(
+        "Output current limit set in PV modules",
+        &[("signal", 0x22E)],
+        &[&PvCurrentLimitSetting::VALUE],
+        &[&PvCurrentLimitSetting::READ, &PvCurrentLimitSetting::SET],
+    ),
+    Entry::new(
+        "Output voltage set in rectifier modules",
+        &[("signal", 0x22F)],
+        &[&RectifierOutputVoltageSetting::VALUE],
+        &[&RectifierOutputVoltageSetting::READ, &RectifierOutputVoltageSetting::SET],
+    ),
+    Entry::new(
+        "Output voltage set in PV modules",
+        &[("signal", 0x230)],
+        &[&PvOutputVoltageSetting::VALUE],
+        &[&PvOutputVoltageSetting::READ, &PvOutputVoltageSetting::SET],
+    ),
+    Entry::new("Alarm word of the PFC side", &[("signal", 0x236)], &[&PfcAlarmWord::VALUE], &[&PfcAlarmWord::READ]),
+    Entry::new("Fault word of the PFC side", &[("signal", 0x237)], &[&PfcFaultWord::VALUE], &[&PfcFaultWord::READ]),
+    Entry::new("Status word of the PFC side", &[("signal", 0x238)], &[&PfcStatusWord::VALUE], &[&PfcStatusWord::READ]),
+    Entry::new("Alarm word of the DC/DC side", &[("signal", 0x239)], &[&DcdcAlarmWord::VALUE], &[&DcdcAlarmWord::READ]),
+    Entry::new("Fault word of the DC/DC side", &[("signal", 0x23A)], &[&DcdcFaultWord::VALUE], &[&DcdcFaultWord::READ]),
+    Entry::new(
+        "Status word of the DC/DC side",
+        &[("signal", 0x23B)],
+        &[&DcdcStatusWord::VALUE],
+        &[&DcdcStatusWord::READ],
+    ),
+    Entry::new(
+        "Whether modules start by themselves, by default",
+        &[("signal", 0x24E)],
+        &[&AutoBootSetting::VALUE],
+        &[&AutoBootSetting::SET, &AutoBootSetting::STORE],
+    ),
+    Entry::new(
+        "PV voltage set",
+        &[("signal", 0x270)],
+        &[&PvVoltageSetting::VALUE],
+        &[&PvVoltageSetting::READ, &PvVoltageSetting::SET],
+    ),
+    Entry::new("Reserved", &[("signal", 0x271)], &[], &[&Reserved271::READ]),
+    Entry::new("Reserved", &[("signal", 0x272)], &[], &[&Reserved272::READ]),
+    Entry::new(
+        "One scan for the maximum power point",
+        &[("signal", 0x273)],
+        &[&MpptSingleScan::VALUE],
+        &[&MpptSingleScan::READ, &MpptSingleScan::SET],
+    ),
+    Entry::new(
+        "Cycle of scans for the maximum power point",
+        &[("signal", 0x274)],
+        &[&MpptScanCycle::VALUE],
+        &[&MpptScanCycle::READ, &MpptScanCycle::SET, &MpptScanCycle::STORE],
+    ),
+    Entry::new(
+        "Wind energy voltage set",
+        &[("signal", 0x275)],
+        &[&WindVoltageSetting::VALUE],
+        &[&WindVoltageSetting::READ, &WindVoltageSetting::SET],
+    ),
+    Entry::new(
+        "Upper limit of the voltage range for wind energy",
+        &[("signal", 0x276)],
+        &[&WindVoltageUpperLimit::VALUE],
+        &[&WindVoltageUpperLimit::READ, &WindVoltageUpperLimit::SET],
+    ),
+    Entry::new(
+        "Lower limit of the voltage range for wind energy",
+        &[("signal", 0x277)],
+        &[&WindVoltageLowerLimit::VALUE],
+        &[&WindVoltageLowerLimit::READ, &WindVoltageLowerLimit::SET],
+    ),
+    Entry::new(
+        "Customer information part 1",
+        &[("signal", 0x301)],
+        &[&CustomerInformation1::VALUE],
+        &[&CustomerInformation1::READ, &CustomerInformation1::SET, &CustomerInformation1::STORE],
+    ),
+    Entry::new(
+        "Customer information part 2",
+        &[("signal", 0x302)],
+        &[&CustomerInformation2::VALUE],
+        &[&CustomerInformation2::READ, &CustomerInformation2::SET, &CustomerInformation2::STORE],
+    ),
+    Entry::new(
+        "Customer information part 3",
+        &[("signal", 0x303)],
+        &[&CustomerInformation3::VALUE],
+        &[&CustomerInformation3::READ, &CustomerInformation3::SET, &CustomerInformation3::STORE],
+    ),
+    Entry::new(
+        "Customer information part 4",
+        &[("signal", 0x304)],
+        &[&CustomerInformation4::VALUE],
+        &[&CustomerInformation4::READ, &CustomerInformation4::SET, &CustomerInformation4::STORE],
+    ),
+    Entry::new(
+        "Customer information part 5",
+        &[("signal", 0x305)],
+        &[&CustomerInformation5::VALUE],
+        &[&CustomerInformation5::READ, &CustomerInformation5::SET, &CustomerInformation5::STORE],
+    ),
+    Entry::new(
+        "Customer information part 6",
+        &[("signal", 0x306)],
+        &[&CustomerInformation6::VALUE],
+        &[&CustomerInformation6::READ, &CustomerInformation6::SET, &CustomerInformation6::STORE],
+    ),
+    Entry::new(
+        "Customer information part 7",
+        &[("signal", 0x307)],
+        &[&CustomerInformation7::VALUE],
+        &[&CustomerInformation7::READ, &CustomerInformation7::SET, &CustomerInformation7::STORE],
+    ),
+    Entry::new(
+        "Customer information part 8",
+        &[("signal", 0x308)],
+        &[&CustomerInformation8::VALUE],
+        &[&CustomerInformation8::READ, &CustomerInformation8::SET, &CustomerInformation8::STORE],
+    ),
+    Entry::new("Ask one module for all that changes", &[("command", 0x40)], &[], &[&RealTimeData::ASK_REAL_TIME]),
+];

@@ -4,8 +4,9 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Selector, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Place, Protocol, Recognised, Selector, Signal, Single,
+    Who,
 };
 
 /// What every frame shows.
@@ -22,8 +23,7 @@ pub const FUNCTION_SELECTOR: Selector = Selector::new("function", Place::byte(0)
 ///
 /// Erratum X7: printed is "F0 for normal, others for a fault; of these only F2, in replies to a setting
 /// that failed", used is "F2 as failed, others without a name".
-pub const RESULT_SELECTOR: Selector = Selector::new("result", Place::byte(1))
-    .normal(0xF0);
+pub const RESULT_SELECTOR: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
 
 /// Number of the register: bytes 2..3. Section 2.3, 3.1.
 ///
@@ -149,9 +149,7 @@ impl Destination for Target {
 ///
 /// Erratum X23: printed is "controlled address and controlled input mode", used is "controller, input
 /// mode that was set".
-pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF0)
-    .strict()
-    .default_number(0xF0);
+pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF0).strict().default_number(0xF0);
 
 /// Address of a module: `0x00..=0x3F`. Section 2.2.3, 2.2.4.
 ///
@@ -172,11 +170,7 @@ pub const GROUP_ADDRESS: AddressType = AddressType::new("group", 0x00, 0x07);
 ///
 /// Erratum X3: printed is "addresses for 8 groups and above, beginning with `0xFD` for group 0; at most
 /// 60; groups 0 to 60 in 0x001E", used is "`0xFD` to `0xC1` for the groups 0 to 60".
-pub const EXTENDED_GROUP_ADDRESS: AddressType = AddressType::new(
-        "extended_group",
-        0x00,
-        0x3C,
-    )
+pub const EXTENDED_GROUP_ADDRESS: AddressType = AddressType::new("extended_group", 0x00, 0x3C)
     .offset(0xFD)
     .descending()
     .strict();
@@ -284,16 +278,87 @@ pub const BROADCAST_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 4] = [Some(Who::One), None, None, None];
+/// Read from one module. Section 2.3.2.
+///
+/// In a request, `function` is `0x10`. In a reply, `function` is `0x41`.
+///
+/// `point_to_point`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None])
+    .request(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x10),
+    )
+    .reply(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x41),
+    );
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 4] = [
-    Some(Who::One),
-    Some(Who::Nobody),
-    Some(Who::Nobody),
-    Some(Who::Nobody),
-];
+/// Read from one module. Section 2.3.2.
+///
+/// In a request, `function` is `0x10`. In a reply, `function` is `0x42`.
+///
+/// `point_to_point`: the module answers.
+pub const READ_ACCESS_2: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None])
+    .request(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x10),
+    )
+    .reply(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x42),
+    );
+
+/// Set in modules. Section 2.3.1, 4, 6.
+///
+/// The reply repeats the value of the request, also if the setting failed.
+///
+/// In a request, `function` is `0x3`. In a reply, `function` is `0x42`.
+///
+/// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
+/// `broadcast`: nobody answers.
+pub const SET_ACCESS: Exchange = Exchange::new(
+        "set",
+        &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)],
+    )
+    .with_values()
+    .request(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x03),
+    )
+    .reply(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x42),
+    );
+
+/// Set in modules. Section 2.3.1, 4, 6.
+///
+/// The reply repeats the value of the request, also if the setting failed.
+///
+/// In a request, `function` is `0x3`. In a reply, `function` is `0x41`.
+///
+/// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
+/// `broadcast`: nobody answers.
+pub const SET_ACCESS_2: Exchange = Exchange::new(
+        "set",
+        &[Some(Who::One), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)],
+    )
+    .with_values()
+    .request(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x03),
+    )
+    .reply(
+        FRAME
+            .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
+            .data(FUNCTION_SELECTOR.place, 0x41),
+    );
 
 /// What a request wants, and of which type the value of a reply is. Section 2.3.
 ///
@@ -315,12 +380,7 @@ pub enum HeaderFunction {
 impl Word for HeaderFunction {
     type Raw = u8;
     const LEGEND: Legend<Self> = Legend::Names(
-        &[
-            (Self::Set, "set"),
-            (Self::Read, "read"),
-            (Self::Float, "float"),
-            (Self::Integer, "integer"),
-        ],
+        &[(Self::Set, "set"), (Self::Read, "read"), (Self::Float, "float"), (Self::Integer, "integer")],
     );
 
     fn from_raw(raw: u8) -> Self {
@@ -364,9 +424,7 @@ pub enum HeaderResult {
 
 impl Word for HeaderResult {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Normal, "normal"), (Self::Failed, "failed")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Normal, "normal"), (Self::Failed, "failed")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -405,9 +463,7 @@ pub enum AddressMode {
 
 impl Word for AddressMode {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Automatic, "automatic"), (Self::DipSwitch, "dip_switch")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Automatic, "automatic"), (Self::DipSwitch, "dip_switch")]);
 
     fn from_raw(raw: u32) -> Self {
         match raw {
@@ -441,9 +497,7 @@ pub enum Power {
 
 impl Word for Power {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::StartUp, "start_up"), (Self::ShutDown, "shut_down")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::StartUp, "start_up"), (Self::ShutDown, "shut_down")]);
 
     fn from_raw(raw: u32) -> Self {
         match raw {
@@ -477,9 +531,7 @@ pub enum Reset {
 
 impl Word for Reset {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Disabled, "disabled"), (Self::Reset, "reset")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Disabled, "disabled"), (Self::Reset, "reset")]);
 
     fn from_raw(raw: u32) -> Self {
         match raw {
@@ -516,9 +568,7 @@ pub enum Relevance {
 
 impl Word for Relevance {
     type Raw = u32;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Enabled, "enabled"), (Self::Disabled, "disabled")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Enabled, "enabled"), (Self::Disabled, "disabled")]);
 
     fn from_raw(raw: u32) -> Self {
         match raw {
@@ -694,26 +744,10 @@ impl Word for Alarms {
         &[
             StatusBit::fault(0, "fault", "Module fault"),
             StatusBit::alarm(1, "protection", "Module protection active"),
-            StatusBit::fault(
-                3,
-                "internal_communication_fault",
-                "Communication inside the module (SCI) failed",
-            ),
-            StatusBit::alarm(
-                4,
-                "input_mode_error",
-                "Input mode not recognised or input wired wrongly",
-            ),
-            StatusBit::alarm(
-                5,
-                "input_mode_mismatch",
-                "Input works in another mode than the one set",
-            ),
-            StatusBit::alarm(
-                7,
-                "dcdc_overvoltage",
-                "Voltage of the DC/DC side too high",
-            ),
+            StatusBit::fault(3, "internal_communication_fault", "Communication inside the module (SCI) failed"),
+            StatusBit::alarm(4, "input_mode_error", "Input mode not recognised or input wired wrongly"),
+            StatusBit::alarm(5, "input_mode_mismatch", "Input works in another mode than the one set"),
+            StatusBit::alarm(7, "dcdc_overvoltage", "Voltage of the DC/DC side too high"),
             StatusBit::alarm(8, "pfc_voltage_abnormal", "PFC voltage abnormal"),
             StatusBit::alarm(9, "ac_overvoltage", "AC voltage too high"),
             StatusBit::alarm(14, "ac_undervoltage", "AC voltage too low"),
@@ -721,24 +755,12 @@ impl Word for Alarms {
             StatusBit::alarm(17, "current_imbalance", "Currents unbalanced"),
             StatusBit::state(22, "dcdc_off", "DC/DC side is off"),
             StatusBit::state(23, "power_limited", "Power of the module limited"),
-            StatusBit::state(
-                24,
-                "temperature_derating",
-                "Derated because of the temperature",
-            ),
+            StatusBit::state(24, "temperature_derating", "Derated because of the temperature"),
             StatusBit::state(25, "ac_power_limited", "AC power limited"),
             StatusBit::fault(27, "fan_fault", "Fan failed"),
             StatusBit::fault(28, "dcdc_short_circuit", "DC/DC side short-circuited"),
-            StatusBit::alarm(
-                30,
-                "dcdc_overtemperature",
-                "Temperature of the DC/DC side too high",
-            ),
-            StatusBit::alarm(
-                31,
-                "output_overvoltage",
-                "Output voltage of the DC/DC side too high",
-            ),
+            StatusBit::alarm(30, "dcdc_overtemperature", "Temperature of the DC/DC side too high"),
+            StatusBit::alarm(31, "output_overvoltage", "Output voltage of the DC/DC side too high"),
         ],
     );
 
@@ -774,23 +796,9 @@ impl OutputVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0001)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0001)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -800,20 +808,10 @@ impl OutputVoltage {
     }
 }
 
-impl Layout for OutputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Output current. Section 3.1.
@@ -829,23 +827,9 @@ impl OutputCurrent {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_current", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0002)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0002)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(REGISTER_SELECTOR.place, 0x0002));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -855,20 +839,10 @@ impl OutputCurrent {
     }
 }
 
-impl Layout for OutputCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_a, payload);
 }
 
 /// Current limit (1 is the rated current). Section 3.1.
@@ -887,23 +861,9 @@ impl CurrentLimit {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("current_limit", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0003)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0003)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0003));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -913,20 +873,10 @@ impl CurrentLimit {
     }
 }
 
-impl Layout for CurrentLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CurrentLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Temperature of the DC board. Section 3.1.
@@ -944,27 +894,9 @@ impl DcBoardTemperature {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "dc_board_temperature",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0004)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0004)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("dc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0004));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -974,20 +906,10 @@ impl DcBoardTemperature {
     }
 }
 
-impl Layout for DcBoardTemperature {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_c: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_c, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for DcBoardTemperature {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
 
 /// Input voltage (phase or DC). Section 3.1.
@@ -1005,23 +927,9 @@ impl InputVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0005)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0005)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0005));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1031,20 +939,10 @@ impl InputVoltage {
     }
 }
 
-impl Layout for InputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// PFC 0 voltage (positive half bus). Section 3.1.
@@ -1060,23 +958,9 @@ impl Pfc0Voltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pfc0_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0008)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0008)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pfc0_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0008));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1086,20 +970,10 @@ impl Pfc0Voltage {
     }
 }
 
-impl Layout for Pfc0Voltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Pfc0Voltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// PFC 1 voltage (negative half bus). Section 3.1.
@@ -1115,23 +989,9 @@ impl Pfc1Voltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pfc1_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000A)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000A)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pfc1_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000A));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1141,20 +1001,10 @@ impl Pfc1Voltage {
     }
 }
 
-impl Layout for Pfc1Voltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Pfc1Voltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Ambient temperature at the panel. Section 3.1.
@@ -1172,27 +1022,9 @@ impl AmbientTemperature {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "ambient_temperature",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000B)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000B)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x000B));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1202,20 +1034,10 @@ impl AmbientTemperature {
     }
 }
 
-impl Layout for AmbientTemperature {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_c: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_c, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for AmbientTemperature {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
 
 /// Voltage of AC phase A. Section 3.1.
@@ -1231,23 +1053,9 @@ impl PhaseAVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("phase_a_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000C)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000C)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("phase_a_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000C));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1257,20 +1065,10 @@ impl PhaseAVoltage {
     }
 }
 
-impl Layout for PhaseAVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PhaseAVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Voltage of AC phase B. Section 3.1.
@@ -1286,23 +1084,9 @@ impl PhaseBVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("phase_b_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000D)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000D)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("phase_b_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000D));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1312,20 +1096,10 @@ impl PhaseBVoltage {
     }
 }
 
-impl Layout for PhaseBVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PhaseBVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Voltage of AC phase C. Section 3.1.
@@ -1341,23 +1115,9 @@ impl PhaseCVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("phase_c_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000E)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x000E)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("phase_c_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000E));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1367,20 +1127,10 @@ impl PhaseCVoltage {
     }
 }
 
-impl Layout for PhaseCVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PhaseCVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Temperature of the PFC board. Section 3.1.
@@ -1398,27 +1148,9 @@ impl PfcBoardTemperature {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "pfc_board_temperature",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0010)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0010)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("pfc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0010));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1428,20 +1160,10 @@ impl PfcBoardTemperature {
     }
 }
 
-impl Layout for PfcBoardTemperature {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_c: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_c, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for PfcBoardTemperature {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
 
 /// Rated output power. Section 3.1.
@@ -1457,23 +1179,9 @@ impl RatedPower {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("rated_power", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0011)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0011)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("rated_power", FRAME.data(REGISTER_SELECTOR.place, 0x0011));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1483,20 +1191,10 @@ impl RatedPower {
     }
 }
 
-impl Layout for RatedPower {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_w: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_w, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for RatedPower {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_w, payload);
 }
 
 /// Rated output current. Section 3.1.
@@ -1512,23 +1210,9 @@ impl RatedCurrent {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("rated_current", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0012)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0012)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(REGISTER_SELECTOR.place, 0x0012));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1538,20 +1222,10 @@ impl RatedCurrent {
     }
 }
 
-impl Layout for RatedCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for RatedCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_a, payload);
 }
 
 /// Operating altitude, by which the module derates. Section 3.1, 6.
@@ -1568,32 +1242,13 @@ pub struct SetAltitude {
 
 impl SetAltitude {
     /// The signal `value`.
-    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("m")
-        .limits(1000.0, 5000.0);
+    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m").limits(1000.0, 5000.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_altitude", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0017)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0017)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("set_altitude", FRAME.data(REGISTER_SELECTOR.place, 0x0017));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1603,20 +1258,10 @@ impl SetAltitude {
     }
 }
 
-impl Layout for SetAltitude {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_m: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_m, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetAltitude {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_m, payload);
 }
 
 /// Output current. Section 3.1.
@@ -1631,32 +1276,13 @@ pub struct SetOutputCurrent {
 
 impl SetOutputCurrent {
     /// The signal `value`.
-    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7))
-        .unit("A")
-        .scale(1, 1024);
+    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_output_current", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x001B)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x001B)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("set_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x001B));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1666,20 +1292,10 @@ impl SetOutputCurrent {
     }
 }
 
-impl Layout for SetOutputCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetOutputCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// Put a module into a group. Section 3.1, 4.
@@ -1697,31 +1313,13 @@ pub struct SetGroup {
 
 impl SetGroup {
     /// The signal `group`.
-    pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(7).bits(5, 0))
-        .limits(0.0, 60.0);
+    pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(7).bits(5, 0)).limits(0.0, 60.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xC0];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_group", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x001E)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x001E)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.data(REGISTER_SELECTOR.place, 0x001E));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1731,20 +1329,10 @@ impl SetGroup {
     }
 }
 
-impl Layout for SetGroup {
-    fn decode(data: &Data) -> Self {
-        Self {
-            group: Self::GROUP.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::GROUP.put(self.group, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::GROUP]
-    }
+impl Single for SetGroup {
+    const SIGNAL: &'static dyn AnySignal = &Self::GROUP;
+    const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::GROUP.put(message.group, payload);
 }
 
 /// Choose where modules get their address from. Section 3.1, 4.
@@ -1762,26 +1350,9 @@ impl SetAddressMode {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_address_mode", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x001F)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x001F)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.data(REGISTER_SELECTOR.place, 0x001F));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1791,20 +1362,10 @@ impl SetAddressMode {
     }
 }
 
-impl Layout for SetAddressMode {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetAddressMode {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Output power (1 is the rated power). Section 3.1.
@@ -1816,31 +1377,13 @@ pub struct SetOutputPower {
 
 impl SetOutputPower {
     /// The signal `value`.
-    pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7))
-        .limits(0.1, 1.0);
+    pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).limits(0.1, 1.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_output_power", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0020)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0020)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const SET: Exchange = SET_ACCESS_2.of("set_output_power", FRAME.data(REGISTER_SELECTOR.place, 0x0020));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS_2) with these values.
     ///
     /// # Errors
     ///
@@ -1850,20 +1393,10 @@ impl SetOutputPower {
     }
 }
 
-impl Layout for SetOutputPower {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetOutputPower {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Output voltage. Section 2.3.1, 3.1.
@@ -1879,26 +1412,9 @@ impl SetOutputVoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_output_voltage", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0021)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0021)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const SET: Exchange = SET_ACCESS_2.of("set_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS_2) with these values.
     ///
     /// # Errors
     ///
@@ -1908,20 +1424,10 @@ impl SetOutputVoltage {
     }
 }
 
-impl Layout for SetOutputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetOutputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Current limit (1 is the rated current). Section 2.3.1, 3.1.
@@ -1943,26 +1449,9 @@ impl SetCurrentLimit {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_current_limit", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0022)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0022)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const SET: Exchange = SET_ACCESS_2.of("set_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0022));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS_2) with these values.
     ///
     /// # Errors
     ///
@@ -1972,20 +1461,10 @@ impl SetCurrentLimit {
     }
 }
 
-impl Layout for SetCurrentLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetCurrentLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Upper limit of the output voltage, at which the overvoltage protection acts. Section 3.1.
@@ -2003,26 +1482,9 @@ impl SetOvervoltagePoint {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_overvoltage_point", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0023)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0023)
-                .data(FUNCTION_SELECTOR.place, 0x41),
-        );
+    pub const SET: Exchange = SET_ACCESS_2.of("set_overvoltage_point", FRAME.data(REGISTER_SELECTOR.place, 0x0023));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS_2) with these values.
     ///
     /// # Errors
     ///
@@ -2032,20 +1494,10 @@ impl SetOvervoltagePoint {
     }
 }
 
-impl Layout for SetOvervoltagePoint {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetOvervoltagePoint {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
 
 /// Start up or shut down. Section 2.3.1, 3.1.
@@ -2061,26 +1513,9 @@ impl SwitchModules {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("switch_modules", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0030)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0030)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(REGISTER_SELECTOR.place, 0x0030));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2090,20 +1525,10 @@ impl SwitchModules {
     }
 }
 
-impl Layout for SwitchModules {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SwitchModules {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Reset after overvoltage. Section 3.1.
@@ -2119,26 +1544,9 @@ impl ResetOvervoltage {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("reset_overvoltage", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0031)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0031)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage", FRAME.data(REGISTER_SELECTOR.place, 0x0031));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2148,20 +1556,10 @@ impl ResetOvervoltage {
     }
 }
 
-impl Layout for ResetOvervoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ResetOvervoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Relevance permission of the output overvoltage protection. Section 3.1.
@@ -2177,30 +1575,9 @@ impl SetOvervoltageRelevance {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new(
-            "set_overvoltage_relevance",
-            "set",
-            &SET_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x003E)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x003E)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("set_overvoltage_relevance", FRAME.data(REGISTER_SELECTOR.place, 0x003E));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2210,20 +1587,10 @@ impl SetOvervoltageRelevance {
     }
 }
 
-impl Layout for SetOvervoltageRelevance {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetOvervoltageRelevance {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Alarms and states. Section 2.3.2, 3.1, 3.2.
@@ -2239,23 +1606,9 @@ impl ModuleStatus {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("module_status", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0040)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0040)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("module_status", FRAME.data(REGISTER_SELECTOR.place, 0x0040));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2265,20 +1618,10 @@ impl ModuleStatus {
     }
 }
 
-impl Layout for ModuleStatus {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ModuleStatus {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Group of the module and address on its DIP switch. Section 3.1.
@@ -2301,23 +1644,9 @@ impl GroupAndAddress {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("group_and_address", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0043)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0043)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("group_and_address", FRAME.data(REGISTER_SELECTOR.place, 0x0043));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2329,10 +1658,7 @@ impl GroupAndAddress {
 
 impl Layout for GroupAndAddress {
     fn decode(data: &Data) -> Self {
-        Self {
-            group: Self::GROUP.get(data),
-            address: Self::ADDRESS.get(data),
-        }
+        Self { group: Self::GROUP.get(data), address: Self::ADDRESS.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -2358,26 +1684,9 @@ impl ResetShortCircuit {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("reset_short_circuit", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0044)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0044)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("reset_short_circuit", FRAME.data(REGISTER_SELECTOR.place, 0x0044));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2387,20 +1696,10 @@ impl ResetShortCircuit {
     }
 }
 
-impl Layout for ResetShortCircuit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ResetShortCircuit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Input mode. Section 3.1.
@@ -2416,26 +1715,9 @@ impl SetInputMode {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_input_mode", "set", &SET_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0046)
-                .data(FUNCTION_SELECTOR.place, 0x03),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0046)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const SET: Exchange = SET_ACCESS.of("set_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x0046));
 
-    /// Builds the request `set` with these values. Section 2.3.1, 4, 6.
-    ///
-    /// The reply repeats the value of the request, also if the setting failed.
-    ///
-    /// `point_to_point`: the module answers. `group`: nobody answers. `extended_group`: nobody answers.
-    /// `broadcast`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -2445,20 +1727,10 @@ impl SetInputMode {
     }
 }
 
-impl Layout for SetInputMode {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SetInputMode {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Input power. Section 3.1.
@@ -2474,23 +1746,9 @@ impl InputPower {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_power", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0048)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0048)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x0048));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2500,20 +1758,10 @@ impl InputPower {
     }
 }
 
-impl Layout for InputPower {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_w: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_w, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputPower {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_w, payload);
 }
 
 /// Altitude that is set. Section 3.1.
@@ -2531,23 +1779,9 @@ impl Altitude {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("altitude", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x004A)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x004A)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("altitude", FRAME.data(REGISTER_SELECTOR.place, 0x004A));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2557,20 +1791,10 @@ impl Altitude {
     }
 }
 
-impl Layout for Altitude {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_m: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_m, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Altitude {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_m, payload);
 }
 
 /// Active input mode. Section 3.1.
@@ -2586,23 +1810,9 @@ impl ActiveInputMode {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("active_input_mode", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x004B)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x004B)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("active_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x004B));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2612,20 +1822,10 @@ impl ActiveInputMode {
     }
 }
 
-impl Layout for ActiveInputMode {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for ActiveInputMode {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Low bits of the serial number. Section 3.1.
@@ -2644,23 +1844,9 @@ impl SerialNumberLow {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("serial_number_low", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0054)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0054)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("serial_number_low", FRAME.data(REGISTER_SELECTOR.place, 0x0054));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2670,20 +1856,10 @@ impl SerialNumberLow {
     }
 }
 
-impl Layout for SerialNumberLow {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SerialNumberLow {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// High bits of the serial number. Section 3.1.
@@ -2702,23 +1878,9 @@ impl SerialNumberHigh {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("serial_number_high", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0055)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0055)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("serial_number_high", FRAME.data(REGISTER_SELECTOR.place, 0x0055));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2728,20 +1890,10 @@ impl SerialNumberHigh {
     }
 }
 
-impl Layout for SerialNumberHigh {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SerialNumberHigh {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Version of the DC/DC side. Section 3.1.
@@ -2760,23 +1912,9 @@ impl DcdcVersion {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("dcdc_version", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0056)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0056)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("dcdc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2786,20 +1924,10 @@ impl DcdcVersion {
     }
 }
 
-impl Layout for DcdcVersion {
-    fn decode(data: &Data) -> Self {
-        Self {
-            version: Self::VERSION.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION.put(self.version, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VERSION]
-    }
+impl Single for DcdcVersion {
+    const SIGNAL: &'static dyn AnySignal = &Self::VERSION;
+    const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
 }
 
 /// Version of the PFC side. Section 3.1.
@@ -2818,23 +1946,9 @@ impl PfcVersion {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("pfc_version", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0057)
-                .data(FUNCTION_SELECTOR.place, 0x10),
-        )
-        .reply(
-            FRAME
-                .selectors(&[FUNCTION_SELECTOR, RESULT_SELECTOR, REGISTER_SELECTOR])
-                .data(REGISTER_SELECTOR.place, 0x0057)
-                .data(FUNCTION_SELECTOR.place, 0x42),
-        );
+    pub const READ: Exchange = READ_ACCESS_2.of("pfc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0057));
 
-    /// Builds the request `read`. Section 2.3.2.
-    ///
-    /// `point_to_point`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS_2).
     ///
     /// # Errors
     ///
@@ -2844,20 +1958,10 @@ impl PfcVersion {
     }
 }
 
-impl Layout for PfcVersion {
-    fn decode(data: &Data) -> Self {
-        Self {
-            version: Self::VERSION.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION.put(self.version, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VERSION]
-    }
+impl Single for PfcVersion {
+    const SIGNAL: &'static dyn AnySignal = &Self::VERSION;
+    const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
 }
 
 /// Every message that a frame can carry.
@@ -3007,19 +2111,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
-    const MODES: &'static [Mode] = &[
-        POINT_TO_POINT_MODE,
-        GROUP_MODE,
-        EXTENDED_GROUP_MODE,
-        BROADCAST_MODE,
-    ];
+    const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, EXTENDED_GROUP_MODE, BROADCAST_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
-        let recognised = match (
-            FUNCTION_SELECTOR.place.get(data),
-            REGISTER_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
             (0x10, 0x0001) => Recognised::request(&OutputVoltage::READ, Self::ReadOutputVoltage),
             (0x10, 0x0002) => Recognised::request(&OutputCurrent::READ, Self::ReadOutputCurrent),
             (0x10, 0x0003) => Recognised::request(&CurrentLimit::READ, Self::ReadCurrentLimit),
@@ -3042,26 +2139,17 @@ impl Protocol for Message {
             (0x03, 0x0021) => Recognised::request(&SetOutputVoltage::SET, Self::SetOutputVoltage(Layout::decode(data))),
             (0x03, 0x0022) => Recognised::request(&SetCurrentLimit::SET, Self::SetCurrentLimit(Layout::decode(data))),
             (0x03, 0x0023) => {
-                Recognised::request(
-                    &SetOvervoltagePoint::SET,
-                    Self::SetOvervoltagePoint(Layout::decode(data)),
-                )
+                Recognised::request(&SetOvervoltagePoint::SET, Self::SetOvervoltagePoint(Layout::decode(data)))
             }
             (0x03, 0x0030) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
             (0x03, 0x0031) => Recognised::request(&ResetOvervoltage::SET, Self::ResetOvervoltage(Layout::decode(data))),
             (0x03, 0x003E) => {
-                Recognised::request(
-                    &SetOvervoltageRelevance::SET,
-                    Self::SetOvervoltageRelevance(Layout::decode(data)),
-                )
+                Recognised::request(&SetOvervoltageRelevance::SET, Self::SetOvervoltageRelevance(Layout::decode(data)))
             }
             (0x10, 0x0040) => Recognised::request(&ModuleStatus::READ, Self::ReadModuleStatus),
             (0x10, 0x0043) => Recognised::request(&GroupAndAddress::READ, Self::ReadGroupAndAddress),
             (0x03, 0x0044) => {
-                Recognised::request(
-                    &ResetShortCircuit::SET,
-                    Self::ResetShortCircuit(Layout::decode(data)),
-                )
+                Recognised::request(&ResetShortCircuit::SET, Self::ResetShortCircuit(Layout::decode(data)))
             }
             (0x03, 0x0046) => Recognised::request(&SetInputMode::SET, Self::SetInputMode(Layout::decode(data))),
             (0x10, 0x0048) => Recognised::request(&InputPower::READ, Self::ReadInputPower),
@@ -3078,36 +2166,24 @@ impl Protocol for Message {
 
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
-        let recognised = match (
-            FUNCTION_SELECTOR.place.get(data),
-            REGISTER_SELECTOR.place.get(data),
-        ) {
+        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
             (0x41, 0x0001) => Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data))),
             (0x41, 0x0002) => Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data))),
             (0x41, 0x0003) => Recognised::reply(&CurrentLimit::READ, Self::CurrentLimit(Layout::decode(data))),
             (0x41, 0x0004) => {
-                Recognised::reply(
-                    &DcBoardTemperature::READ,
-                    Self::DcBoardTemperature(Layout::decode(data)),
-                )
+                Recognised::reply(&DcBoardTemperature::READ, Self::DcBoardTemperature(Layout::decode(data)))
             }
             (0x41, 0x0005) => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))),
             (0x41, 0x0008) => Recognised::reply(&Pfc0Voltage::READ, Self::Pfc0Voltage(Layout::decode(data))),
             (0x41, 0x000A) => Recognised::reply(&Pfc1Voltage::READ, Self::Pfc1Voltage(Layout::decode(data))),
             (0x41, 0x000B) => {
-                Recognised::reply(
-                    &AmbientTemperature::READ,
-                    Self::AmbientTemperature(Layout::decode(data)),
-                )
+                Recognised::reply(&AmbientTemperature::READ, Self::AmbientTemperature(Layout::decode(data)))
             }
             (0x41, 0x000C) => Recognised::reply(&PhaseAVoltage::READ, Self::PhaseAVoltage(Layout::decode(data))),
             (0x41, 0x000D) => Recognised::reply(&PhaseBVoltage::READ, Self::PhaseBVoltage(Layout::decode(data))),
             (0x41, 0x000E) => Recognised::reply(&PhaseCVoltage::READ, Self::PhaseCVoltage(Layout::decode(data))),
             (0x41, 0x0010) => {
-                Recognised::reply(
-                    &PfcBoardTemperature::READ,
-                    Self::PfcBoardTemperature(Layout::decode(data)),
-                )
+                Recognised::reply(&PfcBoardTemperature::READ, Self::PfcBoardTemperature(Layout::decode(data)))
             }
             (0x41, 0x0011) => Recognised::reply(&RatedPower::READ, Self::RatedPower(Layout::decode(data))),
             (0x41, 0x0012) => Recognised::reply(&RatedCurrent::READ, Self::RatedCurrent(Layout::decode(data))),
@@ -3119,18 +2195,12 @@ impl Protocol for Message {
             (0x41, 0x0021) => Recognised::reply(&SetOutputVoltage::SET, Self::SetOutputVoltage(Layout::decode(data))),
             (0x41, 0x0022) => Recognised::reply(&SetCurrentLimit::SET, Self::SetCurrentLimit(Layout::decode(data))),
             (0x41, 0x0023) => {
-                Recognised::reply(
-                    &SetOvervoltagePoint::SET,
-                    Self::SetOvervoltagePoint(Layout::decode(data)),
-                )
+                Recognised::reply(&SetOvervoltagePoint::SET, Self::SetOvervoltagePoint(Layout::decode(data)))
             }
             (0x42, 0x0030) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
             (0x42, 0x0031) => Recognised::reply(&ResetOvervoltage::SET, Self::ResetOvervoltage(Layout::decode(data))),
             (0x42, 0x003E) => {
-                Recognised::reply(
-                    &SetOvervoltageRelevance::SET,
-                    Self::SetOvervoltageRelevance(Layout::decode(data)),
-                )
+                Recognised::reply(&SetOvervoltageRelevance::SET, Self::SetOvervoltageRelevance(Layout::decode(data)))
             }
             (0x42, 0x0040) => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
             (0x42, 0x0043) => Recognised::reply(&GroupAndAddress::READ, Self::GroupAndAddress(Layout::decode(data))),
@@ -3198,3 +2268,128 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Output voltage", &[("register", 0x0001)], &[&OutputVoltage::VALUE], &[&OutputVoltage::READ]),
+    Entry::new("Output current", &[("register", 0x0002)], &[&OutputCurrent::VALUE], &[&OutputCurrent::READ]),
+    Entry::new(
+        "Current limit (1 is the rated current)",
+        &[("register", 0x0003)],
+        &[&CurrentLimit::VALUE],
+        &[&CurrentLimit::READ],
+    ),
+    Entry::new(
+        "Temperature of the DC board",
+        &[("register", 0x0004)],
+        &[&DcBoardTemperature::VALUE],
+        &[&DcBoardTemperature::READ],
+    ),
+    Entry::new("Input voltage (phase or DC)", &[("register", 0x0005)], &[&InputVoltage::VALUE], &[&InputVoltage::READ]),
+    Entry::new(
+        "PFC 0 voltage (positive half bus)",
+        &[("register", 0x0008)],
+        &[&Pfc0Voltage::VALUE],
+        &[&Pfc0Voltage::READ],
+    ),
+    Entry::new(
+        "PFC 1 voltage (negative half bus)",
+        &[("register", 0x000A)],
+        &[&Pfc1Voltage::VALUE],
+        &[&Pfc1Voltage::READ],
+    ),
+    Entry::new(
+        "Ambient temperature at the panel",
+        &[("register", 0x000B)],
+        &[&AmbientTemperature::VALUE],
+        &[&AmbientTemperature::READ],
+    ),
+    Entry::new("Voltage of AC phase A", &[("register", 0x000C)], &[&PhaseAVoltage::VALUE], &[&PhaseAVoltage::READ]),
+    Entry::new("Voltage of AC phase B", &[("register", 0x000D)], &[&PhaseBVoltage::VALUE], &[&PhaseBVoltage::READ]),
+    Entry::new("Voltage of AC phase C", &[("register", 0x000E)], &[&PhaseCVoltage::VALUE], &[&PhaseCVoltage::READ]),
+    Entry::new(
+        "Temperature of the PFC board",
+        &[("register", 0x0010)],
+        &[&PfcBoardTemperature::VALUE],
+        &[&PfcBoardTemperature::READ],
+    ),
+    Entry::new("Rated output power", &[("register", 0x0011)], &[&RatedPower::VALUE], &[&RatedPower::READ]),
+    Entry::new("Rated output current", &[("register", 0x0012)], &[&RatedCurrent::VALUE], &[&RatedCurrent::READ]),
+    Entry::new(
+        "Operating altitude, by which the module derates",
+        &[("register", 0x0017)],
+        &[&SetAltitude::VALUE],
+        &[&SetAltitude::SET],
+    ),
+    Entry::new("Output current", &[("register", 0x001B)], &[&SetOutputCurrent::VALUE], &[&SetOutputCurrent::SET]),
+    Entry::new("Put a module into a group", &[("register", 0x001E)], &[&SetGroup::GROUP], &[&SetGroup::SET]),
+    Entry::new(
+        "Choose where modules get their address from",
+        &[("register", 0x001F)],
+        &[&SetAddressMode::VALUE],
+        &[&SetAddressMode::SET],
+    ),
+    Entry::new(
+        "Output power (1 is the rated power)",
+        &[("register", 0x0020)],
+        &[&SetOutputPower::VALUE],
+        &[&SetOutputPower::SET],
+    ),
+    Entry::new("Output voltage", &[("register", 0x0021)], &[&SetOutputVoltage::VALUE], &[&SetOutputVoltage::SET]),
+    Entry::new(
+        "Current limit (1 is the rated current)",
+        &[("register", 0x0022)],
+        &[&SetCurrentLimit::VALUE],
+        &[&SetCurrentLimit::SET],
+    ),
+    Entry::new(
+        "Upper limit of the output voltage, at which the overvoltage protection acts",
+        &[("register", 0x0023)],
+        &[&SetOvervoltagePoint::VALUE],
+        &[&SetOvervoltagePoint::SET],
+    ),
+    Entry::new("Start up or shut down", &[("register", 0x0030)], &[&SwitchModules::VALUE], &[&SwitchModules::SET]),
+    Entry::new(
+        "Reset after overvoltage",
+        &[("register", 0x0031)],
+        &[&ResetOvervoltage::VALUE],
+        &[&ResetOvervoltage::SET],
+    ),
+    Entry::new(
+        "Relevance permission of the output overvoltage protection",
+        &[("register", 0x003E)],
+        &[&SetOvervoltageRelevance::VALUE],
+        &[&SetOvervoltageRelevance::SET],
+    ),
+    Entry::new("Alarms and states", &[("register", 0x0040)], &[&ModuleStatus::VALUE], &[&ModuleStatus::READ]),
+    Entry::new(
+        "Group of the module and address on its DIP switch",
+        &[("register", 0x0043)],
+        &[&GroupAndAddress::GROUP, &GroupAndAddress::ADDRESS],
+        &[&GroupAndAddress::READ],
+    ),
+    Entry::new(
+        "Reset after a short circuit",
+        &[("register", 0x0044)],
+        &[&ResetShortCircuit::VALUE],
+        &[&ResetShortCircuit::SET],
+    ),
+    Entry::new("Input mode", &[("register", 0x0046)], &[&SetInputMode::VALUE], &[&SetInputMode::SET]),
+    Entry::new("Input power", &[("register", 0x0048)], &[&InputPower::VALUE], &[&InputPower::READ]),
+    Entry::new("Altitude that is set", &[("register", 0x004A)], &[&Altitude::VALUE], &[&Altitude::READ]),
+    Entry::new("Active input mode", &[("register", 0x004B)], &[&ActiveInputMode::VALUE], &[&ActiveInputMode::READ]),
+    Entry::new(
+        "Low bits of the serial number",
+        &[("register", 0x0054)],
+        &[&SerialNumberLow::VALUE],
+        &[&SerialNumberLow::READ],
+    ),
+    Entry::new(
+        "High bits of the serial number",
+        &[("register", 0x0055)],
+        &[&SerialNumberHigh::VALUE],
+        &[&SerialNumberHigh::READ],
+    ),
+    Entry::new("Version of the DC/DC side", &[("register", 0x0056)], &[&DcdcVersion::VERSION], &[&DcdcVersion::READ]),
+    Entry::new("Version of the PFC side", &[("register", 0x0057)], &[&PfcVersion::VERSION], &[&PfcVersion::READ]),
+];

@@ -5,9 +5,9 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Piece, Place, Protocol, Recognised, Selector, Signal, Who, left_aligned,
-    right_aligned,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Piece, Place, Protocol, Recognised, Selector, Signal,
+    Single, Who, left_aligned, right_aligned,
 };
 
 /// What every frame shows.
@@ -42,10 +42,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            function: Self::FUNCTION.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { function: Self::FUNCTION.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -105,9 +102,7 @@ pub const RECTIFIER_MODE: Mode = Mode {
     target: Some(&RECTIFIER_ADDRESS),
     request: Some(Pattern {
         constants: &[(Identifier::FUNCTION, 0x6)],
-        addresses: &[
-            Address::new(Identifier::NODE, &RECTIFIER_ADDRESS).excluding(&[(0x00, 0x00)]),
-        ],
+        addresses: &[Address::new(Identifier::NODE, &RECTIFIER_ADDRESS).excluding(&[(0x00, 0x00)])],
     }),
     one: Some(Pattern {
         constants: &[(Identifier::FUNCTION, 0x5)],
@@ -169,29 +164,72 @@ pub const MEASUREMENT_B_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 5] = [Some(Who::One), None, None, None, None];
+/// Read. Section 5.
+///
+/// `rectifier`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None, None])
+    .request(
+        FRAME
+            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+            .id(Identifier::FUNCTION, 0x6)
+            .data(OPERATION_SELECTOR.place, 0x40),
+    )
+    .reply(
+        FRAME
+            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+            .id(Identifier::FUNCTION, 0x5)
+            .data(OPERATION_SELECTOR.place, 0x4B),
+    );
 
-/// Who answers `write`, by addressing mode.
-const WRITE_ANSWERS: [Option<Who>; 5] = [
-    Some(Who::One),
-    Some(Who::Nobody),
-    None,
-    None,
-    None,
-];
+/// Write. Section 5.
+///
+/// The answer repeats the value.
+///
+/// `rectifier`: the module answers. `all`: nobody answers.
+pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One), Some(Who::Nobody), None, None, None])
+    .with_values()
+    .request(
+        FRAME
+            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+            .id(Identifier::FUNCTION, 0x6)
+            .data(OPERATION_SELECTOR.place, 0x22),
+    )
+    .reply(
+        FRAME
+            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+            .id(Identifier::FUNCTION, 0x5)
+            .data(OPERATION_SELECTOR.place, 0x60),
+    );
 
-/// Who answers `refuse`, by addressing mode.
-const REFUSE_ANSWERS: [Option<Who>; 5] = [Some(Who::One), None, None, None, None];
+/// Refuse what was requested. Section 5.
+///
+/// `rectifier`: the module answers.
+pub const REFUSE_ACCESS: Exchange = Exchange::new("refuse", &[Some(Who::One), None, None, None, None])
+    .reply(
+        FRAME
+            .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
+            .id(Identifier::FUNCTION, 0x5)
+            .data(OPERATION_SELECTOR.place, 0x80),
+    );
 
-/// Who answers `tell`, by addressing mode.
-const TELL_ANSWERS: [Option<Who>; 5] = [None, None, Some(Who::Nobody), None, None];
+/// Tell all rectifiers. Section 2.
+///
+/// `keep_alive`: nobody answers.
+pub const TELL_ACCESS: Exchange = Exchange::new("tell", &[None, None, Some(Who::Nobody), None, None])
+    .with_values()
+    .request(FRAME.selectors(&[SIGN_SELECTOR]).id(Identifier::FUNCTION, 0xF));
 
-/// Who answers `report_a`, by addressing mode.
-const REPORT_A_ANSWERS: [Option<Who>; 5] = [None, None, None, Some(Who::One), None];
+/// Report at a fixed interval. Section 2.
+///
+/// `measurement_a`: the module answers.
+pub const REPORT_A_ACCESS: Exchange = Exchange::new("report_a", &[None, None, None, Some(Who::One), None])
+    .report(FRAME.id(Identifier::FUNCTION, 0x1));
 
-/// Who answers `report_b`, by addressing mode.
-const REPORT_B_ANSWERS: [Option<Who>; 5] = [None, None, None, None, Some(Who::One)];
+/// Report on a change. Section 2.
+///
+/// `measurement_b`: the module answers.
+pub const REPORT_B_ACCESS: Exchange = Exchange::new("report_b", &[None, None, None, None, Some(Who::One)])
+    .report(FRAME.id(Identifier::FUNCTION, 0x2));
 
 /// What a request wants, or what became of it. Section 5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -350,9 +388,7 @@ pub enum Input {
 
 impl Word for Input {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::None, "none"), (Self::Ac, "ac"), (Self::Dc, "dc")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::None, "none"), (Self::Ac, "ac"), (Self::Dc, "dc")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -425,11 +461,7 @@ pub enum RefusalReason {
 impl Word for RefusalReason {
     type Raw = u32;
     const LEGEND: Legend<Self> = Legend::Names(
-        &[
-            (Self::NoSuchIndex, "no_such_index"),
-            (Self::ReadOnly, "read_only"),
-            (Self::OutOfRange, "out_of_range"),
-        ],
+        &[(Self::NoSuchIndex, "no_such_index"), (Self::ReadOnly, "read_only"), (Self::OutOfRange, "out_of_range")],
     );
 
     fn from_raw(raw: u32) -> Self {
@@ -466,9 +498,7 @@ pub enum KeepAliveOutputs {
 
 impl Word for KeepAliveOutputs {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Off, "off"), (Self::Allowed, "allowed")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Off, "off"), (Self::Allowed, "allowed")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -533,11 +563,7 @@ impl Word for Conditions {
             StatusBit::new(6, "output_overvoltage", "Output voltage too high"),
             StatusBit::new(7, "short_circuit", "Output short-circuited"),
             StatusBit::new(16, "current_shared", "Current is shared between rectifiers"),
-            StatusBit::new(
-                17,
-                "address_conflict",
-                "Another rectifier has the same node",
-            ),
+            StatusBit::new(17, "address_conflict", "Another rectifier has the same node"),
             StatusBit::new(31, "not_calibrated", "Rectifier is not calibrated"),
         ],
     );
@@ -593,11 +619,7 @@ impl Word for FirmwareValue {
 
     fn from_raw(raw: u64) -> Self {
         let data = left_aligned(raw, 3);
-        Self {
-            major: Self::MAJOR.read(&data),
-            minor: Self::MINOR.read(&data),
-            patch: Self::PATCH.read(&data),
-        }
+        Self { major: Self::MAJOR.read(&data), minor: Self::MINOR.read(&data), patch: Self::PATCH.read(&data) }
     }
 
     fn raw(self) -> u64 {
@@ -641,19 +663,9 @@ pub struct MeasurementA {
 
 impl MeasurementA {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new(
-            "voltage",
-            Place::bytes(1, 0).bits(11, 0),
-        )
-        .unit("V")
-        .scale(1, 50);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(1, 0).bits(11, 0)).unit("V").scale(1, 50);
     /// The signal `current`.
-    pub const CURRENT: Signal<i16> = Signal::new(
-            "current",
-            Place::bytes(2, 1).bits(15, 4),
-        )
-        .unit("A")
-        .scale(1, 10);
+    pub const CURRENT: Signal<i16> = Signal::new("current", Place::bytes(2, 1).bits(15, 4)).unit("A").scale(1, 10);
     /// The signal `temperature`.
     pub const TEMPERATURE: Signal<u8> = Signal::new("temperature", Place::byte(3))
         .unit("°C")
@@ -664,14 +676,9 @@ impl MeasurementA {
     /// The value of `temperature` that stands for `sensor_broken`.
     pub const TEMPERATURE_SENSOR_BROKEN: f64 = 87.5;
     /// The signal `power`.
-    pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(5, 4))
-        .unit("W")
-        .scale(1, 2);
+    pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(5, 4)).unit("W").scale(1, 2);
     /// The signal `output`.
-    pub const OUTPUT: Signal<MeasurementAOutput> = Signal::new(
-        "output",
-        Place::byte(6).bit(0),
-    );
+    pub const OUTPUT: Signal<MeasurementAOutput> = Signal::new("output", Place::byte(6).bit(0));
     /// The signal `mode`.
     pub const MODE: Signal<ModeValue> = Signal::new("mode", Place::byte(6).bits(3, 1));
     /// The signal `counter`.
@@ -679,12 +686,7 @@ impl MeasurementA {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF0, 0x00];
     /// How it travels by `report_a`. It comes every 500 ms.
-    pub const REPORT_A: Exchange = Exchange::new(
-            "measurement_a",
-            "report_a",
-            &REPORT_A_ANSWERS,
-        )
-        .report(FRAME.id(Identifier::FUNCTION, 0x1));
+    pub const REPORT_A: Exchange = REPORT_A_ACCESS.of("measurement_a", FRAME);
 }
 
 impl Layout for MeasurementA {
@@ -711,15 +713,7 @@ impl Layout for MeasurementA {
     }
 
     fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[
-            &Self::VOLTAGE,
-            &Self::CURRENT,
-            &Self::TEMPERATURE,
-            &Self::POWER,
-            &Self::OUTPUT,
-            &Self::MODE,
-            &Self::COUNTER,
-        ]
+        &[&Self::VOLTAGE, &Self::CURRENT, &Self::TEMPERATURE, &Self::POWER, &Self::OUTPUT, &Self::MODE, &Self::COUNTER]
     }
 }
 
@@ -742,26 +736,15 @@ impl MeasurementB {
     /// The signal `input`.
     pub const INPUT: Signal<Input> = Signal::new("input", Place::byte(0));
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(2, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(2, 1)).unit("V").scale(1, 10);
     /// The signal `fan_speed`.
-    pub const FAN_SPEED: Signal<u16> = Signal::new("fan_speed", Place::bytes(4, 3))
-        .unit("rpm");
+    pub const FAN_SPEED: Signal<u16> = Signal::new("fan_speed", Place::bytes(4, 3)).unit("rpm");
     /// The signal `load`.
-    pub const LOAD: Signal<u8> = Signal::new("load", Place::byte(5))
-        .unit("%")
-        .scale(1, 2);
+    pub const LOAD: Signal<u8> = Signal::new("load", Place::byte(5)).unit("%").scale(1, 2);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `report_b`. It comes every 5 s.
-    pub const REPORT_B: Exchange = Exchange::new(
-            "measurement_b",
-            "report_b",
-            &REPORT_B_ANSWERS,
-        )
-        .length(6)
-        .report(FRAME.id(Identifier::FUNCTION, 0x2));
+    pub const REPORT_B: Exchange = REPORT_B_ACCESS.of("measurement_b", FRAME).length(6);
 }
 
 impl Layout for MeasurementB {
@@ -795,28 +778,12 @@ pub struct VoltageSetPoint {
 
 impl VoltageSetPoint {
     /// The signal `value`.
-    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4))
-        .unit("V")
-        .scale(1, 100)
-        .limits(42.0, 58.0);
+    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 100).limits(42.0, 58.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("voltage_set_point", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2100)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2100)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -825,25 +792,8 @@ impl VoltageSetPoint {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new(
-            "voltage_set_point",
-            "write",
-            &WRITE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2100)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x22),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2100)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x60),
-        )
+    pub const WRITE: Exchange = WRITE_ACCESS
+        .of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -852,9 +802,7 @@ impl VoltageSetPoint {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -863,37 +811,20 @@ impl VoltageSetPoint {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `write` with these values. Section 5.
-    ///
-    /// The answer repeats the value.
-    ///
-    /// `rectifier`: the module answers. `all`: nobody answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
 
-impl Layout for VoltageSetPoint {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for VoltageSetPoint {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Limit of the output current. Section 5.
@@ -905,28 +836,12 @@ pub struct CurrentLimit {
 
 impl CurrentLimit {
     /// The signal `value`.
-    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4))
-        .unit("A")
-        .scale(1, 10)
-        .limits(0.0, 125.0);
+    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 10).limits(0.0, 125.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("current_limit", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2101)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2101)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -935,21 +850,8 @@ impl CurrentLimit {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new("current_limit", "write", &WRITE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2101)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x22),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2101)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x60),
-        )
+    pub const WRITE: Exchange = WRITE_ACCESS
+        .of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -958,9 +860,7 @@ impl CurrentLimit {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -969,37 +869,20 @@ impl CurrentLimit {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `write` with these values. Section 5.
-    ///
-    /// The answer repeats the value.
-    ///
-    /// `rectifier`: the module answers. `all`: nobody answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
 
-impl Layout for CurrentLimit {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for CurrentLimit {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// Switch the output. Section 5.
@@ -1015,21 +898,8 @@ impl OutputSwitch {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_switch", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2102)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2102)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1038,21 +908,8 @@ impl OutputSwitch {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new("output_switch", "write", &WRITE_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2102)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x22),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2102)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x60),
-        )
+    pub const WRITE: Exchange = WRITE_ACCESS
+        .of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1061,9 +918,7 @@ impl OutputSwitch {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1072,37 +927,20 @@ impl OutputSwitch {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `write` with these values. Section 5.
-    ///
-    /// The answer repeats the value.
-    ///
-    /// `rectifier`: the module answers. `all`: nobody answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
 
-impl Layout for OutputSwitch {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputSwitch {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Least speed of the fan. Section 5.
@@ -1123,21 +961,8 @@ impl MinimumFanSpeed {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("minimum_fan_speed", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2103)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2103)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1146,25 +971,8 @@ impl MinimumFanSpeed {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new(
-            "minimum_fan_speed",
-            "write",
-            &WRITE_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2103)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x22),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2103)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x60),
-        )
+    pub const WRITE: Exchange = WRITE_ACCESS
+        .of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1173,9 +981,7 @@ impl MinimumFanSpeed {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1184,37 +990,20 @@ impl MinimumFanSpeed {
         Self::READ.request_to(route, &())
     }
 
-    /// Builds the request `write` with these values. Section 5.
-    ///
-    /// The answer repeats the value.
-    ///
-    /// `rectifier`: the module answers. `all`: nobody answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
 
-impl Layout for MinimumFanSpeed {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_percent: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_percent, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for MinimumFanSpeed {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_percent, payload);
 }
 
 /// Output voltage. Section 5.
@@ -1226,27 +1015,12 @@ pub struct OutputVoltage {
 
 impl OutputVoltage {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(7, 4))
-        .unit("V")
-        .scale(1, 1000);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_voltage", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2200)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2200)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("output_voltage", FRAME.data(INDEX_SELECTOR.place, 0x2200))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1255,9 +1029,7 @@ impl OutputVoltage {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1267,20 +1039,10 @@ impl OutputVoltage {
     }
 }
 
-impl Layout for OutputVoltage {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_v: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_v, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputVoltage {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
 
 /// Output current. Section 5.
@@ -1292,27 +1054,12 @@ pub struct OutputCurrent {
 
 impl OutputCurrent {
     /// The signal `value`.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(7, 4))
-        .unit("A")
-        .scale(1, 1000);
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 1000);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("output_current", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2201)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2201)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("output_current", FRAME.data(INDEX_SELECTOR.place, 0x2201))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1321,9 +1068,7 @@ impl OutputCurrent {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1333,20 +1078,10 @@ impl OutputCurrent {
     }
 }
 
-impl Layout for OutputCurrent {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_a: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_a, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OutputCurrent {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
 
 /// Temperature of the heat sink. Section 5.
@@ -1370,25 +1105,8 @@ impl HeatSinkTemperature {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new(
-            "heat_sink_temperature",
-            "read",
-            &READ_ANSWERS,
-        )
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2202)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2202)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("heat_sink_temperature", FRAME.data(INDEX_SELECTOR.place, 0x2202))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1397,9 +1115,7 @@ impl HeatSinkTemperature {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1409,20 +1125,10 @@ impl HeatSinkTemperature {
     }
 }
 
-impl Layout for HeatSinkTemperature {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_c: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_c, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for HeatSinkTemperature {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
 
 /// Frequency of the input. Section 5.
@@ -1438,21 +1144,8 @@ impl InputFrequency {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("input_frequency", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2203)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2203)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("input_frequency", FRAME.data(INDEX_SELECTOR.place, 0x2203))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1461,9 +1154,7 @@ impl InputFrequency {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1473,20 +1164,10 @@ impl InputFrequency {
     }
 }
 
-impl Layout for InputFrequency {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_hz: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value_hz, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for InputFrequency {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_hz, payload);
 }
 
 /// Time in operation. Section 5.
@@ -1498,27 +1179,12 @@ pub struct OperatingTime {
 
 impl OperatingTime {
     /// The signal `value`.
-    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4))
-        .unit("h")
-        .scale(1, 10);
+    pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(7, 4)).unit("h").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("operating_time", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2204)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2204)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("operating_time", FRAME.data(INDEX_SELECTOR.place, 0x2204))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1527,9 +1193,7 @@ impl OperatingTime {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1539,20 +1203,10 @@ impl OperatingTime {
     }
 }
 
-impl Layout for OperatingTime {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value_h: Self::VALUE.decode(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.encode(self.value_h, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for OperatingTime {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_h, payload);
 }
 
 /// First four characters of the serial number. Section 5.
@@ -1568,21 +1222,8 @@ impl SerialNumber {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("serial_number", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2300)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2300)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("serial_number", FRAME.data(INDEX_SELECTOR.place, 0x2300))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1591,9 +1232,7 @@ impl SerialNumber {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1603,20 +1242,10 @@ impl SerialNumber {
     }
 }
 
-impl Layout for SerialNumber {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for SerialNumber {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Version of the firmware. Section 5.
@@ -1632,21 +1261,8 @@ impl Firmware {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("firmware", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2301)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2301)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("firmware", FRAME.data(INDEX_SELECTOR.place, 0x2301))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1655,9 +1271,7 @@ impl Firmware {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1667,20 +1281,10 @@ impl Firmware {
     }
 }
 
-impl Layout for Firmware {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Firmware {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Conditions of a rectifier. Section 5.
@@ -1696,21 +1300,8 @@ impl State {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("state", "read", &READ_ANSWERS)
-        .request(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2400)
-                .id(Identifier::FUNCTION, 0x6)
-                .data(OPERATION_SELECTOR.place, 0x40),
-        )
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .data(INDEX_SELECTOR.place, 0x2400)
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x4B),
-        )
+    pub const READ: Exchange = READ_ACCESS
+        .of("state", FRAME.data(INDEX_SELECTOR.place, 0x2400))
         .refusal(
             &FRAME
                 .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
@@ -1719,9 +1310,7 @@ impl State {
                 .data(OPERATION_SELECTOR.place, 0x80),
         );
 
-    /// Builds the request `read`. Section 5.
-    ///
-    /// `rectifier`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -1731,20 +1320,10 @@ impl State {
     }
 }
 
-impl Layout for State {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for State {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Why a request is refused. Section 5.
@@ -1760,29 +1339,13 @@ impl Refusal {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `refuse`.
-    pub const REFUSE: Exchange = Exchange::new("refusal", "refuse", &REFUSE_ANSWERS)
-        .reply(
-            FRAME
-                .selectors(&[OPERATION_SELECTOR, INDEX_SELECTOR])
-                .id(Identifier::FUNCTION, 0x5)
-                .data(OPERATION_SELECTOR.place, 0x80),
-        );
+    pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);
 }
 
-impl Layout for Refusal {
-    fn decode(data: &Data) -> Self {
-        Self {
-            value: Self::VALUE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VALUE]
-    }
+impl Single for Refusal {
+    const SIGNAL: &'static dyn AnySignal = &Self::VALUE;
+    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
 /// Sign of life of the controller. Section 6.
@@ -1796,25 +1359,13 @@ pub struct KeepAlive {
 
 impl KeepAlive {
     /// The signal `outputs`.
-    pub const OUTPUTS: Signal<KeepAliveOutputs> = Signal::new(
-        "outputs",
-        Place::byte(1).bit(0),
-    );
+    pub const OUTPUTS: Signal<KeepAliveOutputs> = Signal::new("outputs", Place::byte(1).bit(0));
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFE, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `tell`.
-    pub const TELL: Exchange = Exchange::new("keep_alive", "tell", &TELL_ANSWERS)
-        .length(2)
-        .request(
-            FRAME
-                .selectors(&[SIGN_SELECTOR])
-                .id(Identifier::FUNCTION, 0xF)
-                .data(SIGN_SELECTOR.place, 0x55),
-        );
+    pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
-    /// Builds the request `tell` with these values. Section 2.
-    ///
-    /// `keep_alive`: nobody answers.
+    /// Builds the request [`tell`](TELL_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -1824,20 +1375,10 @@ impl KeepAlive {
     }
 }
 
-impl Layout for KeepAlive {
-    fn decode(data: &Data) -> Self {
-        Self {
-            outputs: Self::OUTPUTS.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::OUTPUTS.put(self.outputs, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::OUTPUTS]
-    }
+impl Single for KeepAlive {
+    const SIGNAL: &'static dyn AnySignal = &Self::OUTPUTS;
+    const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::OUTPUTS.put(message.outputs, payload);
 }
 
 /// Every message that a frame can carry.
@@ -1925,13 +1466,8 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
-    const MODES: &'static [Mode] = &[
-        RECTIFIER_MODE,
-        ALL_MODE,
-        KEEP_ALIVE_MODE,
-        MEASUREMENT_A_MODE,
-        MEASUREMENT_B_MODE,
-    ];
+    const MODES: &'static [Mode] = &[RECTIFIER_MODE, ALL_MODE, KEEP_ALIVE_MODE, MEASUREMENT_A_MODE, MEASUREMENT_B_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -1944,31 +1480,19 @@ impl Protocol for Message {
         ) {
             (0x6, 0x40, 0x2100, _) => Recognised::request(&VoltageSetPoint::READ, Self::ReadVoltageSetPoint),
             (0x6, 0x22, 0x2100, _) => {
-                Recognised::request(
-                    &VoltageSetPoint::WRITE,
-                    Self::VoltageSetPoint(Layout::decode(data)),
-                )
+                Recognised::request(&VoltageSetPoint::WRITE, Self::VoltageSetPoint(Layout::decode(data)))
             }
             (0x6, 0x40, 0x2101, _) => Recognised::request(&CurrentLimit::READ, Self::ReadCurrentLimit),
             (0x6, 0x22, 0x2101, _) => {
-                Recognised::request(
-                    &CurrentLimit::WRITE,
-                    Self::CurrentLimit(Layout::decode(data)),
-                )
+                Recognised::request(&CurrentLimit::WRITE, Self::CurrentLimit(Layout::decode(data)))
             }
             (0x6, 0x40, 0x2102, _) => Recognised::request(&OutputSwitch::READ, Self::ReadOutputSwitch),
             (0x6, 0x22, 0x2102, _) => {
-                Recognised::request(
-                    &OutputSwitch::WRITE,
-                    Self::OutputSwitch(Layout::decode(data)),
-                )
+                Recognised::request(&OutputSwitch::WRITE, Self::OutputSwitch(Layout::decode(data)))
             }
             (0x6, 0x40, 0x2103, _) => Recognised::request(&MinimumFanSpeed::READ, Self::ReadMinimumFanSpeed),
             (0x6, 0x22, 0x2103, _) => {
-                Recognised::request(
-                    &MinimumFanSpeed::WRITE,
-                    Self::MinimumFanSpeed(Layout::decode(data)),
-                )
+                Recognised::request(&MinimumFanSpeed::WRITE, Self::MinimumFanSpeed(Layout::decode(data)))
             }
             (0x6, 0x40, 0x2200, _) => Recognised::request(&OutputVoltage::READ, Self::ReadOutputVoltage),
             (0x6, 0x40, 0x2201, _) => Recognised::request(&OutputCurrent::READ, Self::ReadOutputCurrent),
@@ -1993,40 +1517,25 @@ impl Protocol for Message {
             INDEX_SELECTOR.place.get(data),
         ) {
             (0x5, 0x4B, 0x2100) => {
-                Recognised::reply(
-                    &VoltageSetPoint::READ,
-                    Self::VoltageSetPoint(Layout::decode(data)),
-                )
+                Recognised::reply(&VoltageSetPoint::READ, Self::VoltageSetPoint(Layout::decode(data)))
             }
             (0x5, 0x60, 0x2100) => {
-                Recognised::reply(
-                    &VoltageSetPoint::WRITE,
-                    Self::VoltageSetPoint(Layout::decode(data)),
-                )
+                Recognised::reply(&VoltageSetPoint::WRITE, Self::VoltageSetPoint(Layout::decode(data)))
             }
             (0x5, 0x4B, 0x2101) => Recognised::reply(&CurrentLimit::READ, Self::CurrentLimit(Layout::decode(data))),
             (0x5, 0x60, 0x2101) => Recognised::reply(&CurrentLimit::WRITE, Self::CurrentLimit(Layout::decode(data))),
             (0x5, 0x4B, 0x2102) => Recognised::reply(&OutputSwitch::READ, Self::OutputSwitch(Layout::decode(data))),
             (0x5, 0x60, 0x2102) => Recognised::reply(&OutputSwitch::WRITE, Self::OutputSwitch(Layout::decode(data))),
             (0x5, 0x4B, 0x2103) => {
-                Recognised::reply(
-                    &MinimumFanSpeed::READ,
-                    Self::MinimumFanSpeed(Layout::decode(data)),
-                )
+                Recognised::reply(&MinimumFanSpeed::READ, Self::MinimumFanSpeed(Layout::decode(data)))
             }
             (0x5, 0x60, 0x2103) => {
-                Recognised::reply(
-                    &MinimumFanSpeed::WRITE,
-                    Self::MinimumFanSpeed(Layout::decode(data)),
-                )
+                Recognised::reply(&MinimumFanSpeed::WRITE, Self::MinimumFanSpeed(Layout::decode(data)))
             }
             (0x5, 0x4B, 0x2200) => Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data))),
             (0x5, 0x4B, 0x2201) => Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data))),
             (0x5, 0x4B, 0x2202) => {
-                Recognised::reply(
-                    &HeatSinkTemperature::READ,
-                    Self::HeatSinkTemperature(Layout::decode(data)),
-                )
+                Recognised::reply(&HeatSinkTemperature::READ, Self::HeatSinkTemperature(Layout::decode(data)))
             }
             (0x5, 0x4B, 0x2203) => Recognised::reply(&InputFrequency::READ, Self::InputFrequency(Layout::decode(data))),
             (0x5, 0x4B, 0x2204) => Recognised::reply(&OperatingTime::READ, Self::OperatingTime(Layout::decode(data))),
@@ -2079,3 +1588,71 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "What a rectifier delivers",
+        &[],
+        &[
+            &MeasurementA::VOLTAGE,
+            &MeasurementA::CURRENT,
+            &MeasurementA::TEMPERATURE,
+            &MeasurementA::POWER,
+            &MeasurementA::OUTPUT,
+            &MeasurementA::MODE,
+            &MeasurementA::COUNTER,
+        ],
+        &[&MeasurementA::REPORT_A],
+    ),
+    Entry::new(
+        "What a rectifier works with",
+        &[],
+        &[&MeasurementB::INPUT, &MeasurementB::VOLTAGE, &MeasurementB::FAN_SPEED, &MeasurementB::LOAD],
+        &[&MeasurementB::REPORT_B],
+    ),
+    Entry::new(
+        "Output voltage that is wanted",
+        &[("index", 0x2100)],
+        &[&VoltageSetPoint::VALUE],
+        &[&VoltageSetPoint::READ, &VoltageSetPoint::WRITE],
+    ),
+    Entry::new(
+        "Limit of the output current",
+        &[("index", 0x2101)],
+        &[&CurrentLimit::VALUE],
+        &[&CurrentLimit::READ, &CurrentLimit::WRITE],
+    ),
+    Entry::new(
+        "Switch the output",
+        &[("index", 0x2102)],
+        &[&OutputSwitch::VALUE],
+        &[&OutputSwitch::READ, &OutputSwitch::WRITE],
+    ),
+    Entry::new(
+        "Least speed of the fan",
+        &[("index", 0x2103)],
+        &[&MinimumFanSpeed::VALUE],
+        &[&MinimumFanSpeed::READ, &MinimumFanSpeed::WRITE],
+    ),
+    Entry::new("Output voltage", &[("index", 0x2200)], &[&OutputVoltage::VALUE], &[&OutputVoltage::READ]),
+    Entry::new("Output current", &[("index", 0x2201)], &[&OutputCurrent::VALUE], &[&OutputCurrent::READ]),
+    Entry::new(
+        "Temperature of the heat sink",
+        &[("index", 0x2202)],
+        &[&HeatSinkTemperature::VALUE],
+        &[&HeatSinkTemperature::READ],
+    ),
+    Entry::new("Frequency of the input", &[("index", 0x2203)], &[&InputFrequency::VALUE], &[&InputFrequency::READ]),
+    Entry::new("Time in operation", &[("index", 0x2204)], &[&OperatingTime::VALUE], &[&OperatingTime::READ]),
+    Entry::new(
+        "First four characters of the serial number",
+        &[("index", 0x2300)],
+        &[&SerialNumber::VALUE],
+        &[&SerialNumber::READ],
+    ),
+    Entry::new("Version of the firmware", &[("index", 0x2301)], &[&Firmware::VALUE], &[&Firmware::READ]),
+    Entry::new("Conditions of a rectifier", &[("index", 0x2400)], &[&State::VALUE], &[&State::READ]),
+    Entry::new("Why a request is refused", &[], &[&Refusal::VALUE], &[&Refusal::REFUSE]),
+    Entry::new("Sign of life of the controller", &[("sign", 0x55)], &[&KeepAlive::OUTPUTS], &[&KeepAlive::TELL]),
+];

@@ -4,8 +4,8 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
+    Filter, Legend, Mode, Pattern, Place, Protocol, Recognised, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -116,9 +116,7 @@ impl Destination for Target {
 ///
 /// Erratum T26: printed is "charging controller, and elsewhere superordinate controller or controller",
 /// used is "controller".
-pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF3, 0xF3)
-    .strict()
-    .default_number(0xF3);
+pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF3, 0xF3).strict().default_number(0xF3);
 
 /// Address of a module: `0xE0..=0xEF`. Section 3.2.5.
 ///
@@ -154,11 +152,27 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `report`, by addressing mode.
-const REPORT_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Sent by modules unasked. Section 3.3.
+///
+/// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
+/// pattern", used is "reports that nobody asks for, and commands that nobody answers".
+///
+/// `point_to_point`: the module answers.
+pub const REPORT_ACCESS: Exchange = Exchange::new("report", &[Some(Who::One)]).report(FRAME);
 
-/// Who answers `set`, by addressing mode.
-const SET_ANSWERS: [Option<Who>; 1] = [Some(Who::Nobody)];
+/// Set in a module without a reply. Section 3.3.
+///
+/// Only the reports that follow show whether a command was obeyed.
+///
+/// Erratum T17: printed is "a flow chart in which a module answers a command, or returns an error code
+/// if command or data are wrong", used is "no reply and no error code; what a module does next shows in
+/// its reports".
+///
+/// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
+/// pattern", used is "reports that nobody asks for, and commands that nobody answers".
+///
+/// `point_to_point`: nobody answers.
+pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -239,9 +253,7 @@ pub enum ControlMode {
 
 impl Word for ControlMode {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::Local, "local"), (Self::Remote, "remote")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::Local, "local"), (Self::Remote, "remote")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -315,9 +327,7 @@ pub enum Advice {
 
 impl Word for Advice {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(
-        &[(Self::None, "none"), (Self::Replace, "replace")],
-    );
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::None, "none"), (Self::Replace, "replace")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
@@ -376,16 +386,8 @@ impl Word for Status {
             StatusBit::fault(0, "hardware_fault", "Hardware fault"),
             StatusBit::fault(1, "overvoltage", "Voltage too high (software OVP)"),
             StatusBit::fault(2, "undervoltage", "Voltage too low (software UVP)"),
-            StatusBit::fault(
-                3,
-                "overtemperature",
-                "Temperature too high (software OTP)",
-            ),
-            StatusBit::fault(
-                4,
-                "undertemperature",
-                "Temperature too low (software UTP)",
-            ),
+            StatusBit::fault(3, "overtemperature", "Temperature too high (software OTP)"),
+            StatusBit::fault(4, "undertemperature", "Temperature too low (software UTP)"),
             StatusBit::fault(5, "overcurrent", "Current too high (software OCP)"),
             StatusBit::fault(6, "short_circuit", "Short circuit (software SCP)"),
             StatusBit::fault(7, "overpower", "Power too high (software OPP)"),
@@ -442,35 +444,15 @@ impl ReferenceValues {
     /// The signal `operation`.
     pub const OPERATION: Signal<Operation> = Signal::new("operation", Place::byte(1));
     /// The signal `nominal_voltage`.
-    pub const NOMINAL_VOLTAGE: Signal<u16> = Signal::new(
-            "nominal_voltage",
-            Place::bytes(2, 3),
-        )
-        .unit("V")
-        .scale(1, 10);
+    pub const NOMINAL_VOLTAGE: Signal<u16> = Signal::new("nominal_voltage", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `maximum_voltage`.
-    pub const MAXIMUM_VOLTAGE: Signal<u16> = Signal::new(
-            "maximum_voltage",
-            Place::bytes(4, 5),
-        )
-        .unit("V")
-        .scale(1, 10);
+    pub const MAXIMUM_VOLTAGE: Signal<u16> = Signal::new("maximum_voltage", Place::bytes(4, 5)).unit("V").scale(1, 10);
     /// The signal `minimum_voltage`.
-    pub const MINIMUM_VOLTAGE: Signal<u16> = Signal::new(
-            "minimum_voltage",
-            Place::bytes(6, 7),
-        )
-        .unit("V")
-        .scale(1, 10);
+    pub const MINIMUM_VOLTAGE: Signal<u16> = Signal::new("minimum_voltage", Place::bytes(6, 7)).unit("V").scale(1, 10);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `report`. It comes every 200 ms.
-    pub const REPORT: Exchange = Exchange::new(
-            "reference_values",
-            "report",
-            &REPORT_ANSWERS,
-        )
-        .report(FRAME.id(Identifier::COMMAND, 0x20));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("reference_values", FRAME.id(Identifier::COMMAND, 0x20));
 }
 
 impl Layout for ReferenceValues {
@@ -493,13 +475,7 @@ impl Layout for ReferenceValues {
     }
 
     fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[
-            &Self::MODE,
-            &Self::OPERATION,
-            &Self::NOMINAL_VOLTAGE,
-            &Self::MAXIMUM_VOLTAGE,
-            &Self::MINIMUM_VOLTAGE,
-        ]
+        &[&Self::MODE, &Self::OPERATION, &Self::NOMINAL_VOLTAGE, &Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE]
     }
 }
 
@@ -521,28 +497,17 @@ pub struct OutputValues {
 
 impl OutputValues {
     /// The signal `voltage`.
-    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1))
-        .unit("V")
-        .scale(1, 10);
+    pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
     /// The signal `current`.
-    pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(2, 3))
-        .unit("A")
-        .scale(1, 10);
+    pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The signal `power`.
-    pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(4, 5))
-        .unit("W")
-        .scale(1, 10);
+    pub const POWER: Signal<u16> = Signal::new("power", Place::bytes(4, 5)).unit("W").scale(1, 10);
     /// The signal `status`.
     pub const STATUS: Signal<Status> = Signal::new("status", Place::bytes(6, 7));
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `report`. It comes every 200 ms.
-    pub const REPORT: Exchange = Exchange::new(
-            "output_values",
-            "report",
-            &REPORT_ANSWERS,
-        )
-        .report(FRAME.id(Identifier::COMMAND, 0x21));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("output_values", FRAME.id(Identifier::COMMAND, 0x21));
 }
 
 impl Layout for OutputValues {
@@ -584,8 +549,7 @@ pub struct TemperatureValues {
 
 impl TemperatureValues {
     /// The signal `temperature`.
-    pub const TEMPERATURE: Signal<i16> = Signal::new("temperature", Place::bytes(0, 1))
-        .unit("°C");
+    pub const TEMPERATURE: Signal<i16> = Signal::new("temperature", Place::bytes(0, 1)).unit("°C");
     /// The signal `fan_1`.
     pub const FAN_1: Signal<u16> = Signal::new("fan_1", Place::bytes(2, 3)).unit("rpm");
     /// The signal `fan_2`.
@@ -593,12 +557,7 @@ impl TemperatureValues {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `report`. It comes every 200 ms.
-    pub const REPORT: Exchange = Exchange::new(
-            "temperature_values",
-            "report",
-            &REPORT_ANSWERS,
-        )
-        .report(FRAME.id(Identifier::COMMAND, 0x22));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("temperature_values", FRAME.id(Identifier::COMMAND, 0x22));
 }
 
 impl Layout for TemperatureValues {
@@ -637,28 +596,13 @@ impl FirmwareVersion {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `report`. It comes every 200 ms.
-    pub const REPORT: Exchange = Exchange::new(
-            "firmware_version",
-            "report",
-            &REPORT_ANSWERS,
-        )
-        .report(FRAME.id(Identifier::COMMAND, 0x23));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("firmware_version", FRAME.id(Identifier::COMMAND, 0x23));
 }
 
-impl Layout for FirmwareVersion {
-    fn decode(data: &Data) -> Self {
-        Self {
-            version: Self::VERSION.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::VERSION.put(self.version, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::VERSION]
-    }
+impl Single for FirmwareVersion {
+    const SIGNAL: &'static dyn AnySignal = &Self::VERSION;
+    const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
 }
 
 /// Running times of one module. Section 3.3.
@@ -674,23 +618,18 @@ pub struct RunningTime {
 
 impl RunningTime {
     /// The signal `running`.
-    pub const RUNNING: Signal<u32> = Signal::new("running", Place::bytes(0, 3))
-        .unit("min");
+    pub const RUNNING: Signal<u32> = Signal::new("running", Place::bytes(0, 3)).unit("min");
     /// The signal `total`.
     pub const TOTAL: Signal<u32> = Signal::new("total", Place::bytes(4, 7)).unit("min");
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `report`. It comes every 200 ms.
-    pub const REPORT: Exchange = Exchange::new("running_time", "report", &REPORT_ANSWERS)
-        .report(FRAME.id(Identifier::COMMAND, 0x25));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("running_time", FRAME.id(Identifier::COMMAND, 0x25));
 }
 
 impl Layout for RunningTime {
     fn decode(data: &Data) -> Self {
-        Self {
-            running_min: Self::RUNNING.get(data),
-            total_min: Self::TOTAL.get(data),
-        }
+        Self { running_min: Self::RUNNING.get(data), total_min: Self::TOTAL.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -718,28 +657,13 @@ impl ReplacementAdvice {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `report`. It comes every 200 ms.
-    pub const REPORT: Exchange = Exchange::new(
-            "replacement_advice",
-            "report",
-            &REPORT_ANSWERS,
-        )
-        .report(FRAME.id(Identifier::COMMAND, 0x27));
+    pub const REPORT: Exchange = REPORT_ACCESS.of("replacement_advice", FRAME.id(Identifier::COMMAND, 0x27));
 }
 
-impl Layout for ReplacementAdvice {
-    fn decode(data: &Data) -> Self {
-        Self {
-            advice: Self::ADVICE.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ADVICE.put(self.advice, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::ADVICE]
-    }
+impl Single for ReplacementAdvice {
+    const SIGNAL: &'static dyn AnySignal = &Self::ADVICE;
+    const DECODE: Decode<Self> = |data| Self { advice: Self::ADVICE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::ADVICE.put(message.advice, payload);
 }
 
 /// Set control mode, operation and output voltage of one module. Section 3.3.
@@ -782,8 +706,7 @@ impl Control {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("control", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x10));
+    pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x10));
 
     /// Returns the values if a device model takes them.
     ///
@@ -795,18 +718,7 @@ impl Control {
         Ok(self)
     }
 
-    /// Builds the request `set` with these values. Section 3.3.
-    ///
-    /// Only the reports that follow show whether a command was obeyed.
-    ///
-    /// Erratum T17: printed is "a flow chart in which a module answers a command, or returns an error code
-    /// if command or data are wrong", used is "no reply and no error code; what a module does next shows in
-    /// its reports".
-    ///
-    /// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
-    /// pattern", used is "reports that nobody asks for, and commands that nobody answers".
-    ///
-    /// `point_to_point`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -818,11 +730,7 @@ impl Control {
 
 impl Layout for Control {
     fn decode(data: &Data) -> Self {
-        Self {
-            mode: Self::MODE.get(data),
-            operation: Self::OPERATION.get(data),
-            voltage_v: Self::VOLTAGE.decode(data),
-        }
+        Self { mode: Self::MODE.get(data), operation: Self::OPERATION.get(data), voltage_v: Self::VOLTAGE.decode(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -853,26 +761,13 @@ pub struct SetAddress {
 
 impl SetAddress {
     /// The signal `address`.
-    pub const ADDRESS: Signal<u8> = Signal::new("address", Place::byte(0))
-        .limits(224.0, 239.0);
+    pub const ADDRESS: Signal<u8> = Signal::new("address", Place::byte(0)).limits(224.0, 239.0);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
-    pub const SET: Exchange = Exchange::new("set_address", "set", &SET_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x11));
+    pub const SET: Exchange = SET_ACCESS.of("set_address", FRAME.id(Identifier::COMMAND, 0x11));
 
-    /// Builds the request `set` with these values. Section 3.3.
-    ///
-    /// Only the reports that follow show whether a command was obeyed.
-    ///
-    /// Erratum T17: printed is "a flow chart in which a module answers a command, or returns an error code
-    /// if command or data are wrong", used is "no reply and no error code; what a module does next shows in
-    /// its reports".
-    ///
-    /// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
-    /// pattern", used is "reports that nobody asks for, and commands that nobody answers".
-    ///
-    /// `point_to_point`: nobody answers.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
     /// # Errors
     ///
@@ -882,20 +777,10 @@ impl SetAddress {
     }
 }
 
-impl Layout for SetAddress {
-    fn decode(data: &Data) -> Self {
-        Self {
-            address: Self::ADDRESS.get(data),
-        }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ADDRESS.put(self.address, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::ADDRESS]
-    }
+impl Single for SetAddress {
+    const SIGNAL: &'static dyn AnySignal = &Self::ADDRESS;
+    const DECODE: Decode<Self> = |data| Self { address: Self::ADDRESS.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::ADDRESS.put(message.address, payload);
 }
 
 /// Every message that a frame can carry.
@@ -943,10 +828,7 @@ impl Message {
     /// # Errors
     ///
     /// Says why the frame is not recognised.
-    pub fn decode_for(
-        model: Model,
-        frame: &impl embedded_can::Frame,
-    ) -> Result<Received, Problem> {
+    pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
 }
@@ -956,6 +838,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -1010,3 +893,56 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Control mode, operation, nominal voltage and available voltages of one module",
+        &[("command", 0x20)],
+        &[
+            &ReferenceValues::MODE,
+            &ReferenceValues::OPERATION,
+            &ReferenceValues::NOMINAL_VOLTAGE,
+            &ReferenceValues::MAXIMUM_VOLTAGE,
+            &ReferenceValues::MINIMUM_VOLTAGE,
+        ],
+        &[&ReferenceValues::REPORT],
+    ),
+    Entry::new(
+        "Output voltage, current, power and faults of one module",
+        &[("command", 0x21)],
+        &[&OutputValues::VOLTAGE, &OutputValues::CURRENT, &OutputValues::POWER, &OutputValues::STATUS],
+        &[&OutputValues::REPORT],
+    ),
+    Entry::new(
+        "Temperature and fan speeds of one module",
+        &[("command", 0x22)],
+        &[&TemperatureValues::TEMPERATURE, &TemperatureValues::FAN_1, &TemperatureValues::FAN_2],
+        &[&TemperatureValues::REPORT],
+    ),
+    Entry::new(
+        "Firmware version of one module",
+        &[("command", 0x23)],
+        &[&FirmwareVersion::VERSION],
+        &[&FirmwareVersion::REPORT],
+    ),
+    Entry::new(
+        "Running times of one module",
+        &[("command", 0x25)],
+        &[&RunningTime::RUNNING, &RunningTime::TOTAL],
+        &[&RunningTime::REPORT],
+    ),
+    Entry::new(
+        "Whether one module should be replaced",
+        &[("command", 0x27)],
+        &[&ReplacementAdvice::ADVICE],
+        &[&ReplacementAdvice::REPORT],
+    ),
+    Entry::new(
+        "Set control mode, operation and output voltage of one module",
+        &[("command", 0x10)],
+        &[&Control::MODE, &Control::OPERATION, &Control::VOLTAGE],
+        &[&Control::SET],
+    ),
+    Entry::new("Give one module another address", &[("command", 0x11)], &[&SetAddress::ADDRESS], &[&SetAddress::SET]),
+];

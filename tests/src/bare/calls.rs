@@ -60,7 +60,10 @@ impl Module {
 
     /// Returns the names of the structs that frames decode to.
     pub fn layouts(&self) -> impl Iterator<Item = String> {
-        let layouts = self.blocks().filter(|block| trait_name(block).is_some_and(|name| name.ident == "Layout"));
+        let is_layout = |block: &&ItemImpl| {
+            trait_name(block).is_some_and(|name| ["Layout", "Single"].iter().any(|known| name.ident == known))
+        };
+        let layouts = self.blocks().filter(is_layout);
         layouts.map(|block| text(&block.self_ty))
     }
 
@@ -154,7 +157,9 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("Named") => quote!(calls::named::<#owner>();),
         Some("StatusWord") => quote!(calls::status_word::<#owner>();),
         Some("Packed") => quote!(calls::packed::<#owner>();),
-        Some("Protocol") => quote!(calls::received::<#owner>();),
+        Some("Single") => quote!(calls::layout::<#owner>();),
+        Some("Destination") => quote!(calls::questions::<#owner>();),
+        Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
         Some("Display") => quote!(calls::text(&unknown::<#owner>());),
         _ => TokenStream::new(),
     }

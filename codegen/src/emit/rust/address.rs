@@ -10,18 +10,11 @@ use super::literal::{decimal, hexadecimal};
 use super::names::{Names, ident};
 use crate::model::{Address, AddressPattern, AddressType, Doc, Mode, Protocol, Who};
 
-/// Emits the types of addresses, the modes, and who answers by each access.
+/// Emits the types of addresses and the modes.
 pub fn addressing(protocol: &Protocol) -> TokenStream {
     let types = protocol.address_types.iter().map(|address| address_type(protocol, address));
     let modes = protocol.modes.iter().map(|known| mode(protocol, known));
-    let answers = protocol.accesses.iter().enumerate().filter(|(index, _)| shares_answers(protocol, *index));
-    let answers = answers.map(|(_, access)| {
-        let (name, count) = (answers_name(&access.name), proc_macro2::Literal::usize_unsuffixed(protocol.modes.len()));
-        let answers = answers_list(&access.answers);
-        let comment = doc::line(format!("Who answers `{}`, by addressing mode.", access.name));
-        quote!(#comment const #name: [Option<Who>; #count] = #answers;)
-    });
-    quote!(#(#types)* #(#modes)* #(#answers)*)
+    quote!(#(#types)* #(#modes)*)
 }
 
 fn address_type(protocol: &Protocol, address: &AddressType) -> TokenStream {
@@ -59,17 +52,6 @@ fn address_name(name: &str) -> Ident {
 
 fn mode_name(name: &str) -> Ident {
     ident(&format!("{}_MODE", name.to_ascii_uppercase()))
-}
-
-/// Returns the name of the constant that says who answers by an access.
-pub fn answers_name(access: &str) -> Ident {
-    ident(&format!("{}_ANSWERS", access.to_ascii_uppercase()))
-}
-
-/// Tests whether some message leaves it to the access who answers.
-fn shares_answers(protocol: &Protocol, access: usize) -> bool {
-    let accesses = protocol.messages.iter().flat_map(|message| &message.accesses);
-    accesses.filter(|known| known.access == access).any(|known| known.answers == protocol.accesses[access].answers)
 }
 
 /// Writes who answers, mode by mode.

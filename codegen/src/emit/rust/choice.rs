@@ -3,9 +3,9 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::exchange::selector_name;
 use super::identifier::field_place;
 use super::literal::hexadecimal;
-use super::message::selector_name;
 use super::parts::parts;
 use super::rows::{Constants, agree};
 use crate::model::{Protocol, SelectorPlace};
@@ -130,7 +130,8 @@ fn value(protocol: &Protocol, selector: usize) -> TokenStream {
     }
 }
 
-fn constant(protocol: &Protocol, selector: usize, value: u64) -> TokenStream {
+/// Writes the value of a selector.
+pub fn constant(protocol: &Protocol, selector: usize, value: u64) -> TokenStream {
     let width = match protocol.selectors[selector].place {
         SelectorPlace::Identifier(field) => protocol.identifier.fields[field].width,
         SelectorPlace::Payload(place) => place.width(),

@@ -4,16 +4,16 @@ use canspec_runtime::Data;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::address::{answers_list, answers_name};
 use super::derives::Derives;
 use super::doc;
-use super::literal::{data, decimal, hexadecimal, physical, physical_type};
-use super::model::{model_limits, models_of};
-use super::names::{MessageNames, Names, Struct, screaming};
+use super::exchange::{exchange, modes, shared_name};
+use super::literal::{data, decimal, physical, physical_type};
+use super::model::model_limits;
+use super::names::{MessageNames, Names, Struct};
 use super::place::Written;
 use super::word::{integer, text_type};
 use crate::emit::Float;
-use crate::model::{Access, Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal, Who};
+use crate::model::{Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -116,7 +116,9 @@ impl Emitter<'_> {
         let is_home = index == 0;
         let signals = (0..self.message.signals.len()).filter(|_| is_home).map(|index| self.signal(index));
         let reserved = self.reserved(known);
-        let exchanges = (0..self.message.accesses.len()).filter(|_| is_home).map(|access| self.exchange(access));
+        let exchanges = (0..self.message.accesses.len())
+            .filter(|_| is_home)
+            .map(|access| exchange(self.protocol, self.all, self.message, &self.names.exchanges[access], access));
         let requests = self.message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
         let requests: Vec<_> = requests.filter(|shape| self.host(shape) == name).collect();
         let within = requests.first().and_then(|shape| self.within(shape));
@@ -195,73 +197,7 @@ impl Emitter<'_> {
         (!known.signals.is_empty()).then(|| quote!(#comment pub const RESERVED: Data = #reserved;))
     }
 
-    fn exchange(&self, index: usize) -> TokenStream {
-        let access = &self.message.accesses[index];
-        let known = &self.protocol.accesses[access.access];
-        let (constant, name, message) = (&self.names.exchanges[index], &known.name, &self.message.name);
-        let comment = doc::line(format!("How it travels by `{name}`.{}", self.period(access.access)));
-        let answers = if access.answers == known.answers {
-            let name = answers_name(name);
-            quote!(&#name)
-        } else {
-            let list = answers_list(&access.answers);
-            quote!(&#list)
-        };
-        let length = (self.message.length != 8).then(|| {
-            let length = decimal(self.message.length);
-            quote!(.length(#length))
-        });
-        let models = models_of(self.protocol, self.message);
-        let shapes = self.message.shapes.iter().filter(|shape| shape.access == index);
-        let filters = shapes.map(|shape| {
-            let (kind, filter) = (super::names::ident(shape.kind.name()), self.filter(shape));
-            quote!(.#kind(#filter))
-        });
-        let refusal = self.message.refusals.iter().find(|shape| shape.access == index).map(|shape| {
-            let filter = self.filter(shape);
-            quote!(.refusal(&#filter))
-        });
-        quote!(#comment pub const #constant: Exchange = Exchange::new(#message, #name, #answers) #length #models #(#filters)* #refusal;)
-    }
-
-    /// Says how often a report comes.
-    fn period(&self, access: usize) -> String {
-        let every = self.message.every.or(self.protocol.accesses[access].every);
-        let timing = every.map(|index| &self.protocol.timing[index]);
-        timing.map_or_else(String::new, |timing| {
-            let (first, last, unit) = (timing.range.minimum, timing.range.maximum, timing.unit.symbol);
-            if first == last {
-                format!(" It comes every {first} {unit}.")
-            } else {
-                format!(" It comes every {first} to {last} {unit}.")
-            }
-        })
-    }
-
-    /// Emits what a kind of frame shows.
-    fn filter(&self, shape: &Shape) -> TokenStream {
-        let constants = shape.constants.iter().map(|(index, value)| {
-            let selector = &self.protocol.selectors[*index];
-            let name = screaming(&selector.name);
-            match selector.place {
-                SelectorPlace::Identifier(field) => {
-                    let value = hexadecimal(*value, self.protocol.identifier.fields[field].width);
-                    quote!(.id(Identifier::#name, #value))
-                }
-                SelectorPlace::Payload(place) => {
-                    let value = hexadecimal(*value, place.width());
-                    let constant = selector_name(self.protocol, *index);
-                    quote!(.data(#constant.place, #value))
-                }
-            }
-        });
-        let selectors = shape.selectors.iter().map(|index| selector_name(self.protocol, *index));
-        let selectors = (!shape.selectors.is_empty()).then(|| quote!(.selectors(&[#(#selectors),*])));
-        quote!(FRAME #selectors #(#constants)*)
-    }
-
     fn method(&self, shape: &Shape) -> TokenStream {
-        let known = &self.protocol.accesses[self.message.accesses[shape.access].access];
         let (method, exchange) = (&self.names.methods[shape.access], self.exchange_path(shape));
         let reply = self.message.shapes.iter().find(|other| other.access == shape.access && other.kind == Kind::Reply);
         let reply = reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name);
@@ -271,7 +207,7 @@ impl Emitter<'_> {
             Some(name) => quote!(#name),
         };
         let carries = self.names.carried(shape).is_some();
-        let comment = doc::comment(self.method_comment(shape, known, carries));
+        let comment = doc::comment(self.method_comment(shape, carries));
         let (receiver, content) = if carries { (Some(quote!(&self,)), quote!(self)) } else { (None, quote!(&())) };
         quote! {
             #comment
@@ -281,31 +217,21 @@ impl Emitter<'_> {
         }
     }
 
-    fn method_comment(&self, shape: &Shape, access: &Access, carries: bool) -> Vec<String> {
+    /// Describes a method; what holds for all messages stands at the access.
+    fn method_comment(&self, shape: &Shape, carries: bool) -> Vec<String> {
+        let own = &self.message.accesses[shape.access];
+        let access = &self.protocol.accesses[own.access];
         let values = if carries { " with these values" } else { "" };
-        let first = format!("Builds the request `{}`{values}.", access.name);
+        let shared = shared_name(self.all, self.message, shape.access);
+        let shared = shared.map_or_else(String::new, |shared| format!("({shared})"));
+        let first = format!("Builds the request [`{}`]{shared}{values}.", access.name);
+        let modes = (own.answers != access.answers).then(|| modes(self.protocol, &own.answers));
         let values = if carries { "values outside their limits, " } else { "" };
         let errors = format!("Refuses {values}other addressing modes, and undocumented addresses.");
-        let mut paragraphs = doc::paragraphs(self.protocol, &access.doc, &first, None);
-        paragraphs.extend([self.modes(shape), "# Errors".to_owned(), errors]);
-        paragraphs
+        std::iter::once(first).chain(modes).chain(["# Errors".to_owned(), errors]).collect()
     }
 
-    /// Says in which modes a request can be sent, and who answers.
-    fn modes(&self, shape: &Shape) -> String {
-        let answers = self.protocol.modes.iter().zip(&self.message.accesses[shape.access].answers);
-        let modes = answers.filter_map(|(mode, who)| {
-            let who = match (*who)? {
-                Who::One => "the module answers",
-                Who::Each => "each module answers",
-                Who::Coordinator => "one answers for all",
-                Who::Nobody => "nobody answers",
-            };
-            Some(format!("`{}`: {who}.", mode.name))
-        });
-        modes.collect::<Vec<_>>().join(" ")
-    }
-
+    /// Emits how values are read and written.
     fn layout(&self, known: &Struct) -> Option<TokenStream> {
         let (name, home) = (&known.name, self.home());
         let owner = if name == home { quote!(Self) } else { quote!(#home) };
@@ -315,18 +241,25 @@ impl Emitter<'_> {
         let (get, put): (Vec<_>, Vec<_>) = verbs
             .map(|scaled| if scaled { (quote!(decode), quote!(encode)) } else { (quote!(get), quote!(put)) })
             .unzip();
-        let writes: Vec<_> = constants
-            .iter()
-            .zip(&fields)
-            .zip(put)
-            .map(|((constant, field), put)| quote!(#owner::#constant.#put(self.#field, payload)))
-            .collect();
+        let decode = quote!(Self { #(#fields: #owner::#constants.#get(data)),* });
+        let encode = |values: &TokenStream| -> Vec<_> {
+            let writes = constants.iter().zip(&fields).zip(&put);
+            writes.map(|((constant, field), put)| quote!(#owner::#constant.#put(#values.#field, payload))).collect()
+        };
+        if let ([constant], [write]) = (constants.as_slice(), encode(&quote!(message)).as_slice()) {
+            return Some(quote! {
+                impl Single for #name {
+                    const SIGNAL: &'static dyn AnySignal = &#owner::#constant;
+                    const DECODE: Decode<Self> = |data| #decode;
+                    const ENCODE: Encode<Self> = |message, payload| #write;
+                }
+            });
+        }
+        let writes = encode(&quote!(self));
         let (last, others) = writes.split_last()?;
         Some(quote! {
             impl Layout for #name {
-                fn decode(data: &Data) -> Self {
-                    Self { #(#fields: #owner::#constants.#get(data)),* }
-                }
+                fn decode(data: &Data) -> Self { #decode }
 
                 fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
                     #(#others?;)*
@@ -339,14 +272,6 @@ impl Emitter<'_> {
             }
         })
     }
-}
-
-/// Returns the name of a payload selector's constant; two places under one name are told apart by number.
-pub fn selector_name(protocol: &Protocol, index: usize) -> Ident {
-    let name = &protocol.selectors[index].name;
-    let earlier = protocol.selectors[..index].iter().filter(|known| known.name == *name).count();
-    let suffix = if earlier == 0 { String::new() } else { format!("_{}", earlier + 1) };
-    super::names::ident(&format!("{}_SELECTOR{suffix}", name.to_ascii_uppercase()))
 }
 
 /// Tests whether equality of physical values is exact.

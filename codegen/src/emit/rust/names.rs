@@ -2,11 +2,12 @@
 
 use proc_macro2::{Ident, Span};
 
+use super::exchange::{Shared, shared};
 use super::model::{Limits, limits};
 use crate::model::{Encoding, Kind, Message, Protocol, Shape, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 73] = [
+const TAKEN: [&str; 77] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -17,10 +18,13 @@ const TAKEN: [&str; 73] = [
     "Copy",
     "Data",
     "Debug",
+    "Decode",
     "Default",
     "Destination",
     "Display",
     "Drop",
+    "Encode",
+    "Entry",
     "Eq",
     "Err",
     "Error",
@@ -71,6 +75,7 @@ const TAKEN: [&str; 73] = [
     "Send",
     "Severity",
     "Signal",
+    "Single",
     "Some",
     "StatusBit",
     "StatusWord",
@@ -179,6 +184,8 @@ pub struct Names {
     pub targets: Vec<Ident>,
     /// Limits by device model.
     pub limits: Vec<Limits>,
+    /// What messages share of each access.
+    pub shared: Vec<Shared>,
 }
 
 /// The names of a message's items.
@@ -231,6 +238,7 @@ impl Names {
             messages: messages.collect(),
             targets: targets(protocol),
             limits: limits(protocol),
+            shared: shared(protocol),
         }
     }
 }

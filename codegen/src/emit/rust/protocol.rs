@@ -7,9 +7,11 @@ use super::address;
 use super::derives::Derives;
 use super::dispatch::dispatch;
 use super::doc;
+use super::entries::entries;
+use super::exchange::selector_name;
 use super::identifier::unnamed;
 use super::literal::hexadecimal;
-use super::message::{is_exact, selector_name};
+use super::message::is_exact;
 use super::names::{MessageNames, Names, screaming};
 use super::parts::{part_name, parts};
 use super::place::Written;
@@ -70,6 +72,7 @@ pub fn protocol(protocol: &Protocol, names: &Names, derives: Derives) -> TokenSt
     let functions: Vec<_> = dispatch(protocol, names).into_iter().chain([variants.layout()]).collect();
     let first = functions.iter().filter_map(|parts| parts.first());
     let implementation = implementation(protocol, first);
+    let entries = entries(protocol, names);
     let further = functions.iter().flat_map(|parts| parts.iter().skip(1));
     quote! {
         #definition
@@ -99,6 +102,8 @@ pub fn protocol(protocol: &Protocol, names: &Names, derives: Derives) -> TokenSt
         }
 
         #implementation
+
+        #entries
     }
 }
 
@@ -217,6 +222,7 @@ fn implementation<'a>(protocol: &Protocol, functions: impl Iterator<Item = &'a T
             const FRAME: Filter = FRAME;
             const NORMAL: Filter = FRAME #(#normal)*;
             const MODES: &'static [Mode] = #modes;
+            const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
             #(#functions)*
         }

@@ -2,8 +2,8 @@
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Mode, Pattern,
-    Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, Mode,
+    Pattern, Place, Protocol, Recognised, Signal, Who,
 };
 use canspec_runtime::serde;
 use canspec_runtime::defmt;
@@ -37,11 +37,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            command: Self::COMMAND.read(id),
-            target: Self::TARGET.read(id),
-            source: Self::SOURCE.read(id),
-        }
+        Self { command: Self::COMMAND.read(id), target: Self::TARGET.read(id), source: Self::SOURCE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -93,9 +89,7 @@ impl Destination for Target {
 }
 
 /// Controller: `0xF0..=0xF0`. Section 1.
-pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF0)
-    .strict()
-    .default_number(0xF0);
+pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0, 0xF0).strict().default_number(0xF0);
 
 /// Module: `0x00..=0x3F`. Section 1.
 pub const MODULE_ADDRESS: AddressType = AddressType::new("module", 0x00, 0x3F);
@@ -122,8 +116,10 @@ pub const MODULE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `write`, by addressing mode.
-const WRITE_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Write. Section 2.
+///
+/// `module`: the module answers.
+pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
 
 /// Set the output. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,27 +156,18 @@ impl SetOutput {
     /// The value of `delay` that stands for `forbid`.
     pub const DELAY_FORBID: u8 = 0;
     /// The signal `power`.
-    pub const POWER: Signal<i16, f32> = Signal::new("power", Place::bytes(4, 5))
-        .unit("W")
-        .scale(10, 1);
+    pub const POWER: Signal<i16, f32> = Signal::new("power", Place::bytes(4, 5)).unit("W").scale(10, 1);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// How it travels by `write`.
-    pub const WRITE: Exchange = Exchange::new("set_output", "write", &WRITE_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x0012))
-        .reply(FRAME.id(Identifier::COMMAND, 0x0012));
+    pub const WRITE: Exchange = WRITE_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x0012));
 
-    /// Builds the request `write` with these values. Section 2.
-    ///
-    /// `module`: the module answers.
+    /// Builds the request [`write`](WRITE_ACCESS) with these values.
     ///
     /// # Errors
     ///
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn write(
-        &self,
-        route: impl Into<Route<Target>>,
-    ) -> Result<Request<Self>, Error> {
+    pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }
 }
@@ -208,9 +195,7 @@ impl Layout for SetOutput {
 }
 
 impl<'a> arbitrary::Arbitrary<'a> for SetOutput {
-    fn arbitrary(
-        unstructured: &mut arbitrary::Unstructured<'a>,
-    ) -> arbitrary::Result<Self> {
+    fn arbitrary(unstructured: &mut arbitrary::Unstructured<'a>) -> arbitrary::Result<Self> {
         canspec_runtime::with_arbitrary::layout(unstructured)
     }
 }
@@ -250,25 +235,20 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[MODULE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x0012)
-            .then(|| Recognised::request(
-                &SetOutput::WRITE,
-                Self::SetOutput(Layout::decode(data)),
-            ))
+            .then(|| Recognised::request(&SetOutput::WRITE, Self::SetOutput(Layout::decode(data))))
     }
 
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x0012)
-            .then(|| Recognised::reply(
-                &SetOutput::WRITE,
-                Self::SetOutput(Layout::decode(data)),
-            ))
+            .then(|| Recognised::reply(&SetOutput::WRITE, Self::SetOutput(Layout::decode(data))))
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
@@ -285,3 +265,13 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Set the output",
+        &[("command", 0x0012)],
+        &[&SetOutput::VOLTAGE, &SetOutput::TEMPERATURE, &SetOutput::DELAY, &SetOutput::POWER],
+        &[&SetOutput::WRITE],
+    ),
+];

@@ -4,8 +4,8 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Destination, Exchange, Filter, Legend, Mode,
-    Pattern, Place, Protocol, Recognised, Signal, Who,
+    Address, AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, Legend,
+    Mode, Pattern, Place, Protocol, Recognised, Signal, Who,
 };
 
 #[cfg(feature = "serde")]
@@ -22,11 +22,7 @@ const FRAME: Filter = Filter::STANDARD;
 
 /// The 11-bit identifier of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(crate = "canspec_runtime::serde")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(crate = "canspec_runtime::serde"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Identifier {
     /// Direction: bit 10. Section 1.
@@ -48,11 +44,7 @@ impl Identifier {
 
 impl IdentifierFields for Identifier {
     fn from_raw(id: u32) -> Self {
-        Self {
-            direction: Self::DIRECTION.read(id),
-            command: Self::COMMAND.read(id),
-            node: Self::NODE.read(id),
-        }
+        Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     fn to_raw(self) -> u32 {
@@ -117,8 +109,10 @@ pub const SINGLE_MODE: Mode = Mode {
     coordinator: None,
 };
 
-/// Who answers `read`, by addressing mode.
-const READ_ANSWERS: [Option<Who>; 1] = [Some(Who::One)];
+/// Read. Section 2.
+///
+/// `single`: the module answers.
+pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
 
 /// State of a heater. Section 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -171,9 +165,7 @@ impl serde::Serialize for State {
 
 #[cfg(feature = "serde")]
 impl<'de> serde::Deserialize<'de> for State {
-    fn deserialize<D: serde::Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Self, D::Error> {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         canspec_runtime::with_serde::deserialize(deserializer)
     }
 }
@@ -187,11 +179,7 @@ impl defmt::Format for State {
 
 /// Status of a heater. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(crate = "canspec_runtime::serde")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(crate = "canspec_runtime::serde"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
     /// State of a heater: bytes 2..3.
@@ -212,13 +200,9 @@ impl Status {
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0x00, 0xFF, 0xCC, 0xFF, 0xFF];
     /// How it travels by `read`.
-    pub const READ: Exchange = Exchange::new("status", "read", &READ_ANSWERS)
-        .request(FRAME.id(Identifier::COMMAND, 0x04))
-        .reply(FRAME.id(Identifier::COMMAND, 0x04));
+    pub const READ: Exchange = READ_ACCESS.of("status", FRAME.id(Identifier::COMMAND, 0x04));
 
-    /// Builds the request `read`. Section 2.
-    ///
-    /// `single`: the module answers.
+    /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
     ///
@@ -230,11 +214,7 @@ impl Status {
 
 impl Layout for Status {
     fn decode(data: &Data) -> Self {
-        Self {
-            state: Self::STATE.get(data),
-            red: Self::RED.get(data),
-            green: Self::GREEN.get(data),
-        }
+        Self { state: Self::STATE.get(data), red: Self::RED.get(data), green: Self::GREEN.get(data) }
     }
 
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
@@ -250,9 +230,7 @@ impl Layout for Status {
 
 #[cfg(feature = "arbitrary")]
 impl<'a> arbitrary::Arbitrary<'a> for Status {
-    fn arbitrary(
-        unstructured: &mut arbitrary::Unstructured<'a>,
-    ) -> arbitrary::Result<Self> {
+    fn arbitrary(unstructured: &mut arbitrary::Unstructured<'a>) -> arbitrary::Result<Self> {
         canspec_runtime::with_arbitrary::layout(unstructured)
     }
 }
@@ -297,6 +275,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[SINGLE_MODE];
+    const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
@@ -308,10 +287,7 @@ impl Protocol for Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         (Identifier::COMMAND.of(id) == 0x04)
-            .then(|| Recognised::reply(
-                &Status::READ,
-                Self::Status(Layout::decode(data)),
-            ))
+            .then(|| Recognised::reply(&Status::READ, Self::Status(Layout::decode(data))))
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
@@ -329,3 +305,13 @@ impl Protocol for Message {
         }
     }
 }
+
+/// Every message, for programs that go through them without naming one.
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new(
+        "Status of a heater",
+        &[("command", 0x04)],
+        &[&Status::STATE, &Status::RED, &Status::GREEN],
+        &[&Status::READ],
+    ),
+];

@@ -1,0 +1,61 @@
+//! The list of a protocol's messages, for programs that go through it without naming one.
+
+use core::fmt;
+use core::marker::PhantomData;
+
+use crate::{AnySignal, Destination, Error, Exchange, Protocol, Request, Route};
+
+/// An entry of the list of messages.
+pub struct Entry<P: 'static> {
+    /// What it is, in a few words.
+    pub title: &'static str,
+    /// What chooses the message, such as the number of a register: names of fields in identifier or data, and their
+    /// values.
+    pub constants: &'static [(&'static str, u64)],
+    /// The signals, by first byte.
+    pub signals: &'static [&'static dyn AnySignal],
+    /// How the message travels, by each of its accesses.
+    pub exchanges: &'static [&'static Exchange],
+    protocol: PhantomData<fn() -> P>,
+}
+
+impl<P: Protocol> Entry<P> {
+    /// Returns an entry.
+    pub const fn new(
+        title: &'static str,
+        constants: &'static [(&'static str, u64)],
+        signals: &'static [&'static dyn AnySignal],
+        exchanges: &'static [&'static Exchange],
+    ) -> Self {
+        Self { title, constants, signals, exchanges, protocol: PhantomData }
+    }
+
+    /// Returns the name of the message.
+    pub const fn name(&self) -> &'static str {
+        match self.exchanges {
+            [exchange, ..] => exchange.message(),
+            [] => "",
+        }
+    }
+
+    /// Builds a request that carries no values, such as a read; `None` if the message has none by this access.
+    ///
+    /// The request knows which frames answer it; what they say, [`Received::decode`](crate::Received::decode) tells.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn request<T>(&self, access: &str, route: impl Into<Route<T>>) -> Option<Result<Request<P, ()>, Error>>
+    where
+        T: Destination<Protocol = P>,
+    {
+        let exchange = self.exchanges.iter().find(|exchange| exchange.asks_by(access))?;
+        Some(exchange.request_to(route, &()))
+    }
+}
+
+impl<P: Protocol> fmt::Debug for Entry<P> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("Entry").field("name", &self.name()).finish_non_exhaustive()
+    }
+}
