@@ -16,6 +16,10 @@ size:
 bench:
     cd generated/benches && cargo test --release --quiet && cargo bench && cargo run --release --quiet
 
+# The comparison with other people's programs.
+peers:
+    .ci/peers
+
 # A table of mistakes, planted one after the other in a copy of the sources, and of the tests that find them; words choose among them.
 mutants *words:
     cargo run --quiet --package canspec-mutants -- {{words}}

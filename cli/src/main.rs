@@ -6,6 +6,7 @@ mod compile;
 mod decode;
 mod encode;
 mod examples;
+mod export;
 mod failure;
 mod input;
 mod line;
@@ -38,6 +39,7 @@ enum Command {
     Decode(decode::Decode),
     Encode(encode::Encode),
     Examples(examples::Examples),
+    Export(export::Export),
     List(list::List),
 }
 
@@ -49,6 +51,7 @@ impl Command {
             Self::Decode(decode) => decode.run(),
             Self::Encode(encode) => encode.run(),
             Self::Examples(examples) => examples.run(),
+            Self::Export(export) => export.run(),
             Self::List(list) => list.run(),
         }
     }

@@ -1,8 +1,10 @@
 //! Emitters: from the checked model to other languages. They cannot fail.
 
+mod dbc;
 mod options;
 mod rust;
 
+pub use dbc::{Dbc, dbc};
 pub use options::{Float, Options, Switch};
 pub(crate) use rust::{camel_case, member};
 pub use rust::{rust, tokens};

@@ -6,6 +6,7 @@ mod encode;
 mod request;
 mod value;
 
+pub(crate) use decode::coverage;
 pub use decode::decode;
 pub use encode::encode;
 pub use request::{Target, parse_input, request};

@@ -1,0 +1,242 @@
+//! Which identifiers there are, and which frames share one.
+
+use std::ops::RangeInclusive;
+
+use indexmap::IndexMap;
+
+use super::file::Frame;
+use super::text::{self, ascii, remarks};
+use super::tree::{self, Candidate, Tree};
+use crate::model::{Address, AddressPattern, Kind, Message, Protocol, SelectorPlace, Shape};
+
+/// One frame of one message in one addressing mode.
+pub struct Sent<'a> {
+    pub message: &'a Message,
+    pub shape: &'a Shape,
+    mode: usize,
+    node: Option<i64>,
+    id: u32,
+    /// Bits that are the same in all its identifiers.
+    fixed: u32,
+}
+
+/// Returns every frame in each addressing mode that it has, of each of the nodes if these are given.
+pub fn sent<'a>(protocol: &'a Protocol, nodes: Option<&RangeInclusive<i64>>) -> Vec<Sent<'a>> {
+    let mut sent = Vec::new();
+    for message in &protocol.messages {
+        for shape in &message.shapes {
+            for (mode, pattern) in patterns(protocol, message, shape) {
+                let numbers: Vec<Option<i64>> = match nodes {
+                    Some(nodes) if is_open(protocol, pattern) => nodes.clone().map(Some).collect(),
+                    _ => vec![None],
+                };
+                let frames = numbers.into_iter().filter_map(|node| {
+                    let (id, fixed) = identifier(protocol, shape, pattern, node, nodes.is_some())?;
+                    Some(Sent { message, shape, mode, node, id, fixed })
+                });
+                sent.extend(frames);
+            }
+        }
+    }
+    sent
+}
+
+/// Returns what the identifier shows in each mode.
+fn patterns<'a>(protocol: &'a Protocol, message: &Message, shape: &Shape) -> Vec<(usize, &'a AddressPattern)> {
+    let answers = &message.accesses[shape.access].answers;
+    let modes = protocol.modes.iter().zip(answers).enumerate();
+    let shown = modes.filter_map(|(index, (mode, who))| {
+        let pattern = match shape.kind {
+            Kind::Request => mode.request.as_ref(),
+            Kind::Reply | Kind::Report => mode.reply((*who)?),
+        };
+        who.and(pattern).map(|pattern| (index, pattern))
+    });
+    shown.collect()
+}
+
+/// Tests whether a pattern has an address that is not the sender's own.
+fn is_open(protocol: &Protocol, pattern: &AddressPattern) -> bool {
+    pattern.addresses.iter().any(|address| protocol.address_types[address.address_type].send.is_none())
+}
+
+/// Returns an identifier and its fixed bits, or `None` where a node has no such address. A concrete one fixes the addresses.
+fn identifier(
+    protocol: &Protocol,
+    shape: &Shape,
+    pattern: &AddressPattern,
+    node: Option<i64>,
+    concrete: bool,
+) -> Option<(u32, u32)> {
+    let layout = &protocol.identifier;
+    let mut fixed = layout.mask | pattern.mask;
+    let mut id = layout.value & layout.mask | pattern.value;
+    for (selector, value) in &shape.constants {
+        if let SelectorPlace::Identifier(field) = protocol.selectors[*selector].place {
+            let field = &layout.fields[field];
+            fixed |= field.mask();
+            id |= u32::try_from(*value).unwrap_or(0) << field.shift;
+        }
+    }
+    for address in &pattern.addresses {
+        let field = &layout.fields[address.field];
+        let (raw, varying) = number(protocol, address, node)?;
+        id |= raw << field.shift & field.mask();
+        fixed |= (if concrete { u32::MAX } else { !varying }) << field.shift & field.mask();
+    }
+    let addressed = |index: usize| pattern.addresses.iter().any(|address| address.field == index);
+    for (index, field) in layout.fields.iter().enumerate() {
+        if fixed & field.mask() == 0 && !addressed(index) {
+            id |= field.send.or(field.normal).unwrap_or(0) << field.shift;
+        }
+    }
+    Some((id, fixed))
+}
+
+/// Returns the raw value of an address, and the bits that are not the same in all documented ones.
+fn number(protocol: &Protocol, address: &Address, node: Option<i64>) -> Option<(u32, u32)> {
+    let known = &protocol.address_types[address.address_type];
+    let raw = u32::try_from(known.raw(known.send.or(node).unwrap_or(known.first))).ok();
+    let raw = raw.filter(|raw| known.documents(*raw))?;
+    let (first, last) = known.raw_range();
+    let varying = u32::MAX.checked_shr((first ^ last).leading_zeros()).unwrap_or(0);
+    Some((raw, varying))
+}
+
+/// Returns the bits of the identifier that all frames fix.
+pub fn mask(protocol: &Protocol, sent: &[Sent]) -> u32 {
+    let all = if protocol.identifier.extended { 0x1FFF_FFFF } else { 0x7FF };
+    sent.iter().fold(all, |mask, sent| mask & sent.fixed)
+}
+
+/// The frames that share an identifier.
+struct Group<'a> {
+    sent: Vec<&'a Sent<'a>>,
+    /// Those of another length.
+    others: Vec<Candidate<'a>>,
+    tree: Tree<'a>,
+}
+
+/// Returns a frame for each value of the masked bits, and what could not be said.
+pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<Frame>, Vec<String>) {
+    let mut groups: IndexMap<u32, Vec<&Sent>> = IndexMap::new();
+    for sent in sent {
+        groups.entry(sent.id & mask).or_default().push(sent);
+    }
+    let groups: Vec<Group> = groups.into_values().map(|sent| group(protocol, sent)).collect();
+    let names = names(protocol, &groups);
+    let lost = groups.iter().zip(&names).flat_map(|(group, name)| lost(group, name)).collect();
+    let frames = groups.into_iter().zip(names).map(|(group, name)| frame(protocol, group, name)).collect();
+    (frames, lost)
+}
+
+fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
+    let mut candidates: Vec<Candidate> = Vec::new();
+    for sent in &sent {
+        if !candidates.iter().any(|(_, shape)| std::ptr::eq(*shape, sent.shape)) {
+            candidates.push((sent.message, sent.shape));
+        }
+    }
+    let length = sent[0].message.length;
+    let (candidates, others) = candidates.into_iter().partition(|(message, _)| message.length == length);
+    Group { sent, others, tree: tree::tree(protocol, candidates) }
+}
+
+/// Says which messages a frame lacks.
+fn lost(group: &Group, name: &str) -> Vec<String> {
+    let length = group.sent[0].message.length;
+    let other =
+        |(message, _): &Candidate| format!("`{}` is missing in `{name}`, which has {length} data bytes", message.name);
+    let same = |((lost, _), (kept, _)): &(Candidate, Candidate)| {
+        format!("`{}` is missing in `{name}`, where nothing tells it from `{}`", lost.name, kept.name)
+    };
+    group.others.iter().map(other).chain(group.tree.lost.iter().map(same)).collect()
+}
+
+fn frame(protocol: &Protocol, group: Group, name: String) -> Frame {
+    let sent = &group.sent;
+    let module = text::module(common(sent, |sent| sent.node).flatten());
+    let controller = text::CONTROLLER.to_owned();
+    let is_request = sent[0].shape.kind == Kind::Request;
+    let (sender, receivers) = if is_request { (controller, module) } else { (module, controller) };
+    Frame {
+        id: sent[0].id,
+        extended: protocol.identifier.extended,
+        name,
+        length: sent[0].message.length,
+        sender,
+        receivers,
+        comment: comment(protocol, sent),
+        cycle: common(sent, |sent| cycle(protocol, sent)).flatten(),
+        signals: group.tree.signals,
+    }
+}
+
+/// Returns what all frames of a group have in common.
+fn common<T: PartialEq>(group: &[&Sent], of: impl Fn(&Sent) -> T) -> Option<T> {
+    let first = of(group.first()?);
+    group.iter().all(|sent| of(sent) == first).then_some(first)
+}
+
+/// Returns every how many milliseconds a report comes; the shortest time where it may vary.
+fn cycle(protocol: &Protocol, sent: &Sent) -> Option<u32> {
+    let access = &protocol.accesses[sent.message.accesses[sent.shape.access].access];
+    let timing = &protocol.timing[sent.message.every.or(access.every).filter(|_| sent.shape.kind == Kind::Report)?];
+    let milliseconds = match timing.unit.symbol {
+        "ms" => 1.0,
+        "s" => 1e3,
+        "min" => 6e4,
+        _ => 36e5,
+    };
+    let time = timing.range.minimum.to_f64() * milliseconds;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it lies within a day")]
+    (1.0..=864e5).contains(&time).then(|| time.round() as u32)
+}
+
+/// Says which messages a frame carries, in which modes.
+fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let mut modes: Vec<&str> = Vec::new();
+    for sent in group {
+        let access = &protocol.accesses[sent.message.accesses[sent.shape.access].access].name;
+        let text = remarks(&sent.message.doc);
+        let space = if text.is_empty() { "" } else { ": " };
+        let how = match sent.shape.kind {
+            Kind::Report => Kind::Report.name().to_owned(),
+            kind => format!("{} to {access}", kind.name()),
+        };
+        let line = format!("{} ({how}){space}{text}", sent.message.name);
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+        let mode = protocol.modes[sent.mode].name.as_str();
+        if !modes.contains(&mode) {
+            modes.push(mode);
+        }
+    }
+    lines.push(format!("Addressing: {}", ascii(&modes.join(", "))));
+    lines.join("\n")
+}
+
+/// Names each group after its message, kind and node, and where that is not enough also after its mode or its identifier.
+fn names(protocol: &Protocol, groups: &[Group]) -> Vec<String> {
+    let mut plain = Vec::new();
+    for group in groups {
+        let message = group.tree.message().unwrap_or(&protocol.name);
+        let mode = common(&group.sent, |sent| sent.mode).map(|mode| protocol.modes[mode].name.clone());
+        plain.push((format!("{message}_{}", group.sent[0].shape.kind.name()), mode));
+    }
+    let mut names = Vec::new();
+    for (group, (name, mode)) in groups.iter().zip(&plain) {
+        let is_sent_otherwise = plain.iter().any(|(other, its)| other == name && its != mode);
+        let mode = mode.clone().filter(|_| is_sent_otherwise);
+        let node = common(&group.sent, |sent| sent.node).flatten().map(|node| node.to_string());
+        names.push([Some(name.clone()), mode, node].into_iter().flatten().collect::<Vec<_>>().join("_"));
+    }
+    let is_single = |name: &String| names.iter().filter(|other| *other == name).count() == 1;
+    let numbered = names
+        .iter()
+        .zip(groups)
+        .map(|(name, group)| if is_single(name) { name.clone() } else { format!("{name}_{:X}", group.sent[0].id) });
+    numbered.collect()
+}

@@ -1,0 +1,54 @@
+//! What a protocol says and a DBC cannot.
+
+use super::text::ascii;
+use crate::model::{Encoding, Kind, Message, Protocol, Signal};
+
+/// Returns a sentence for each.
+pub fn limits(protocol: &Protocol, mask: u32) -> Vec<String> {
+    let mut limits = Vec::new();
+    limits.extend(identifier(protocol, mask));
+    limits.extend(foreign(protocol));
+    limits.extend(models(protocol));
+    limits.extend(about(protocol, "is a text; it is given as a number", |signal| {
+        matches!(signal.encoding, Encoding::Text)
+    }));
+    limits.extend(about(protocol, "is one text of several parts; each part is a signal", |signal| {
+        matches!(signal.encoding, Encoding::Packed { .. })
+    }));
+    limits.extend(about(protocol, "has limits that depend on the device model", |signal| {
+        !signal.model_ranges.is_empty()
+    }));
+    if protocol.messages.iter().flat_map(|message| &message.shapes).any(|shape| shape.kind == Kind::Reply) {
+        limits.push("which request a reply answers, and who answers it".to_owned());
+    }
+    if !protocol.procedures.is_empty() || !protocol.timing.is_empty() {
+        limits.push("times and procedures of the document, but for the cycles of reports".to_owned());
+    }
+    limits
+}
+
+/// Names the fields of the identifier with bits outside the mask.
+fn identifier(protocol: &Protocol, mask: u32) -> Option<String> {
+    let fields = protocol.identifier.fields.iter().filter(|field| field.mask() & !mask != 0);
+    let names: Vec<_> = fields.map(|field| field.name.as_str()).collect();
+    (!names.is_empty()).then(|| format!("what varies in the identifier: {}", names.join(", ")))
+}
+
+fn foreign(protocol: &Protocol) -> Option<String> {
+    let names: Vec<_> = protocol.foreign.iter().map(|foreign| foreign.name.as_str()).collect();
+    (!names.is_empty()).then(|| format!("identifiers of somebody else: {}", names.join(", ")))
+}
+
+fn models(protocol: &Protocol) -> Option<String> {
+    let names: Vec<_> = protocol.models.iter().map(|model| ascii(&model.name)).collect();
+    (!names.is_empty()).then(|| format!("the device models {}", names.join(", ")))
+}
+
+/// Says something about all signals of a kind.
+fn about(protocol: &Protocol, what: &str, is: impl Fn(&Signal) -> bool) -> Vec<String> {
+    let of = |message: &Message| {
+        let signals = message.signals.iter().filter(|signal| is(signal));
+        signals.map(|signal| format!("`{}.{}` {what}", message.name, signal.name)).collect::<Vec<_>>()
+    };
+    protocol.messages.iter().flat_map(of).collect()
+}

@@ -1,0 +1,91 @@
+//! Signals of the model as signals of a DBC.
+
+use canspec_runtime::Place;
+
+use super::file::Signal;
+use super::text::{ascii, remarks, unit};
+use crate::model::{
+    Encoding, NamedValue, Protocol, Range, Selector, Severity, Signal as Meaning, StatusBit, StatusWord,
+};
+use crate::number::Rational;
+
+/// Returns what becomes of a signal: one signal, or one for each status bit or part.
+pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal> {
+    match &signal.encoding {
+        Encoding::Packed { parts, .. } => {
+            parts.iter().flat_map(|part| signals(protocol, part, &format!("{name}_{}", part.name))).collect()
+        }
+        Encoding::Status(word) => status(&protocol.status_words[*word], signal.place, name),
+        encoding => vec![single(protocol, signal, encoding, name)],
+    }
+}
+
+fn single(protocol: &Protocol, signal: &Meaning, encoding: &Encoding, name: &str) -> Signal {
+    let plain = Signal {
+        unit: signal.unit.map_or("", unit),
+        comment: remarks(&signal.doc),
+        named: named(&signal.specials),
+        start: signal.default,
+        ..Signal::new(name.to_owned(), signal.place)
+    };
+    let range = signal.range.or_else(|| signal.held());
+    match encoding {
+        Encoding::Number { signed, scale, offset } => {
+            Signal { signed: *signed, factor: *scale, offset: *offset, range, ..plain }
+        }
+        Encoding::Float => Signal { float: true, range, ..plain },
+        Encoding::Named(index) => {
+            let values = named(&protocol.enumerations[*index].values);
+            Signal { signed: values.iter().any(|(raw, _)| *raw < 0), named: values, ..plain }
+        }
+        _ => plain,
+    }
+}
+
+/// Returns a signal for each named bit, and one for each run of bits without a name.
+fn status(word: &StatusWord, place: Place, name: &str) -> Vec<Signal> {
+    let mut signals = Vec::new();
+    let mut high = place.width();
+    for bit in word.bits.iter().rev() {
+        signals.extend(unnamed(place, name, bit.bit + 1, high));
+        let comment = about(bit);
+        signals.push(Signal { comment, ..Signal::new(format!("{name}_{}", bit.name), place.bit(bit.bit)) });
+        high = bit.bit;
+    }
+    signals.extend(unnamed(place, name, 0, high));
+    signals
+}
+
+/// Returns the bits of a status word from `low` to below `end`, if there are any.
+fn unnamed(place: Place, name: &str, low: u8, end: u8) -> Option<Signal> {
+    let high = end.checked_sub(1).filter(|high| *high >= low)?;
+    let comment = "Bits without a name".to_owned();
+    Some(Signal { comment, ..Signal::new(format!("{name}_unnamed_{high}_{low}"), place.bits(high, low)) })
+}
+
+/// Says what a status bit means.
+fn about(bit: &StatusBit) -> String {
+    let facts =
+        [("set when", &bit.set_when), ("cleared when", &bit.clear_when), ("effect", &bit.effect), ("LED", &bit.led)];
+    let facts = facts.iter().filter_map(|(what, text)| Some(format!("{what}: {}", ascii(text.as_ref()?))));
+    let severity = bit.severity.map(|severity| match severity {
+        Severity::State => "state".to_owned(),
+        Severity::Alarm => "alarm".to_owned(),
+        Severity::Fault => "fault".to_owned(),
+    });
+    let remarks = Some(remarks(&bit.doc)).filter(|text| !text.is_empty());
+    remarks.into_iter().chain(severity).chain(facts).collect::<Vec<_>>().join("; ")
+}
+
+/// Returns a selector in the data bytes; if it has one value in these frames, that is its range.
+pub fn selector(protocol: &Protocol, selector: &Selector, place: Place, constant: Option<u64>, name: String) -> Signal {
+    let values = selector.enumeration.map(|index| named(&protocol.enumerations[index].values));
+    let plain = Signal::new(name, place);
+    let only = constant.map(|value| Rational::integer(value.into()));
+    let range = only.map(|only| Range { minimum: only, maximum: only });
+    Signal { comment: remarks(&selector.doc), named: values.unwrap_or_default(), range: range.or(plain.range), ..plain }
+}
+
+fn named(values: &[NamedValue]) -> Vec<(i128, String)> {
+    values.iter().map(|value| (value.raw, value.name.clone())).collect()
+}
