@@ -1,12 +1,14 @@
 //! `canspec decode`.
 
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{self, Decoded, Frame, Unrecognised};
 use canspec_codegen::model::Protocol;
 use clap::{Args, ValueEnum};
 
+use crate::capture::Capture;
 use crate::failure::{Failure, Finish};
 use crate::input::Input;
 use crate::line::{self, Origin};
@@ -20,7 +22,7 @@ use crate::table::Table;
 /// The log has lines in the form `(SECONDS) CHANNEL ID#DATA`, as `candump -L` prints them and `candump -l` stores
 /// them; stamp and channel may be missing. Unreadable lines are reported and skipped.
 #[derive(Args)]
-#[command(verbatim_doc_comment, after_long_help = "Example:\n  candump -L can0 | canspec decode --protocol NAME")]
+#[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Decode {
     #[command(flatten)]
     protocols: Several,
@@ -29,9 +31,16 @@ pub struct Decode {
     /// A table, or a JSON object a frame.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+    /// Write the frames, as they are, to a capture for Wireshark; FORMAT is `pcapng`.
+    #[arg(long, num_args = 2, value_names = ["FORMAT", "OUT"], group = "Several", conflicts_with_all = ["name", "format"])]
+    to: Vec<String>,
     /// The log; standard input without one, or for `-`.
     file: Option<PathBuf>,
 }
+
+const EXAMPLES: &str = "Examples:
+  candump -L can0 | canspec decode --protocol NAME
+  canspec decode --to pcapng bus.pcapng bus.log";
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
@@ -47,6 +56,28 @@ enum Printer {
 impl Decode {
     /// Writes each frame of the log as the chosen protocols understand it.
     pub fn run(&self) -> Result<Finish, Failure> {
+        match self.to.as_slice() {
+            [format, out] if format == "pcapng" => self.capture(Path::new(out)),
+            [format, ..] => Err(Failure::Call(format!("unknown format `{format}`; a capture is written as `pcapng`"))),
+            [] => self.print(),
+        }
+    }
+
+    fn capture(&self, path: &Path) -> Result<Finish, Failure> {
+        let failure = |error: io::Error| Failure::input(&path.display().to_string(), &error);
+        let log = Input::open(self.file.as_deref())?;
+        let out = BufWriter::new(File::create(path).map_err(failure)?);
+        let mut capture = Capture::begin(out).map_err(failure)?;
+        let finish = log.each(io::sink(), |_, line| {
+            let entry = line.text.and_then(log::read)?;
+            entry.map_or(Ok(Ok(())), |entry| capture.frame(&entry))
+        });
+        let finish = finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })?;
+        capture.end().map_err(failure)?;
+        Ok(finish)
+    }
+
+    fn print(&self) -> Result<Finish, Failure> {
         let protocols = self.protocols.load()?;
         let models = self.model.find(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
@@ -75,7 +106,7 @@ impl Printer {
         entry: &Entry<'_>,
     ) -> io::Result<()> {
         let Some((protocol, decoded)) = decode(devices, &entry.frame) else { return Ok(()) };
-        let Entry { time, channel, frame } = entry;
+        let Entry { time, channel, frame, .. } = entry;
         let origin = Origin { line, time: time.as_deref(), channel: *channel, frame, protocol };
         match self {
             Self::Text(table) => table.write(out, &origin, &decoded),

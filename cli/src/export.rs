@@ -1,6 +1,7 @@
 //! `canspec export`.
 
 mod dbc;
+mod wireshark;
 
 use clap::{Args, Subcommand};
 
@@ -17,6 +18,7 @@ pub struct Export {
 #[derive(Subcommand)]
 enum Target {
     Dbc(dbc::Dbc),
+    Wireshark(wireshark::Wireshark),
 }
 
 impl Export {
@@ -24,6 +26,7 @@ impl Export {
     pub fn run(&self) -> Result<Finish, Failure> {
         match &self.target {
             Target::Dbc(dbc) => dbc.run(),
+            Target::Wireshark(wireshark) => wireshark.run(),
         }
     }
 }

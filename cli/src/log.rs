@@ -21,6 +21,8 @@ pub struct Entry<'a> {
     /// The name of the interface.
     pub channel: Option<&'a str>,
     pub frame: Frame,
+    /// The number of bytes that a remote frame asks for, or the flags of an FD frame.
+    pub digit: u8,
 }
 
 /// Reads a line of a log, `None` from a blank one.
@@ -36,10 +38,10 @@ pub fn read(line: &str) -> Result<Option<Entry<'_>>, String> {
     let time = words.next_if(|word| word.starts_with('(')).map(stamp).transpose()?;
     let channel = words.next_if(|word| !word.contains('#')).map(channel).transpose()?;
     let frame = words.next().ok_or("no frame in the form ID#DATA; `candump -L` writes it")?;
-    let frame = read_frame(frame)?;
+    let (frame, digit) = read_frame(frame)?;
     words.next_if(|word| ["R", "T"].contains(word));
     match words.next() {
-        None => Ok(Some(Entry { time, channel, frame })),
+        None => Ok(Some(Entry { time, channel, frame, digit })),
         Some(word) => Err(format!("{} after the frame", quoted(word))),
     }
 }
@@ -76,17 +78,17 @@ pub fn is_channel(text: &str) -> bool {
 }
 
 /// Reads `ID#DATA`, and the forms of remote, error and FD frames.
-fn read_frame(word: &str) -> Result<Frame, String> {
+fn read_frame(word: &str) -> Result<(Frame, u8), String> {
     let (id, data) =
         word.split_once('#').ok_or_else(|| format!("{} is no ID#DATA; `candump -L` writes it", quoted(word)))?;
     let (id, extended, error) = identifier(id)?;
-    let (form, data) = match (error, data.strip_prefix('#')) {
-        (true, _) => (Form::Error, bytes(data, CLASSIC)?),
-        (false, Some(flags_and_data)) => (Form::Fd, bytes(without_flags(flags_and_data)?, FLEXIBLE)?),
-        (false, None) if is_remote(data) => (Form::Remote, Vec::new()),
-        (false, None) => (Form::Data, bytes(data, CLASSIC)?),
+    let (form, data, digit) = match (error, data.strip_prefix('#')) {
+        (true, _) => (Form::Error, bytes(data, CLASSIC)?, 0),
+        (false, Some(rest)) => (Form::Fd, bytes(without_flags(rest)?, FLEXIBLE)?, digit(rest.get(..1))),
+        (false, None) if is_remote(data) => (Form::Remote, Vec::new(), digit(data.get(1..))),
+        (false, None) => (Form::Data, bytes(data, CLASSIC)?, 0),
     };
-    Ok(Frame { id, extended, data, form })
+    Ok((Frame { id, extended, data, form }, digit))
 }
 
 /// Returns the identifier, whether it has 29 bits, and whether it is that of an error frame.
@@ -106,6 +108,11 @@ fn identifier(digits: &str) -> Result<(u32, bool, bool), String> {
 /// Tests for `R`, and the number of bytes asked for.
 fn is_remote(data: &str) -> bool {
     data.strip_prefix(['R', 'r']).is_some_and(|length| matches!(length.as_bytes(), [] | [b'0'..=b'8']))
+}
+
+/// Reads a hexadecimal digit, 0 without one.
+fn digit(text: Option<&str>) -> u8 {
+    text.and_then(|text| u8::from_str_radix(text, 16).ok()).unwrap_or(0)
 }
 
 /// Takes the digit of flags from the data of an FD frame.

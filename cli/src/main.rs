@@ -1,5 +1,6 @@
 //! The command `canspec`: checks CAN protocol specs, compiles them to Rust, decodes and encodes logs.
 
+mod capture;
 mod check;
 mod columns;
 mod compile;

@@ -1,10 +1,12 @@
 //! Emitters: from the checked model to other languages. They cannot fail.
 
 mod dbc;
+mod lua;
 mod options;
 mod rust;
 
 pub use dbc::{Dbc, dbc};
+pub use lua::wireshark;
 pub use options::{Float, Options, Switch};
 pub(crate) use rust::{camel_case, member};
 pub use rust::{rust, tokens};

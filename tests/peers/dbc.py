@@ -219,9 +219,9 @@ def compared(canspec, random_frames, spec):
     """Compares all frames of a spec; returns how many comparisons there were, the causes, and the failures."""
     protocol = Protocol(canspec, spec)
     documented = protocol.decode(protocol.examples())
-    frames = documented + protocol.decode(run(random_frames, spec, COUNT, 1).splitlines())
+    frames = documented + protocol.decode(run(random_frames, "known", spec, COUNT, 1).splitlines())
     decoded, failures = decoding(protocol, frames)
-    others = protocol.decode(run(random_frames, spec, COUNT * 21 // 20, 2).splitlines())
+    others = protocol.decode(run(random_frames, "known", spec, COUNT * 21 // 20, 2).splitlines())
     sets, encoded, wrong = encoding(protocol, others, random.Random(3))
     few = Protocol(canspec, spec, "--nodes", NODES.get(Path(spec).stem, "0-3"))
     found = [frame for frame in frames if few.message(frame)]

@@ -32,7 +32,7 @@ class Mistakes(unittest.TestCase):
             wrong = Path(folder) / "wrong.yaml"
             wrong.write_text(changed(before, after), encoding="utf-8")
             protocol = Protocol(CANSPEC, wrong, dbc_of=LITTLE_ENDIAN)
-            frames = protocol.decode(run(FRAMES, LITTLE_ENDIAN, 200, 1).splitlines())
+            frames = protocol.decode(run(FRAMES, "known", LITTLE_ENDIAN, 200, 1).splitlines())
             return len(frames), len(decoding(protocol, frames)[1])
 
     def test_an_unchanged_spec_does_not_fail(self):
@@ -56,7 +56,7 @@ class Mistakes(unittest.TestCase):
             wrong = Path(folder) / "wrong.yaml"
             wrong.write_text(changed("scale: 1/2, unit: W", "scale: 1/4, unit: W"), encoding="utf-8")
             right = Protocol(CANSPEC, LITTLE_ENDIAN)
-            frames = right.decode(run(FRAMES, LITTLE_ENDIAN, 200, 1).splitlines())
+            frames = right.decode(run(FRAMES, "known", LITTLE_ENDIAN, 200, 1).splitlines())
             right.spec = wrong
             self.assertGreater(len(encoding(right, frames, random.Random(1))[2]), 50)
 

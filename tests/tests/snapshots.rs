@@ -52,9 +52,30 @@ fn each_option_adds_the_rust_that_was_reviewed() {
     compare(&folder.join("scaled_signal.yaml"), "options/always_f32", &always);
 }
 
+/// Returns the part of a dissector that is not the same for every protocol.
+fn dissector_table(path: &Path) -> String {
+    let code = emit::wireshark(&protocol(path));
+    let (table, _) = code.split_once("\n-- Decoding").expect("the interpreter follows the table");
+    table.to_owned()
+}
+
+#[test]
+fn a_dissector_starts_with_the_table_that_was_reviewed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs/features");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_snapshot_path("../snapshots/wireshark");
+    for name in ["addressing", "model_layouts", "packed_value", "refusal", "scaled_signal", "status_word"] {
+        let table = dissector_table(&folder.join(name).with_extension("yaml"));
+        settings.bind(|| insta::assert_snapshot!(name, table));
+    }
+}
+
 #[test]
 fn generation_is_deterministic() {
     for path in [specs("specs"), specs("tests/specs")].concat() {
         assert_eq!(rust(&path), rust(&path));
+        assert_eq!(dissector_table(&path), dissector_table(&path));
     }
 }

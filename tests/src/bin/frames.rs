@@ -1,32 +1,49 @@
-//! Prints random frames of a protocol as a log, for programs that are compared with canspec.
+//! Prints random frames of a protocol as a log, the same ones each time, for programs that are compared with canspec: `frames any SPEC COUNT SEED`
+//! or `frames known SPEC COUNT SEED`.
 //!
-//! canspec recognises all of them. One in 250 goes to or comes from an address that the document does not foresee.
-#![expect(clippy::print_stdout, reason = "the log is what people call it for")]
+//! One in four of `any` frames is whatever comes. canspec recognises the others, and all `known` ones; of these, one in 250 goes to or comes from
+//! an address that the document does not foresee.
 
 use std::env;
+use std::io::{self, BufWriter, Write};
 
 use canspec_codegen::interpret::{Frame, decode};
+use canspec_codegen::model::Protocol;
 use canspec_tests::{Frames, protocol};
 
-fn main() {
+fn main() -> io::Result<()> {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    let [spec, count, seed] = &arguments[..] else { panic!("name a spec, how many frames, and a seed") };
-    let number = |text: &str| text.parse::<u64>().unwrap_or_else(|_| panic!("`{text}` is no number"));
+    let [choice, spec, count, seed] = arguments.as_slice() else {
+        return Err(io::Error::other("call it as `frames any SPEC COUNT SEED` or `frames known SPEC COUNT SEED`"));
+    };
     let protocol = protocol(spec);
-    let mut frames = Frames::new(&protocol, number(seed));
-    for index in 0..number(count) {
-        let is_wanted = |frame: &Frame| {
-            let Ok(decoded) = decode(&protocol, None, frame) else { return false };
-            index % 250 == 0 || !decoded.notes.iter().any(|note| note.rule.starts_with("address"))
+    let mut frames = Frames::new(&protocol, number(seed)?);
+    let mut out = BufWriter::new(io::stdout().lock());
+    for index in 0..number(count)? {
+        let is_wanted = |frame: &Frame| match choice.as_str() {
+            "known" => is_known(&protocol, frame, index % 250 == 0),
+            _ => index % 4 == 0 || is_known(&protocol, frame, true),
         };
         let frame = std::iter::repeat_with(|| frames.next_frame()).find(is_wanted);
-        println!("{}", frame.map(|frame| line(&frame)).unwrap_or_default());
+        frame.map_or(Ok(()), |frame| write(&mut out, index, &frame))?;
     }
+    out.flush()
 }
 
-/// Writes a frame as `candump -L` does, without time and channel.
-fn line(frame: &Frame) -> String {
+fn number(text: &str) -> io::Result<u64> {
+    text.parse().map_err(|_| io::Error::other(format!("`{text}` is no number")))
+}
+
+/// Tests whether canspec recognises a frame, at any address or at those that the document foresees.
+fn is_known(protocol: &Protocol, frame: &Frame, at_any_address: bool) -> bool {
+    let decoded = decode(protocol, None, frame);
+    decoded.is_ok_and(|known| at_any_address || !known.notes.iter().any(|note| note.rule.starts_with("address")))
+}
+
+/// Writes a frame as `candump -L` does, one each millisecond.
+fn write(out: &mut impl Write, index: u64, frame: &Frame) -> io::Result<()> {
     let digits = if frame.extended { 8 } else { 3 };
-    let data: Vec<_> = frame.data.iter().map(|byte| format!("{byte:02X}")).collect();
-    format!("{:0digits$X}#{}", frame.id, data.concat())
+    write!(out, "({}.{:06}) can{} {:0digits$X}#", index / 1000, index % 1000 * 1000, index % 2, frame.id)?;
+    frame.data.iter().try_for_each(|byte| write!(out, "{byte:02X}"))?;
+    writeln!(out)
 }

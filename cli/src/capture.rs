@@ -1,0 +1,215 @@
+//! Captures in the pcapng format, which Wireshark reads.
+
+use std::io::{self, Write};
+
+use canspec_codegen::interpret::{Form, Frame};
+
+use crate::log::Entry;
+
+const SECTION: u32 = 0x0A0D_0D0A;
+const INTERFACE: u32 = 1;
+const ENHANCED_PACKET: u32 = 6;
+/// Tells the reader the order of the bytes, here the little end first.
+const BYTE_ORDER: u32 = 0x1A2B_3C4D;
+/// `LINKTYPE_CAN_SOCKETCAN`.
+const SOCKETCAN: u16 = 227;
+/// Options of an interface: its name, and the decimal places of its times.
+const NAME: u16 = 2;
+const RESOLUTION: u16 = 9;
+const PLACES: u8 = 9;
+/// Bits beside the identifier.
+const EXTENDED: u32 = 1 << 31;
+const REMOTE: u32 = 1 << 30;
+const ERROR: u32 = 1 << 29;
+/// Marks an FD frame beside the flags that the log has.
+const FD: u8 = 4;
+
+/// A capture that is being written; each channel of the log is an interface.
+pub struct Capture<W> {
+    out: W,
+    channels: Vec<Option<String>>,
+}
+
+impl<W: Write> Capture<W> {
+    /// Begins a capture.
+    ///
+    /// # Errors
+    ///
+    /// Where `out` cannot be written.
+    pub fn begin(mut out: W) -> io::Result<Self> {
+        let length_unknown = u64::MAX.to_le_bytes();
+        let head = [&BYTE_ORDER.to_le_bytes()[..], &1_u16.to_le_bytes(), &0_u16.to_le_bytes(), &length_unknown];
+        block(&mut out, SECTION, &head.concat())?;
+        Ok(Self { out, channels: Vec::new() })
+    }
+
+    /// Writes a frame; one without a stamp is of the time 0, and further digits than those of nanoseconds are cut off.
+    ///
+    /// # Errors
+    ///
+    /// Where the capture cannot be written, or its format has no such time.
+    pub fn frame(&mut self, entry: &Entry<'_>) -> Result<io::Result<()>, String> {
+        let time = entry.time.as_deref().map_or(Ok(0), |time| {
+            let refusal = || format!("a capture has no time `{}`; it counts nanoseconds from 1970 to 2554", time.get());
+            nanoseconds(time.get()).ok_or_else(refusal)
+        })?;
+        Ok(self.packet(entry, time))
+    }
+
+    fn packet(&mut self, entry: &Entry<'_>, time: u64) -> io::Result<()> {
+        let interface = self.interface(entry.channel)?;
+        let [low, high] = [time, time >> 32].map(|half| half & u64::from(u32::MAX));
+        let bytes = socketcan(&entry.frame, entry.digit);
+        let numbers = [interface, half(high), half(low), length(&bytes), length(&bytes)];
+        let head: Vec<u8> = numbers.into_iter().flat_map(u32::to_le_bytes).collect();
+        block(&mut self.out, ENHANCED_PACKET, &[head, bytes].concat())
+    }
+
+    /// Returns the number of the channel's interface, which is written when it is first needed.
+    fn interface(&mut self, channel: Option<&str>) -> io::Result<u32> {
+        let known = self.channels.iter().position(|known| known.as_deref() == channel);
+        let index = known.unwrap_or(self.channels.len());
+        if known.is_none() {
+            self.channels.push(channel.map(str::to_owned));
+            let head = [SOCKETCAN.to_le_bytes(), [0; 2], [0; 2], [0; 2]].concat();
+            let name = channel.map_or_else(Vec::new, |name| option(NAME, name.as_bytes()));
+            block(&mut self.out, INTERFACE, &[head, name, option(RESOLUTION, &[PLACES]), vec![0; 4]].concat())?;
+        }
+        Ok(u32::try_from(index).unwrap_or(u32::MAX))
+    }
+
+    /// Writes what is left to be written.
+    ///
+    /// # Errors
+    ///
+    /// Where that is not possible.
+    pub fn end(mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Writes a block, with its length before and after it.
+fn block(out: &mut impl Write, kind: u32, body: &[u8]) -> io::Result<()> {
+    let body = padded(body);
+    let total = length(&body).saturating_add(12).to_le_bytes();
+    [&kind.to_le_bytes()[..], &total, &body, &total].into_iter().try_for_each(|part| out.write_all(part))
+}
+
+fn option(code: u16, value: &[u8]) -> Vec<u8> {
+    let length = u16::try_from(value.len()).unwrap_or(u16::MAX);
+    let value = &value[..usize::from(length)];
+    [&code.to_le_bytes()[..], &length.to_le_bytes(), &padded(value)].concat()
+}
+
+/// Fills bytes up to a multiple of four.
+fn padded(bytes: &[u8]) -> Vec<u8> {
+    let mut padded = bytes.to_vec();
+    padded.resize(bytes.len().next_multiple_of(4), 0);
+    padded
+}
+
+fn length(bytes: &[u8]) -> u32 {
+    u32::try_from(bytes.len()).unwrap_or(u32::MAX)
+}
+
+fn half(number: u64) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+/// Returns a frame as Linux has it: identifier with its flags, length, flags of FD, data.
+fn socketcan(frame: &Frame, digit: u8) -> Vec<u8> {
+    let width = if frame.extended { EXTENDED } else { 0 };
+    let count = u8::try_from(frame.data.len()).unwrap_or(u8::MAX);
+    let (form, count, flags) = match frame.form {
+        Form::Data => (0, count, 0),
+        Form::Remote => (REMOTE, digit, 0),
+        Form::Error => (ERROR, count, 0),
+        Form::Fd => (0, count, FD | digit),
+    };
+    [&(frame.id | width | form).to_be_bytes()[..], &[count, flags, 0, 0], &frame.data].concat()
+}
+
+/// Returns a decimal number of seconds in nanoseconds, without ever making it a floating-point number.
+fn nanoseconds(seconds: &str) -> Option<u64> {
+    let (mantissa, exponent) = seconds.split_once(['e', 'E']).unwrap_or((seconds, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits: u128 = format!("{whole}{fraction}").parse().ok()?;
+    let places = i64::try_from(fraction.len()).ok()?;
+    let power = exponent.parse::<i64>().ok()?.checked_add(i64::from(PLACES))?.checked_sub(places)?;
+    let factor = 10_u128.checked_pow(u32::try_from(power.unsigned_abs()).ok()?);
+    let nanoseconds = match factor {
+        _ if digits == 0 => 0,
+        Some(factor) if power >= 0 => digits.checked_mul(factor)?,
+        None if power >= 0 => return None,
+        factor => factor.map_or(0, |factor| digits / factor),
+    };
+    u64::try_from(nanoseconds).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log;
+
+    /// Returns the blocks that follow the section's head, one a line in hexadecimal.
+    fn blocks(lines: &[&str]) -> Vec<String> {
+        let mut bytes = Vec::new();
+        let mut capture = Capture::begin(&mut bytes).expect("a vector takes everything");
+        for line in lines {
+            let entry = log::read(line).expect("a readable line").expect("a frame");
+            capture.frame(&entry).expect("a time").expect("a vector takes everything");
+        }
+        let mut rest = &bytes[28..];
+        let mut blocks = Vec::new();
+        while let Some(length) = rest.get(4..8) {
+            let (block, after) = rest.split_at(u32::from_le_bytes(length.try_into().expect("four bytes")) as usize);
+            blocks.push(log::hexadecimal(block).to_lowercase());
+            rest = after;
+        }
+        blocks
+    }
+
+    #[test]
+    fn each_channel_is_an_interface_with_times_in_nanoseconds() {
+        // Put together by hand from the pcapng specification: kind, length, fields, options, length; 1.5 s are 0x59682F00 ns.
+        let interface = |digit: u8| {
+            format!("0100000028000000 e300000000000000 0200040063616e3{digit} 0900010009000000 00000000 28000000")
+        };
+        let packet = |index: u8| {
+            format!(
+                "060000002c000000 0{index}000000 00000000002f6859 0900000009000000 0000012301000000 ab000000 2c000000"
+            )
+        };
+        let expected = [interface(0), packet(0), interface(1), packet(1), packet(0)];
+        let lines = ["(1.5) can0 123#AB", "(1.5) can1 123#AB", "(1.5) can0 123#AB"];
+        assert_eq!(blocks(&lines), expected.map(|block| block.replace(' ', "")));
+    }
+
+    #[test]
+    fn identifiers_carry_the_flags_of_linux() {
+        let packets = |line: &str| blocks(&[line])[1][56..].to_owned();
+        assert!(packets("12345678#01").starts_with("9234567801000000"));
+        assert!(packets("123#R5").starts_with("4000012305000000"));
+        assert!(packets("20000004#0000000000000000").starts_with("a000000408000000"));
+        assert!(packets("123##3AABB").starts_with("0000012302070000aabb"));
+    }
+
+    #[test]
+    fn a_time_is_exact_to_the_last_digit_of_the_log() {
+        for (text, expected) in [
+            ("1700000000.123456", Some(1_700_000_000_123_456_000)),
+            ("1700000000.123456789", Some(1_700_000_000_123_456_789)),
+            ("0.0000000019", Some(1)),
+            ("1.5e3", Some(1_500_000_000_000)),
+            ("15e-1", Some(1_500_000_000)),
+            ("0e99", Some(0)),
+            ("1e-99", Some(0)),
+            ("18446744073.709551615", Some(u64::MAX)),
+            ("18446744073.709551616", None),
+            ("1e99", None),
+            ("-1", None),
+        ] {
+            assert_eq!(nanoseconds(text), expected, "{text}");
+        }
+    }
+}

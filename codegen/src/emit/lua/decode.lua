@@ -1,0 +1,471 @@
+-- Decoding: which message a frame is, and what its bits mean.
+--
+-- Raw values of up to 32 bits are numbers, wider ones UInt64 or Int64; so each of them is exact.
+
+-- Returns bits of a number of up to 32 bits.
+local function bits(number, shift, width)
+  return math.floor(number / 2 ^ shift) % 2 ^ width
+end
+
+-- Prepares a place in the data bytes for reading.
+local function prepare(place)
+  place.mask = UInt64.max():rshift(64 - place.width)
+end
+
+-- Returns the raw value at a place, without its sign.
+local function get(frame, place)
+  local word = place.big and frame.big or frame.little
+  local value = word:rshift(place.shift):band(place.mask)
+  return place.width > 32 and value or value:lower()
+end
+
+-- Returns the same raw value as a number in two's complement.
+local function signed(value, width)
+  if width <= 32 then return value < 2 ^ (width - 1) and value or value - 2 ^ width end
+  local is_negative = value:rshift(width - 1):lower() == 1
+  if is_negative and width < 64 then value = value:bor(UInt64.max():lshift(width)) end
+  return Int64(value:lower(), value:higher())
+end
+
+-- Returns a raw value as it stands in the tables of names.
+local function key(value)
+  return type(value) == "number" and value or tostring(value)
+end
+
+local function double(value)
+  return type(value) == "number" and value or value:tonumber()
+end
+
+local function hexadecimal(value)
+  return string.format("0x%02X", value)
+end
+
+local function digits(value, count)
+  return type(value) == "number" and string.format("%0" .. count .. "X", value) or value:tohex(-count)
+end
+
+local function plain(value)
+  return type(value) ~= "number" and tostring(value) or string.format("%.15g", value)
+end
+
+local function lies_within(value, ranges)
+  for _, range in ipairs(ranges) do
+    if range[1] <= value and value <= range[2] then return true end
+  end
+  return false
+end
+
+local function identifier_field(frame, index)
+  local field = protocol.identifier.fields[index]
+  return bits(frame.id, field.shift, field.width)
+end
+
+-- Tests parts of an identifier that are constant.
+local function shows(id, constants)
+  for _, part in ipairs(constants) do
+    if bits(id, part.shift, part.width) ~= part.value then return false end
+  end
+  return true
+end
+
+-- Values: the physical value of a raw one, or nil and the note that says why there is none.
+
+local values = {}
+
+function values.integer(_, raw)
+  return raw
+end
+
+function values.number(signal, raw)
+  return (double(raw) * signal.numerator + signal.offset) / signal.denominator
+end
+
+function values.float(signal, raw)
+  local exponent, fraction = bits(raw, 23, 8), bits(raw, 0, 23)
+  local sign = raw < 2 ^ 31 and 1 or -1
+  if exponent == 255 then
+    local name = fraction ~= 0 and "NaN" or sign < 0 and "-inf" or "inf"
+    return nil, "not_finite", signal.name .. " is " .. name
+  end
+  if exponent == 0 then return sign * fraction * 2 ^ -149 end
+  return sign * (1 + fraction / 2 ^ 23) * 2 ^ (exponent - 127)
+end
+
+function values.named(signal, raw)
+  local name = signal.names[key(raw)]
+  if name then return name end
+  return nil, "unknown_value", signal.name .. " 0x" .. digits(raw, 2) .. " has no name"
+end
+
+-- Returns the text of hexadecimal digits, without the NULs at its end; nil if it is not printable.
+local function ascii(hex)
+  local text = hex:gsub("..", function(pair) return string.char(tonumber(pair, 16)) end)
+  text = text:gsub("\0+$", "")
+  return not text:find("[^ -~]") and text or nil
+end
+
+local function not_of_form(signal)
+  return nil, "unknown_value", signal.name .. " is not a text of the documented form"
+end
+
+function values.text(signal, raw)
+  local text = ascii(digits(raw, math.floor(signal.place.width / 4)))
+  if text then return text end
+  return not_of_form(signal)
+end
+
+-- Returns the text of a part of a packed value, if that text gives the same bits again.
+local function piece_text(frame, piece)
+  local raw, width = get(frame, piece.place), piece.place.width
+  if piece.text then
+    local text = ascii(digits(raw, math.floor(width / 4)))
+    return text and #text == width / 8 and text or nil
+  end
+  local number = type(raw) == "number" and string.format("%d", raw) or tostring(raw)
+  if piece.range and not lies_within(double(raw), { piece.range }) then return nil end
+  if not piece.digits then return number end
+  return #number <= piece.digits and string.rep("0", piece.digits - #number) .. number or nil
+end
+
+function values.packed(signal, _, frame)
+  local text, is_open = "", false
+  for _, piece in ipairs(signal.pieces) do
+    local part = piece.literal or piece_text(frame, piece)
+    -- A number without a fixed length ends where the next digit is none.
+    if not part or (is_open and part:find("^%d")) then return not_of_form(signal) end
+    if part ~= "" then is_open = not (piece.literal or piece.text or piece.digits) end
+    text = text .. part
+  end
+  return text
+end
+
+-- Returns the numbers of a status word's set bits, and a mask of those without a name.
+function values.status(signal, raw)
+  local set, unknown = {}, raw
+  for _, bit in ipairs(signal.bits) do
+    if double(raw) >= 2 ^ bit.bit then
+      local is_set
+      if type(raw) == "number" then
+        is_set = bits(raw, bit.bit, 1) == 1
+        unknown = is_set and unknown - 2 ^ bit.bit or unknown
+      else
+        is_set = raw:rshift(bit.bit):band(1):lower() == 1
+        unknown = is_set and unknown - UInt64(1):lshift(bit.bit) or unknown
+      end
+      set[bit.bit] = is_set or nil
+    end
+  end
+  if double(unknown) == 0 then return set end
+  return set, "unknown_bit", signal.name .. " has bits 0x" .. digits(unknown, 1) .. " set that have no name"
+end
+
+local function range_note(signal, model, value)
+  local range = signal.model_ranges and signal.model_ranges[model] or signal.range
+  if not range or lies_within(value, { range }) then return end
+  local unit = signal.unit and " " .. signal.unit or ""
+  local limits = plain(range[1]) .. ".." .. plain(range[2]) .. unit
+  return "out_of_range", signal.name .. " " .. plain(value) .. unit .. " is outside " .. limits
+end
+
+-- Returns what a frame says of a signal: raw, value, name of a special value, rule and text of a note.
+local function reading(frame, signal)
+  local raw = get(frame, signal.place)
+  if signal.signed then raw = signed(raw, signal.place.width) end
+  local special = signal.specials and signal.specials[key(raw)]
+  if special then return { signal = signal, raw = raw, name = special } end
+  local value, rule, text = values[signal.kind](signal, raw, frame)
+  local is_number = signal.kind == "integer" or signal.kind == "number" or signal.kind == "float"
+  if is_number and value then rule, text = range_note(signal, frame.model, double(value)) end
+  return { signal = signal, raw = raw, value = value, rule = rule, text = text }
+end
+
+-- Addressing: the mode that an identifier shows.
+
+local REQUEST, REPLIES = { "request" }, { "one", "each", "coordinator" }
+
+-- Tests a pattern; "documented", "tolerated" if an address is one that the document does not name, or nil.
+local function pattern_fit(frame, pattern)
+  if not shows(frame.id, pattern.constants) then return nil end
+  local fit = "documented"
+  for _, address in ipairs(pattern.addresses) do
+    local kind, raw = protocol.address_types[address.type], identifier_field(frame, address.field)
+    if raw < kind.first or raw > kind.last then
+      if kind.strict or lies_within(raw, address.excluded) then return nil end
+      fit = "tolerated"
+    end
+  end
+  return fit
+end
+
+-- Calls `found` with each mode that the identifier shows, who answers, and how well it fits: 1 is best, from 3 on the
+-- message does not have the mode.
+local function each_mode(frame, shape, found)
+  for _, mode in ipairs(protocol.modes) do
+    for _, who in ipairs(shape.kind == "request" and REQUEST or REPLIES) do
+      local pattern = mode[who]
+      local fit = pattern and pattern_fit(frame, pattern)
+      if fit then
+        local answer = shape.answers[mode.name]
+        local has = who == "request" and answer ~= nil or answer == who
+        found(mode, who, (has and 0 or 2) + (fit == "documented" and 1 or 2))
+      end
+    end
+  end
+end
+
+-- Returns the mode that fits best, and of those the one with most constants.
+local function addressing(frame, shape)
+  local best = { fit = 5, constants = 0 }
+  each_mode(frame, shape, function(mode, who, fit)
+    local constants = mode[who].constant_fields
+    if fit < best.fit or (fit == best.fit and constants > best.constants) then
+      best = { fit = fit, constants = constants, mode = mode, pattern = mode[who] }
+    end
+  end)
+  return best
+end
+
+-- Choosing: from an identifier to the one message.
+
+local function is_of_model(message, model)
+  if not message.models or model == 0 then return true end
+  for _, known in ipairs(message.models) do
+    if known == model then return true end
+  end
+  return false
+end
+
+-- Tests whether no device model has both messages.
+local function is_apart(one, other)
+  if not one.models or not other.models then return false end
+  for _, model in ipairs(one.models) do
+    if is_of_model(other, model) then return false end
+  end
+  return true
+end
+
+local function holds(frame, alternatives)
+  for _, tests in ipairs(alternatives) do
+    local all = true
+    for _, test in ipairs(tests) do
+      all = all and lies_within(identifier_field(frame, test.field), test.ranges) == test.inside
+    end
+    if all then return true end
+  end
+  return false
+end
+
+local function is_foreign(frame)
+  for _, tests in ipairs(protocol.foreign) do
+    local all = true
+    for _, test in ipairs(tests) do
+      local value = test.field and identifier_field(frame, test.field) or frame.id
+      all = all and test.first <= value and value <= test.last
+    end
+    if all then return true end
+  end
+  return false
+end
+
+local function filtered(shapes, test)
+  local left = {}
+  for _, shape in ipairs(shapes) do
+    if test(shape) then left[#left + 1] = shape end
+  end
+  return left
+end
+
+-- Shapes by direction, and those that refuse a request in place of its reply; each knows its message.
+local towards_module, towards_controller, refusals = {}, {}, {}
+for _, message in ipairs(protocol.messages) do
+  for _, signal in ipairs(message.signals) do
+    prepare(signal.place)
+    for _, piece in ipairs(signal.pieces or {}) do
+      if piece.place then prepare(piece.place) end
+    end
+  end
+  for _, shape in ipairs(message.shapes) do
+    shape.message = message
+    table.insert(shape.kind == "request" and towards_module or towards_controller, shape)
+  end
+  for _, refusal in ipairs(message.refusals or {}) do
+    refusal.message = message
+    table.insert(refusals, refusal)
+  end
+end
+for _, selector in ipairs(protocol.selectors) do
+  if selector.place then prepare(selector.place) end
+end
+
+-- Returns the shapes whose constants the identifier has.
+local function with_identifier(frame, shapes)
+  return filtered(shapes, function(shape)
+    for _, constant in ipairs(shape.in_identifier) do
+      if identifier_field(frame, constant.field) ~= constant.value then return false end
+    end
+    return true
+  end)
+end
+
+-- Returns the shapes whose constants the data bytes have.
+local function with_data(frame, shapes)
+  local found = {}
+  return filtered(shapes, function(shape)
+    for _, constant in ipairs(shape.in_data) do
+      local index = constant.selector
+      found[index] = found[index] or key(get(frame, protocol.selectors[index].place))
+      if found[index] ~= constant.value then return false end
+    end
+    return true
+  end)
+end
+
+-- Returns the payload selectors of these shapes, as far as the frame has the bytes.
+local function selectors(frame, shapes)
+  local found, seen = {}, {}
+  for _, shape in ipairs(shapes) do
+    for _, index in ipairs(shape.selectors) do
+      local selector = protocol.selectors[index]
+      if not seen[index] and selector.place.first + selector.place.count <= frame.length then
+        found[#found + 1] = { index = index, selector = selector, value = get(frame, selector.place) }
+      end
+      seen[index] = true
+    end
+  end
+  table.sort(found, function(one, other) return one.index < other.index end)
+  return found
+end
+
+-- Says why a frame is not recognised, with the selectors of the shapes that it could have had.
+local function problem(kind, text, frame, shapes)
+  return { problem = kind, text = text, selectors = shapes and selectors(frame, shapes) or {} }
+end
+
+-- The same for an identifier that has not the fields of this protocol.
+local function other_identifier(kind, text)
+  return { problem = kind, text = text, selectors = {}, has_other_identifier = true }
+end
+
+local NO_DIRECTION = "the addresses do not show whether it goes to a module or to the controller"
+
+-- Returns the shapes with the identifier, the length and the data bytes of a frame, or a problem.
+local function candidates(frame)
+  local identifier = protocol.identifier
+  if frame.extended ~= identifier.extended then
+    return nil, other_identifier("identifier", "the identifier has another width")
+  elseif is_foreign(frame) then
+    return nil, other_identifier("foreign", "the identifier belongs to somebody else")
+  elseif not shows(frame.id, identifier.constants) then
+    return nil, problem("identifier", "the identifier's fixed bits are others")
+  end
+  local to_module, to_controller = holds(frame, protocol.to_module), holds(frame, protocol.to_controller)
+  if to_module == to_controller then return nil, problem("identifier", NO_DIRECTION) end
+
+  local left = with_identifier(frame, to_module and towards_module or towards_controller)
+  if #left == 0 then return nil, problem("unknown_message", "no message has this identifier") end
+
+  local of_length = filtered(left, function(shape) return shape.message.length == frame.length end)
+  if #of_length == 0 then
+    local text = frame.length .. " data bytes instead of " .. left[1].message.length
+    return nil, problem("length", text, frame, left)
+  end
+
+  local chosen = with_data(frame, of_length)
+  if #chosen == 0 then return nil, problem("unknown_message", "no message has these data bytes", frame, of_length) end
+  return chosen
+end
+
+-- Tests whether the first of two shapes fits better: the device model has it, or else its addresses fit better.
+local function compare(one, other)
+  if one.is_of_model ~= other.is_of_model then return one.is_of_model end
+  if one.fit ~= other.fit then return one.fit < other.fit end
+  return one.constants > other.constants
+end
+
+local function rank(frame, shape)
+  local known = addressing(frame, shape)
+  return { is_of_model = is_of_model(shape.message, frame.model), fit = known.fit, constants = known.constants }
+end
+
+-- Returns the shape that fits best, and the note that it depends on the device model.
+local function best(frame, shapes)
+  local chosen, ranked = shapes[1], rank(frame, shapes[1])
+  for index = 2, #shapes do
+    local other = rank(frame, shapes[index])
+    if compare(other, ranked) then chosen, ranked = shapes[index], other end
+  end
+  local message = chosen.message
+  if frame.model ~= 0 then
+    if is_of_model(message, frame.model) then return chosen end
+    return chosen, protocol.models[frame.model] .. " has no message `" .. message.name .. "`"
+  end
+  for _, shape in ipairs(shapes) do
+    local other = rank(frame, shape)
+    if is_apart(message, shape.message) and not compare(other, ranked) and not compare(ranked, other) then
+      return chosen, "it is `" .. shape.message.name .. "` on other models"
+    end
+  end
+  return chosen
+end
+
+-- Notes: what the document does not foresee.
+
+local function error_note(field, value)
+  local name = field.names and field.names[key(value)]
+  return field.name .. " " .. plain(value) .. (name and ": " .. name or ", which the document does not name")
+end
+
+local function error_notes(frame, decoded, note)
+  for index, field in ipairs(protocol.identifier.fields) do
+    local value = identifier_field(frame, index)
+    if field.normal and field.normal ~= value then note("error_code", error_note(field, value)) end
+  end
+  if decoded.shape.kind == "request" then return end
+  for _, known in ipairs(decoded.selectors) do
+    local normal = known.selector.normal
+    if normal and normal ~= key(known.value) then note("error_code", error_note(known.selector, known.value)) end
+  end
+end
+
+local function address_notes(frame, decoded, note)
+  local known = decoded.addressing
+  if not known.mode then
+    note("addressing", "no addressing mode of this protocol fits a " .. decoded.shape.kind)
+    return
+  end
+  if known.fit >= 3 then
+    note("addressing", "`" .. decoded.shape.message.name .. "` is not addressed by `" .. known.mode.name .. "`")
+  end
+  for _, address in ipairs(known.pattern.addresses) do
+    local kind, raw = protocol.address_types[address.type], identifier_field(frame, address.field)
+    if raw < kind.first or raw > kind.last then
+      local range = hexadecimal(kind.first) .. ".." .. hexadecimal(kind.last)
+      local field = protocol.identifier.fields[address.field].name
+      note("address", field .. " " .. hexadecimal(raw) .. " is outside " .. range .. " of `" .. kind.name .. "`")
+    end
+  end
+end
+
+-- Returns the message with its values and notes, or a problem.
+local function decode(frame)
+  local shapes, unrecognised = candidates(frame)
+  if not shapes then return unrecognised end
+  local shape, other_model = best(frame, shapes)
+  local decoded = { shape = shape, notes = {}, readings = {}, selectors = selectors(frame, { shape }) }
+  local function note(rule, text) table.insert(decoded.notes, { rule = rule, text = text }) end
+  decoded.addressing = addressing(frame, shape)
+  error_notes(frame, decoded, note)
+  address_notes(frame, decoded, note)
+  for _, index in ipairs(shape.signals) do
+    local known = reading(frame, shape.message.signals[index])
+    table.insert(decoded.readings, known)
+    if known.rule then note(known.rule, known.text) end
+  end
+  local reserved = frame.big:band(shape.reserved):tohex(-16):sub(1, 2 * frame.length)
+  if reserved:find("[^0]") then
+    decoded.reserved = reserved
+    note("reserved_bit", "bits are set that the document reserves: " .. reserved)
+  end
+  if other_model then note("model_dependent", other_model) end
+  return decoded
+end

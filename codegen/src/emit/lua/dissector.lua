@@ -1,0 +1,247 @@
+-- The dissector: fields, the tree of a frame, and how Wireshark finds it.
+
+local proto = Proto(protocol.name, string.upper(protocol.name) .. ": " .. protocol.title)
+
+local fields, experts = {}, {}
+
+local function define(field)
+  table.insert(fields, field)
+  return field
+end
+
+-- Returns the filter name of a group of fields; a message of the same name keeps its own.
+local function group(name)
+  for _, message in ipairs(protocol.messages) do
+    if message.name == name then return group(name .. "_") end
+  end
+  return protocol.name .. "." .. name .. "."
+end
+
+local function title(item)
+  return item.title or item.name
+end
+
+-- Returns a field for integers of so many bits; hexadecimal digits are for those that are no quantities.
+local function number_field(name, text, width, is_signed, display, names, about)
+  local size = width <= 8 and 8 or width <= 16 and 16 or width <= 32 and 32 or 64
+  local make = ProtoField[(is_signed and "int" or "uint") .. size]
+  return define(make(name, text, is_signed and base.DEC or display, names, nil, about))
+end
+
+local function define_signal(signal, prefix)
+  local name, text, width = prefix .. signal.name, title(signal), signal.place.width
+  if signal.kind == "integer" then
+    signal.field = number_field(name, text, width, signal.signed, base.DEC)
+  elseif signal.kind == "number" or signal.kind == "float" then
+    signal.field = define(ProtoField.double(name, text))
+  elseif signal.kind == "status" then
+    signal.field = number_field(name, text, width, false, base.HEX)
+    for _, bit in ipairs(signal.bits) do
+      bit.field = define(ProtoField.bool(name .. "." .. bit.name, title(bit)))
+    end
+  else
+    signal.field = define(ProtoField.string(name, text))
+  end
+  if signal.specials then signal.name_field = define(ProtoField.string(name .. ".name", text)) end
+  if signal.specials or (signal.kind ~= "integer" and signal.kind ~= "status") then
+    signal.raw_field = number_field(name .. ".raw", "raw", width, signal.signed, base.DEC_HEX)
+  end
+end
+
+local known = {}
+for _, name in ipairs({ "message", "access", "kind", "addressing", "reserved", "problem" }) do
+  known[name] = define(ProtoField.string(protocol.name .. "." .. name, name))
+end
+known.request_in = define(ProtoField.framenum(protocol.name .. ".request_in", "Request in", base.NONE, frametype.REQUEST))
+known.response_in = define(ProtoField.framenum(protocol.name .. ".response_in", "Response in", base.NONE, frametype.RESPONSE))
+known.response_time = define(ProtoField.relative_time(protocol.name .. ".response_time", "Response time"))
+
+known.identifier = define(ProtoField.uint32(protocol.name .. ".identifier", "identifier", base.HEX))
+
+-- Names of values of up to 32 bits can stand in the field itself.
+for _, field in ipairs(protocol.identifier.fields) do
+  local name = group("identifier") .. field.name
+  field.field = number_field(name, field.name, field.width, false, base.HEX_DEC, field.names, field.title)
+end
+for _, selector in ipairs(protocol.selectors) do
+  if selector.place then
+    local width = selector.place.width
+    local names = width <= 32 and selector.names or nil
+    local name = group("selector") .. selector.name
+    selector.field = number_field(name, selector.name, width, false, base.HEX_DEC, names, selector.title)
+  end
+end
+for _, message in ipairs(protocol.messages) do
+  for _, signal in ipairs(message.signals) do
+    define_signal(signal, protocol.name .. "." .. message.name .. ".")
+  end
+end
+
+local RULES = {
+  "error_code", "addressing", "address", "unknown_value", "unknown_bit", "out_of_range", "not_finite", "reserved_bit",
+  "model_dependent",
+}
+local notes = {}
+for _, rule in ipairs(RULES) do
+  notes[rule] = ProtoExpert.new(group("note") .. rule, rule, expert.group.PROTOCOL, expert.severity.WARN)
+  table.insert(experts, notes[rule])
+end
+local unrecognised =
+  ProtoExpert.new(group("note") .. "unrecognised", "not recognised", expert.group.PROTOCOL, expert.severity.ERROR)
+table.insert(experts, unrecognised)
+
+proto.fields, proto.experts = fields, experts
+
+local models = { { 1, "any", 0 } }
+for index, name in ipairs(protocol.models) do
+  table.insert(models, { index + 1, name, index })
+end
+proto.prefs.model = Pref.enum("Device model", 0, "Whose layouts and limits count", models, false)
+
+local function add_identifier(tree, frame, decoded)
+  local subtree = tree:add(known.identifier, frame.id)
+  if decoded.has_other_identifier then return end
+  for index, field in ipairs(protocol.identifier.fields) do
+    subtree:add(field.field, identifier_field(frame, index))
+  end
+end
+
+local function add_selectors(tree, tvb, decoded)
+  for _, chosen in ipairs(decoded.selectors) do
+    local place = chosen.selector.place
+    tree:add(chosen.selector.field, tvb(place.first, place.count), chosen.value)
+  end
+end
+
+-- Adds the bits of a status word, and returns the names of those that are set.
+local function add_bits(item, range, reading)
+  local set = {}
+  for _, bit in ipairs(reading.signal.bits) do
+    local is_set = reading.value[bit.bit] or false
+    item:add(bit.field, range, is_set)
+    if is_set then table.insert(set, bit.name) end
+  end
+  return #set > 0 and table.concat(set, " ") or "none"
+end
+
+-- Adds a signal, and returns its value as a text. One without a physical value has its raw value alone.
+local function add_reading(tree, tvb, reading)
+  local signal = reading.signal
+  local range = tvb(signal.place.first, signal.place.count)
+  if reading.value == nil and not reading.name then
+    tree:add(signal.raw_field, range, reading.raw):prepend_text(title(signal) .. ", ")
+    return "?"
+  end
+  local item, text
+  if reading.name then
+    item, text = tree:add(signal.name_field, range, reading.name), reading.name
+  elseif signal.kind == "status" then
+    item = tree:add(signal.field, range, reading.raw)
+    text = add_bits(item, range, reading)
+  else
+    item, text = tree:add(signal.field, range, reading.value), plain(reading.value)
+    if signal.unit then
+      item:append_text(" " .. signal.unit)
+      text = text .. " " .. signal.unit
+    end
+  end
+  if signal.raw_field then item:add(signal.raw_field, range, reading.raw) end
+  return text
+end
+
+local function add_links(tree, frame)
+  local request = requests[frame.number]
+  if request then
+    tree:add(known.request_in, request.number):set_generated()
+    tree:add(known.response_time, request.time):set_generated()
+  end
+  for _, number in ipairs(responses[frame.number] or {}) do
+    tree:add(known.response_in, number):set_generated()
+  end
+end
+
+local function show_problem(frame, decoded, tvb, tree)
+  tree:append_text(", not recognised")
+  tree:add(known.problem, decoded.problem)
+  add_identifier(tree, frame, decoded)
+  add_selectors(tree, tvb, decoded)
+  tree:add_proto_expert_info(unrecognised, decoded.text)
+end
+
+local function show_message(frame, decoded, tvb, pinfo, tree)
+  local shape = decoded.shape
+  local summary = shape.access .. " " .. shape.message.name .. " " .. shape.kind
+  tree:append_text(", " .. summary)
+  tree:add(known.message, shape.message.name)
+  tree:add(known.access, shape.access)
+  tree:add(known.kind, shape.kind)
+  if decoded.addressing.mode then tree:add(known.addressing, decoded.addressing.mode.name) end
+  add_identifier(tree, frame, decoded)
+  add_selectors(tree, tvb, decoded)
+  local texts = {}
+  for _, reading in ipairs(decoded.readings) do
+    table.insert(texts, reading.signal.name .. " " .. add_reading(tree, tvb, reading))
+  end
+  if decoded.reserved then tree:add(known.reserved, tvb(), decoded.reserved) end
+  for _, note in ipairs(decoded.notes) do
+    tree:add_proto_expert_info(notes[note.rule], note.text)
+  end
+  add_links(tree, frame)
+  pinfo.cols.info = #texts > 0 and summary .. ": " .. table.concat(texts, ", ") or summary
+end
+
+local function show(frame, decoded, tvb, pinfo, tree)
+  pinfo.cols.protocol = string.upper(protocol.name)
+  local root = tree:add(proto, tvb())
+  if decoded.problem then
+    show_problem(frame, decoded, tvb, root)
+    return
+  end
+  link(frame, decoded)
+  show_message(frame, decoded, tvb, pinfo, root)
+end
+
+local can_id, can_extended, can_remote = Field.new("can.id"), Field.new("can.flags.xtd"), Field.new("can.flags.rtr")
+local fd_switch, interface_id, frame_time =
+  Field.new("canfd.flags.brs"), Field.new("frame.interface_id"), Field.new("frame.time_epoch")
+
+-- Returns the last value of a field of the dissectors before.
+local function last(field)
+  local all = { field() }
+  if #all > 0 then return all[#all].value end
+end
+
+-- Returns a whole classic data frame; nil of any other.
+local function read_frame(tvb, pinfo)
+  local length = tvb:len()
+  if length > 8 or length < tvb:reported_len() or last(can_remote) ~= false or fd_switch() then return nil end
+  local frame = { id = last(can_id), extended = last(can_extended), length = length, model = proto.prefs.model }
+  frame.number, frame.time, frame.interface = pinfo.number, last(frame_time), tostring(last(interface_id) or 0)
+  -- The data bytes as two numbers, filled up with zeros: byte 0 highest, and byte 0 lowest.
+  frame.big, frame.little = UInt64(0), UInt64(0)
+  if length > 0 then
+    frame.big, frame.little = tvb():uint64():lshift(8 * (8 - length)), tvb():le_uint64()
+  end
+  return frame
+end
+
+proto.init = forget
+
+-- Chosen by "Decode As", the dissector shows every frame, and the problem of one that is not recognised.
+function proto.dissector(tvb, pinfo, tree)
+  local frame = read_frame(tvb, pinfo)
+  if not frame then return 0 end
+  show(frame, decode(frame), tvb, pinfo, tree)
+  return tvb:len()
+end
+
+DissectorTable.get("can.subdissector"):add_for_decode_as(proto)
+
+-- Of the frames that nobody was chosen for, those that are recognised.
+proto:register_heuristic("can", function(tvb, pinfo, tree)
+  local frame = read_frame(tvb, pinfo)
+  local decoded = frame and decode(frame)
+  if not decoded or decoded.problem then return false end
+  show(frame, decoded, tvb, pinfo, tree)
+  return true
+end)

@@ -1,0 +1,123 @@
+//! Signals: where their bits are, and what they mean.
+
+use canspec_runtime::{ByteOrder, Place};
+
+use super::table::Value;
+use crate::model::{Encoding, NamedValue, Piece, Protocol, Range, Signal, StatusBit};
+use crate::number::Rational;
+
+/// Raw values of more bits are no Lua numbers before 5.3.
+const LUA_BITS: u8 = 32;
+
+/// Returns a place: its bits in the eight bytes read in one order, and the bytes that it touches.
+pub fn place(place: Place) -> Value {
+    let bits = place.bits_of_payload();
+    let touched: Vec<usize> = (0..8).filter(|byte| place.mask()[*byte] != 0).collect();
+    let first = touched.first().copied().unwrap_or_default();
+    Value::record()
+        .with("big", Value::flag(place.order() == ByteOrder::Big))
+        .with("shift", Value::number(bits.shift()))
+        .with("width", Value::number(bits.width()))
+        .with("first", Value::Plain(first.to_string()))
+        .with("count", Value::Plain(touched.len().to_string()))
+}
+
+/// Writes a raw value as the interpreter compares it: in quotes where it is no Lua number.
+pub fn wide(raw: impl Into<i128>, width: u8) -> Value {
+    let raw = raw.into();
+    if width > LUA_BITS { Value::text(&raw.to_string()) } else { Value::number(raw) }
+}
+
+/// Returns the names of raw values.
+pub fn names(values: &[NamedValue], width: u8) -> Value {
+    Value::map(values.iter().map(|value| (wide(value.raw, width), Value::text(&value.name))))
+}
+
+pub fn signal(protocol: &Protocol, signal: &Signal) -> Value {
+    let record = Value::record()
+        .with("name", Value::text(&signal.name))
+        .maybe("title", signal.doc.title.as_deref().map(Value::text))
+        .with("place", place(signal.place))
+        .maybe("unit", signal.unit.map(|unit| Value::text(unit.symbol)));
+    limits(meaning(protocol, record, signal), signal)
+}
+
+/// Adds what the bits mean.
+fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
+    let kind = |name| record.with("kind", Value::text(name));
+    match &signal.encoding {
+        Encoding::Number { signed, .. } if signal.encoding.is_unscaled() => {
+            kind("integer").maybe("signed", signed.then(|| Value::flag(true)))
+        }
+        Encoding::Number { signed, scale, offset } => {
+            scaled(kind("number").maybe("signed", signed.then(|| Value::flag(true))), *scale, *offset)
+        }
+        Encoding::Float => kind("float"),
+        Encoding::Named(index) => {
+            let values = &protocol.enumerations[*index].values;
+            kind("named").with("names", names(values, signal.place.width()))
+        }
+        Encoding::Status(index) => {
+            kind("status").with("bits", Value::list(&protocol.status_words[*index].bits, status_bit))
+        }
+        Encoding::Text => kind("text"),
+        Encoding::Packed { pieces, parts } => {
+            kind("packed").with("pieces", Value::list(pieces, |known| piece(known, parts)))
+        }
+    }
+}
+
+/// Adds the scale and the offset over one denominator: (raw * numerator + offset) / denominator, with one division.
+fn scaled(record: Value, scale: Rational, offset: Rational) -> Value {
+    let denominator = least_common_multiple(scale.denominator(), offset.denominator());
+    let over = |number: Rational| number.numerator() * (denominator / number.denominator());
+    record
+        .with("numerator", Value::number(over(scale)))
+        .with("offset", Value::number(over(offset)))
+        .with("denominator", Value::number(denominator))
+}
+
+fn least_common_multiple(one: i128, other: i128) -> i128 {
+    Rational::new(one, other).map_or(one, |fraction| fraction.numerator() * other)
+}
+
+fn status_bit(bit: &StatusBit) -> Value {
+    Value::record()
+        .with("bit", Value::number(bit.bit))
+        .with("name", Value::text(&bit.name))
+        .maybe("title", bit.doc.title.as_deref().map(Value::text))
+}
+
+fn piece(piece: &Piece, parts: &[Signal]) -> Value {
+    let (part, digits) = match piece {
+        Piece::Literal(text) => return Value::record().with("literal", Value::text(text)),
+        Piece::Part { part, digits } => (&parts[*part], digits),
+    };
+    Value::record()
+        .with("place", place(part.place))
+        .maybe("text", matches!(part.encoding, Encoding::Text).then(|| Value::flag(true)))
+        .maybe("digits", digits.map(|digits| Value::Plain(digits.to_string())))
+        .maybe("range", part.range.map(|known| range(part, known)))
+}
+
+/// Adds special values and limits.
+fn limits(record: Value, signal: &Signal) -> Value {
+    let specials = (!signal.specials.is_empty()).then(|| names(&signal.specials, signal.place.width()));
+    let own = signal.model_ranges.iter().map(|own| (Value::index(own.model), range(signal, own.value)));
+    let own = (!signal.model_ranges.is_empty()).then(|| Value::map(own));
+    record
+        .maybe("specials", specials)
+        .maybe("range", signal.range.map(|known| range(signal, known)))
+        .maybe("model_ranges", own)
+}
+
+/// Returns limits; of a float, the floats nearest to them are legal too.
+fn range(signal: &Signal, range: Range) -> Value {
+    let [minimum, maximum] = [range.minimum, range.maximum].map(|limit| {
+        let exact = limit.to_f64();
+        #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
+        let nearest = f64::from(exact as f32);
+        (exact, if matches!(signal.encoding, Encoding::Float) { nearest } else { exact })
+    });
+    Value::list([minimum.0.min(minimum.1), maximum.0.max(maximum.1)], Value::double)
+}

@@ -1,0 +1,388 @@
+#!/usr/bin/env python3
+"""Compares what tshark says of frames, by the exported dissector, with what `canspec decode` says of them.
+
+    tests/peers/tshark.py CANSPEC FRAMES
+
+CANSPEC is the command, FRAMES the program that writes random frames (`canspec-tests`, bin `frames`).
+"""
+
+import collections
+import glob
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PEERS = os.path.join(ROOT, "tests", "peers")
+# Random frames of all protocols together, of each protocol at least, and of each feature of the language.
+OF_ALL_PROTOCOLS, OF_A_PROTOCOL, OF_A_FEATURE = 100_000, 10_000, 1_000
+# What a mistake in the spec of the heater looks like: the text before and after.
+MISTAKES = {
+    "a wrong scale": ("scale: 1/10,", "scale: 1/100,"),
+    "a wrong bit": ("overheated: {bit: 3,", "overheated: {bit: 4,"),
+    "a wrong sign": ("as: signed, ", ""),
+}
+
+
+def processor_time():
+    """Returns the seconds that the programs called so far have worked."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+class Bench:
+    """A folder with the programs that are compared."""
+
+    def __init__(self, canspec, frames, folder):
+        self.canspec, self.frames, self.folder = canspec, frames, folder
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def run(self, *call):
+        return subprocess.run(call, check=True, capture_output=True, text=True, cwd=self.folder).stdout
+
+    def dissector(self, spec):
+        path = self.path("protocol.lua")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.run(self.canspec, "export", "wireshark", "--spec", spec))
+        return path
+
+    def capture(self, log):
+        path = self.path("bus.pcapng")
+        self.run(self.canspec, "decode", "--to", "pcapng", path, log)
+        return path
+
+    def decoded(self, spec, log, model):
+        chosen = ["--model", model] if model else []
+        lines = self.run(self.canspec, "decode", "--spec", spec, "--format", "jsonl", *chosen, log)
+        return [json.loads(line) for line in lines.splitlines()]
+
+    def log_of_examples(self, spec):
+        examples = self.run(self.canspec, "examples", "--spec", spec, "--format", "jsonl").splitlines()
+        examples = [json.loads(line) for line in examples]
+        frames = [f"{example['id']}#{example['data']}" for example in examples if example["data"]]
+        return self.log(f"({number}.{number:09}) can0 {frame}" for number, frame in enumerate(frames))
+
+    def random_log(self, spec, count):
+        return self.log(self.run(self.frames, "any", spec, str(count), "227").splitlines())
+
+    def log(self, lines):
+        path = self.path("bus.log")
+        with open(path, "w", encoding="utf-8") as file:
+            file.writelines(f"{line}\n" for line in lines)
+        return path
+
+
+class Dissector:
+    """tshark with an exported dissector."""
+
+    def __init__(self, bench, spec, protocol):
+        self.bench, self.protocol, self.lua = bench, protocol, bench.dissector(spec)
+        rows = bench.run("tshark", "-G", "fields", "-X", f"lua_script:{self.lua}").splitlines()
+        rows = [row.split("\t") for row in rows]
+        self.types = {row[2]: row[3] for row in rows if row[0] == "F" and row[2].startswith(protocol + ".")}
+
+        self.groups = {name: self.group(name) for name in ("identifier", "selector", "note")}
+
+    def group(self, name):
+        """Returns the prefix of a group of fields, which gives way to a message of the same name."""
+        is_taken = any(field.startswith(f"{self.protocol}.{name}_.") for field in self.types)
+        return f"{self.protocol}.{name}{'_' if is_taken else ''}"
+
+    def rows(self, capture, *options):
+        """Returns the fields that each frame has, by name, and the processor time that it took."""
+        names = ["_ws.lua.error", "_ws.col.Info", *self.types]
+        call = ["tshark", "-n", "-r", capture, "-X", f"lua_script:{self.lua}", *options, "-T", "fields"]
+        started = processor_time()
+        done = subprocess.run(call + [word for name in names for word in ("-e", name)], capture_output=True, text=True)
+        seconds = processor_time() - started
+        if done.returncode != 0 or "Lua" in done.stderr:
+            sys.exit(f"tshark: {done.stderr.strip()}")
+        cells = (zip(names, line.split("\t")) for line in done.stdout.split("\n")[:-1])
+        return [{name: cell for name, cell in row if cell != ""} for row in cells], seconds
+
+
+def rows_of_plain_lua(bench, dissector, lines, model):
+    """Returns the fields that each frame has in plain Lua 5.4."""
+    frames = (f"{line['line']} {line['id']} {29 if len(line['id']) == 8 else 11} {line['data'] or '-'}\n" for line in lines)
+    call = ["lua5.4", os.path.join(PEERS, "tshark_lua54.lua"), dissector.lua, str(model)]
+    done = subprocess.run(call, input="".join(frames), capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"lua5.4: {done.stderr.strip()}")
+    rows = []
+    for line in done.stdout.split("\n")[:-1]:
+        row = collections.defaultdict(list)
+        for name, _, value in (cell.partition("=") for cell in line.split("\t") if cell):
+            row[name].append(value)
+        rows.append({name: ",".join(values) for name, values in row.items() if values != [""]})
+    return rows
+
+
+def rounded(number):
+    """Writes a double with the 15 digits that tshark prints."""
+    return f"{float(number):.15g}"
+
+
+def signal_fields(name, signal):
+    """Returns the fields of a signal, and its value as it stands in the list of packets."""
+    if "set" in signal:
+        bits = {f"{name}.{bit}": "1" for bit in signal["set"]}
+        return {name: str(signal["raw"]), **bits}, " ".join(signal["set"]) or "none"
+    raw, value = signal["raw"], signal["value"]
+    if value is None:
+        return {f"{name}.raw": str(raw)}, "?"
+    text = rounded(value) if isinstance(value, float) else str(value)
+    fields = {name: text, f"{name}.raw": str(raw)}
+    return fields, text + (f" {signal['unit']}" if "unit" in signal and not isinstance(value, str) else "")
+
+
+def expected(line, dissector):
+    """Returns the fields that tshark must show of a decoded line."""
+    of, groups = f"{line['protocol']}.", dissector.groups
+    numbers = [(groups["identifier"], line["identifier"]), (groups["selector"], line["selectors"])]
+    fields = {f"{group}.{name}": str(value) for group, values in numbers for name, value in values.items()}
+    fields[f"{of}identifier"] = str(int(line["id"], 16))
+    if line["message"] is None:
+        fields[f"{of}problem"] = line["problem"]["kind"]
+        fields[f"{groups['note']}.unrecognised"] = "1"
+        return fields, None
+    fields |= {of + key: line[key] for key in ("message", "access", "kind", "addressing", "reserved") if line.get(key)}
+    texts = []
+    for name, signal in line["signals"].items():
+        more, text = signal_fields(f"{of}{line['message']}.{name}", signal)
+        texts.append(f"{name} {text}")
+        fields |= more
+    for rule, count in collections.Counter(note["rule"] for note in line["notes"]).items():
+        fields[f"{groups['note']}.{rule}"] = ",".join(["1"] * count)
+    info = f"{line['access']} {line['message']} {line['kind']}" + (": " if texts else "") + ", ".join(texts)
+    return with_names(fields, dissector.types), info
+
+
+def with_names(fields, types):
+    """Moves the name of a special value to its own field, and leaves out raw fields where the value is the raw one."""
+    known = {}
+    for name, value in fields.items():
+        is_special = f"{name}.name" in types and not is_number(value)
+        name = f"{name}.name" if is_special else name
+        if name in types or not name.endswith(".raw"):
+            known[name] = value
+    return {name: value for name, value in known.items() if value != ""}
+
+
+def is_number(text):
+    return text.lstrip("-")[:1].isdigit()
+
+
+def plain(name, cell, types):
+    """Returns a cell of tshark as `expected` has it."""
+    kind = types[name]
+    if kind == "FT_DOUBLE":
+        return rounded(cell)
+    if kind == "FT_BOOLEAN":
+        return {"True": "1", "False": "0"}.get(cell, cell)
+    return str(int(cell, 0)) if "INT" in kind else cell
+
+
+def difference(line, row, dissector):
+    """Says what tshark shows otherwise, if anything."""
+    types = dissector.types
+    wanted, info = expected(line, dissector)
+    if "_ws.lua.error" in row:
+        return row["_ws.lua.error"]
+    links = ("request_in", "response_in", "response_time")
+    shown = {name: cell for name, cell in row.items() if name in types and name.split(".", 1)[1] not in links}
+    shown = {name: plain(name, cell, types) for name, cell in shown.items()}
+    # Each bit of a status word is shown, set or not.
+    shown = {name: cell for name, cell in shown.items() if types[name] != "FT_BOOLEAN" or cell != "0"}
+    if shown != wanted:
+        return f"decode {sorted(wanted.items() - shown.items())}, tshark {sorted(shown.items() - wanted.items())}"
+    if info and row.get("_ws.col.Info") != info:
+        return f"decode {info!r}, tshark {row.get('_ws.col.Info')!r}"
+    return None
+
+
+def compare(bench, spec, log, dissected=None, model=None, by_heuristic=False):
+    """Compares a log frame by frame; `dissected` is the spec of the dissector, if it is another one."""
+    lines = bench.decoded(spec, log, model)
+    protocol = lines[0]["protocol"]
+    dissector = Dissector(bench, dissected or spec, protocol)
+    options = ["-o", f"{protocol}.model:{model}"] if model else []
+    options += [] if by_heuristic else ["-d", f"can.subdissector,{protocol}"]
+    rows, seconds = dissector.rows(bench.capture(log), *options)
+    if len(lines) != len(rows):
+        sys.exit(f"{spec}: {len(lines)} frames were decoded, {len(rows)} dissected")
+    differences = []
+    for line, row in zip(lines, rows):
+        if by_heuristic and line["message"] is None:
+            wrong = sorted(set(row) & set(dissector.types)) or None
+        elif line["message"] is None and line["problem"]["kind"] == "frame":
+            # The dissector takes classic data frames only.
+            wrong = sorted(set(row) & set(dissector.types)) or None
+        else:
+            wrong = difference(line, row, dissector)
+        if wrong:
+            differences.append(f"{line['id']}#{line['data']}: {wrong}")
+    return lines, rows, differences, seconds
+
+
+def compare_plain_lua(bench, spec):
+    """Compares random frames with what the dissector shows of them in plain Lua 5.4."""
+    lines = bench.decoded(spec, bench.random_log(spec, OF_A_FEATURE), None)
+    dissector = Dissector(bench, spec, lines[0]["protocol"])
+    started = processor_time()
+    rows = rows_of_plain_lua(bench, dissector, lines, 0)
+    seconds = processor_time() - started
+    found = [(line, difference(line, row, dissector)) for line, row in zip(lines, rows, strict=True)]
+    differences = [f"{line['id']}#{line['data']}: {wrong}" for line, wrong in found if wrong]
+    return report(os.path.basename(spec), "random, in Lua 5.4", lines, differences, seconds)
+
+
+def report(name, what, lines, differences, seconds):
+    """Prints a row of the table, and the first differences."""
+    recognised = sum(line["message"] is not None for line in lines)
+    each = f"{1e6 * seconds / len(lines):5.0f} us a frame" if len(lines) >= OF_A_PROTOCOL else ""
+    print(f"{name:20} {what:26} {len(lines):6} frames, {recognised:6} recognised, {len(differences):3} differ {each}")
+    for text in differences[:5]:
+        print(f"    {text}")
+    return len(differences)
+
+
+def compare_spec(bench, spec, count):
+    """Compares the examples of a spec, and random frames, each device model's among them."""
+    name = os.path.basename(spec)
+    wrong, examples = 0, bench.log_of_examples(spec)
+    if os.path.getsize(examples) > 0:
+        lines, _, differences, seconds = compare(bench, spec, examples, by_heuristic=True)
+        wrong += report(name, "examples, by heuristic", lines, differences, seconds)
+    log = bench.random_log(spec, count)
+    lines, _, differences, seconds = compare(bench, spec, log)
+    wrong += report(name, "random", lines, differences, seconds)
+    model = last_model(bench, spec)
+    if model:
+        lines, _, differences, seconds = compare(bench, spec, bench.random_log(spec, OF_A_FEATURE), model=model)
+        wrong += report(name, f"model {model}", lines, differences, seconds)
+    return wrong
+
+
+def last_model(bench, spec):
+    """Returns the device model that the dissector lists last."""
+    prefs = bench.run("tshark", "-G", "currentprefs", "-X", f"lua_script:{bench.dissector(spec)}").splitlines()
+    lists = [line for line in prefs if line.startswith("# One of: any")]
+    return lists[0].rsplit(", ", 1)[1] if lists and ", " in lists[0] else None
+
+
+def compare_edges(bench):
+    """Compares frames with the numbers at the edges of words wider than 32 bits."""
+    spec, log = (os.path.join(PEERS, f"tshark_wide.{ending}") for ending in ("yaml", "log"))
+    lines, _, differences, seconds = compare(bench, spec, log)
+    return report("tshark_wide.yaml", "edges", lines, differences, seconds)
+
+
+def frame_of_line(stamp, channel, frame):
+    """Returns what a capture must have of a line of a log: time, channel, remote, bytes, identifier, length."""
+    seconds, _, fraction = stamp.strip("()").partition(".")
+    identifier, data = frame.split("#", 1)
+    is_remote = data.startswith("R")
+    count = 0 if is_remote else len(data[2:] if data.startswith("#") else data) // 2
+    head = [f"{seconds}.{fraction:0<9}", channel, is_remote, 8 + count]
+    # Of an error frame, tshark shows no identifier but what it stands for.
+    is_error = len(identifier) == 8 and int(identifier, 16) >> 29 == 1
+    return head + ([] if is_error else [int(identifier, 16), int(data[1:] or 0) if is_remote else count])
+
+
+def frame_of_row(row):
+    """Returns the same of a row of tshark."""
+    stamp, channel, identifier, length, remote, count = row.split("\t")
+    return [stamp, channel, remote == "1", int(count)] + ([int(identifier, 0), int(length)] if identifier else [])
+
+
+def compare_captures(bench):
+    """Compares the captures of logs with the lines themselves."""
+    names = ["frame.time_epoch", "frame.interface_name", "can.id", "can.len", "can.flags.rtr", "frame.len"]
+    call = [word for name in names for word in ("-e", name)]
+    logs = [*glob.glob(os.path.join(ROOT, "tests", "logs", "*.log")), os.path.join(PEERS, "tshark_wide.log")]
+    frames = wrong = 0
+    for log in sorted(logs):
+        rows = bench.run("tshark", "-n", "-r", bench.capture(log), "-T", "fields", *call).splitlines()
+        with open(log, encoding="utf-8") as file:
+            lines = [line.split()[:3] for line in file if "#" in line]
+        for row, line in zip(rows, lines, strict=True):
+            found, wanted = frame_of_row(row), frame_of_line(*line)
+            frames += 1
+            if found != wanted:
+                wrong += 1
+                print(f"    {' '.join(line)}: {found} in place of {wanted}")
+    print(f"{'captures':20} {'times, channels, lengths':26} {frames:6} frames, {wrong:24} differ")
+    return wrong
+
+
+def compare_links(bench):
+    """Compares the links of the heater's log with those written beside its frames."""
+    spec = os.path.join(PEERS, "tshark.yaml")
+    with open(os.path.join(PEERS, "tshark_links.log"), encoding="utf-8") as file:
+        rows = [row.split("|") for row in file.read().splitlines() if not row.startswith("#")]
+    log = bench.log(row[0] for row in rows)
+    dissector = Dissector(bench, spec, "heater")
+    shown, _ = dissector.rows(bench.capture(log), "-2", "-Y", "heater")
+    wrong = 0
+    for number, (row, (frame, *links)) in enumerate(zip(shown, rows, strict=True), start=1):
+        names = ("request_in", "response_time", "response_in")
+        found = [row.get(f"heater.{name}", "-") for name in names]
+        if found != [link.strip() for link in links]:
+            wrong += 1
+            print(f"    frame {number}, {frame.strip()}: {found} in place of {links}")
+    linked = sum("heater.request_in" in row for row in shown)
+    print(f"{'links':20} {'requests and replies':26} {len(shown):6} frames, {linked:6} linked, {wrong:9} differ")
+    return wrong
+
+
+def find_mistakes(bench):
+    """Dissects by wrong copies of a spec; each must be noticed."""
+    spec = os.path.join(PEERS, "tshark.yaml")
+    log = bench.random_log(spec, OF_A_FEATURE)
+    with open(spec, encoding="utf-8") as file:
+        text, _ = file.read().split("\nexamples:\n")
+    missed = 0
+    for name, (before, after) in MISTAKES.items():
+        if text.count(before) != 1:
+            sys.exit(f"{before!r} stands {text.count(before)} times in {spec}")
+        copy = bench.path("copy.yaml")
+        with open(copy, "w", encoding="utf-8") as file:
+            file.write(text.replace(before, after))
+        lines, _, differences, _ = compare(bench, spec, log, dissected=copy)
+        print(f"{name:20} {'must be found':26} {len(lines):6} frames, {len(differences):6} differ")
+        missed += not differences
+    return missed
+
+
+def main():
+    if shutil.which("tshark") is None:
+        print("SKIPPED: there is no tshark, so nothing compares the exported dissectors with `canspec decode`;")
+        print("SKIPPED: `apt-get install --no-install-recommends tshark` installs it.")
+        return 0
+    canspec, frames = (os.path.abspath(path) for path in sys.argv[1:])
+    protocols = sorted(glob.glob(os.path.join(ROOT, "specs", "*.yaml")))
+    features = sorted(glob.glob(os.path.join(ROOT, "tests", "specs", "features", "*.yaml")))
+    features += sorted(glob.glob(os.path.join(PEERS, "tshark*.yaml")))
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(canspec, frames, folder)
+        print(bench.run("tshark", "--version").splitlines()[0])
+        count = max(OF_A_PROTOCOL, -(-OF_ALL_PROTOCOLS // len(protocols)))
+        wrong = sum(compare_spec(bench, spec, count) for spec in protocols)
+        wrong += sum(compare_spec(bench, spec, OF_A_FEATURE) for spec in features)
+        if shutil.which("lua5.4"):
+            wrong += sum(compare_plain_lua(bench, spec) for spec in protocols + features)
+        else:
+            print("SKIPPED: there is no lua5.4, so the dissectors run in tshark's version of Lua alone;")
+            print("SKIPPED: `apt-get install --no-install-recommends lua5.4` installs it.")
+        wrong += compare_captures(bench) + compare_edges(bench) + compare_links(bench) + find_mistakes(bench)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
