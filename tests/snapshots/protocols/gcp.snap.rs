@@ -1168,8 +1168,19 @@ impl Single for LimitInputCurrent {
 
 /// Set the DC input of DC/DC modules to DC/DC or MPPT mode. Section 3.3.
 ///
+/// In DC/DC mode the address of a module is the value of its DIP switch, in MPPT mode 0x80 more.
+///
 /// Erratum U0F: printed is "yes in each of the three modes of 0x0F, no layout of a reply, and No
 /// response beside two broadcasts and the request to 0x80", used is "no reply in any mode".
+///
+/// Erratum C24: printed is "automatic addresses, and the DIP switch for the group (3.2.4); an address
+/// that is the value of the DIP switch in DC/DC mode (3.3)", used is "addresses 0x00 to 0x3B, wherever
+/// they come from".
+///
+/// Erratum U80: printed is "0x80 plus the DIP switch as the address of a module in MPPT mode, and
+/// peer-to-peer by the address of the module; bits 7 and 6 reserved, no such target but in 0x0F, no
+/// highest number", used is "0x80 to `0xBB` as addresses of single modules in all commands of 3.3 that
+/// address one; 0x0F stays without a reply".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetOperatingMode {
     /// Mode of the DC input: byte 7.

@@ -17,6 +17,8 @@ const FRAME: Filter = Filter::EXTENDED;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Identifier {
     /// Cause of an error in the data, or that the module is starting up: bits 28..26. Section 2.2.
+    ///
+    /// Codes changed in V1.07, which ones is not said.
     pub error: ErrorCode,
     /// `0xA` for single modules and `0xB` for groups: bits 25..22. Section 2.2.
     pub device: u8,
@@ -406,6 +408,8 @@ const OUTPUT_CURRENT_LIMITS: &[(u8, f64, f64)] = &[
 ];
 
 /// Cause of an error in the data, or that the module is starting up. Section 2.2.
+///
+/// Codes changed in V1.07, which ones is not said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ErrorCode {
     /// 0: `normal`.
@@ -801,14 +805,14 @@ impl BitOr for Status0 {
     }
 }
 
-/// Barcode of seventeen characters. Written as `{number:12}{letter}{suffix:4}`.
+/// First seventeen characters of the barcode. Written as `{number:12}{letter}{suffix:4}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BarcodeValue {
     /// Thirteenth character: byte 0.
     pub letter: Text<1>,
     /// First twelve digits: bytes 1..5, `0..=999999999999`.
     pub number: u64,
-    /// Last four digits: bytes 6..7, `0..=9999`.
+    /// Four digits after the letter: bytes 6..7, `0..=9999`.
     pub suffix: u16,
 }
 
@@ -1041,7 +1045,7 @@ impl Layout for ModuleStatus {
 
 /// Line-to-line AC input voltages of one module. Section 2.4.
 ///
-/// On a single-phase module only `ab` is valid.
+/// On a single-phase module only `ab` is valid; changed in V1.08.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputVoltage {
     /// Voltage between phases A and B in V: bytes 0..1, steps of 0.1 V.
@@ -1135,6 +1139,8 @@ impl Layout for SystemOutputFixed {
 }
 
 /// Output voltage and current of one module in fixed point. Section 2.4.
+///
+/// Added in V1.07.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModuleOutputFixed {
     /// Output voltage in V: bytes 0..3, steps of 0.001 V.
@@ -1179,6 +1185,8 @@ impl Layout for ModuleOutputFixed {
 }
 
 /// Limits of one module. Section 2.4.
+///
+/// Changed in V1.08.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModuleLimits {
     /// Highest output voltage in V: bytes 0..1.
@@ -1239,11 +1247,13 @@ impl Layout for ModuleLimits {
 
 /// Barcode of one module. Section 2.4.
 ///
+/// Added in V1.08.
+///
 /// Erratum U0B: printed is "0x0B and 0x0C with examples for module 0 only, no word on groups", used is
 /// "each module of a group answers".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Barcode {
-    /// Barcode of seventeen characters: bytes 0..7.
+    /// First seventeen characters of the barcode: bytes 0..7.
     pub value: BarcodeValue,
 }
 
@@ -1272,6 +1282,8 @@ impl Single for Barcode {
 }
 
 /// External voltage of one module and the current that the module can deliver. Section 2.4.
+///
+/// Added in V1.08.
 ///
 /// Erratum U0B: printed is "0x0B and 0x0C with examples for module 0 only, no word on groups", used is
 /// "each module of a group answers".
@@ -1425,6 +1437,8 @@ impl Single for SetGroup {
 }
 
 /// Send modules to sleep. Section 2.4.
+///
+/// Added in V1.04.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetSleep {
     /// Sleep: byte 0.
@@ -1558,6 +1572,8 @@ impl Layout for SetTotalOutput {
 }
 
 /// Set voltage and current of every module addressed. Section 2.4.
+///
+/// Added in V1.06 and changed in V1.08.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetModuleOutput {
     /// Output voltage in V: bytes 0..3, steps of 0.001 V. The limits depend on the device model. Section
@@ -1627,8 +1643,8 @@ impl Layout for SetModuleOutput {
 
 /// Choose where modules get their address from. Section 2.4.
 ///
-/// For modules with DIP addressing; set the group afterwards, because the DIP switch no longer gives
-/// it.
+/// Added in V1.05 for modules with DIP addressing; set the group afterwards, because the DIP switch no
+/// longer gives it.
 ///
 /// Erratum D43: printed is "0x1F is a broadcast without reply, to address 0x3F with device `0xA`; of
 /// the same note on 0x1A only this comm..., reply and device `0xA` are left", used is "one module, a
