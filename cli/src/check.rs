@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::source::Source;
-use canspec_codegen::{Outcome, Summary, compile};
+use canspec_codegen::{Outcome, Summary, compile_with_examples};
 use canspec_specs::SPECS;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -26,6 +26,9 @@ pub struct Check {
     /// What is wrong with the text underlined, in a line each, or as a JSON object each.
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Style::Human)]
     message_format: Style,
+    /// Of a hundred messages so many must have an example.
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
+    min_example_coverage: Option<u8>,
     /// The spec files.
     #[arg(value_name = "SPEC")]
     specs: Vec<PathBuf>,
@@ -62,9 +65,22 @@ impl Check {
     /// Compiles the specs, each when it is its turn.
     fn outcomes(&self) -> Box<dyn Iterator<Item = (Diagnostics, Object)> + '_> {
         if self.specs.is_empty() {
-            return Box::new(SPECS.iter().map(|spec| outcome(spec.file, Source::new(spec.file, spec.text.into()))));
+            return Box::new(
+                SPECS.iter().map(|spec| self.outcome(spec.file, Source::new(spec.file, spec.text.into()))),
+            );
         }
-        Box::new(self.specs.iter().map(|path| outcome(&path.display().to_string(), Source::read(path))))
+        Box::new(self.specs.iter().map(|path| self.outcome(&path.display().to_string(), Source::read(path))))
+    }
+
+    /// Compiles a source; of one that cannot be read only the name is known.
+    fn outcome(&self, name: &str, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
+        match source.map(|source| compile_with_examples(source, self.min_example_coverage)) {
+            Ok(Outcome { diagnostics, summary, .. }) => (diagnostics, summary.into()),
+            Err(diagnostics) => {
+                let object = Object { spec: name.to_owned(), errors: diagnostics.errors(), ..Object::default() };
+                (diagnostics, object)
+            }
+        }
     }
 
     fn report(&self, diagnostics: &Diagnostics) -> io::Result<()> {
@@ -86,17 +102,6 @@ impl Check {
                 serde_json::to_writer(&mut *out, summary)?;
                 writeln!(out)
             }
-        }
-    }
-}
-
-/// Compiles a source; of one that cannot be read only the name is known.
-fn outcome(name: &str, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
-    match source.map(compile) {
-        Ok(Outcome { diagnostics, summary, .. }) => (diagnostics, summary.into()),
-        Err(diagnostics) => {
-            let object = Object { spec: name.to_owned(), errors: diagnostics.errors(), ..Object::default() };
-            (diagnostics, object)
         }
     }
 }

@@ -15,6 +15,8 @@ mod list;
 mod log;
 mod model;
 mod protocols;
+mod rules;
+mod schema;
 mod table;
 
 use std::process::ExitCode;
@@ -42,6 +44,8 @@ enum Command {
     Examples(examples::Examples),
     Export(export::Export),
     List(list::List),
+    Rules(rules::Rules),
+    Schema(schema::Schema),
 }
 
 impl Command {
@@ -54,6 +58,8 @@ impl Command {
             Self::Examples(examples) => examples.run(),
             Self::Export(export) => export.run(),
             Self::List(list) => list.run(),
+            Self::Rules(rules) => rules.run(),
+            Self::Schema(_) => schema::Schema::run(),
         }
     }
 }

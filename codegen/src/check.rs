@@ -7,17 +7,24 @@ mod erratum;
 mod example;
 mod grid;
 mod model_range;
+mod no_example;
+mod no_unit;
+mod nobody_replies;
 mod outside_frame;
 mod overlap;
 mod range_width;
+mod read_only_range;
 mod refusal;
 mod reply;
 mod rust_name;
 mod section;
 mod special_value;
+mod stale_allowance;
+mod unreachable;
 
 pub use example::Counts;
 pub use grid::fits;
+pub use stale_allowance::allow;
 
 use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;
@@ -26,26 +33,35 @@ use crate::model::Protocol;
 type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what the protocol is, in order.
-const RULES: [Check; 13] = [
+const RULES: [Check; 17] = [
     outside_frame::check,
     overlap::check,
     grid::check,
     range_width::check,
+    read_only_range::check,
+    no_unit::check,
     model_range::check,
     special_value::check,
     default_value::check,
     direction::check,
     ambiguous::check,
     refusal::check,
+    unreachable::check,
+    nobody_replies::check,
     rust_name::check,
     erratum::check,
     section::check,
 ];
 
 /// Applies every rule; the document's examples are run only by a protocol that is otherwise right.
-pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
+///
+/// Of a hundred messages so many must have an example, where anybody asks for that.
+pub fn check(protocol: &Protocol, percent: Option<u8>, diagnostics: &mut Diagnostics) -> Counts {
     for rule in RULES {
         rule(protocol, diagnostics);
+    }
+    if let Some(percent) = percent {
+        no_example::check(protocol, percent, diagnostics);
     }
     if diagnostics.has_errors() {
         return Counts::default();

@@ -12,6 +12,9 @@ use serde::Serialize;
 use crate::source::Source;
 use crate::syntax::tree::{Node, Path};
 
+/// Most errors, and most warnings, that the later stages report of one spec.
+const MOST: usize = 1000;
+
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -67,6 +70,8 @@ pub struct Diagnostic {
     pub others: Vec<(At, String)>,
     /// What to do about it.
     pub help: Option<String>,
+    /// What to write at the place, where that is certain.
+    pub replacement: Option<String>,
 }
 
 impl Diagnostic {
@@ -99,10 +104,16 @@ impl Diagnostic {
         Self { help: Some(text.into()), ..self }
     }
 
+    /// Sets what to write at the place.
+    #[must_use]
+    pub fn replacement(self, text: impl Into<String>) -> Self {
+        Self { replacement: Some(text.into()), ..self }
+    }
+
     /// Control characters that the message repeats from the file would act on a terminal.
     fn new(rule: &'static str, severity: Severity, at: At, message: &str) -> Self {
         let message = message.replace(char::is_control, "\u{FFFD}");
-        Self { rule, severity, message, at, label: None, others: Vec::new(), help: None }
+        Self { rule, severity, message, at, label: None, others: Vec::new(), help: None, replacement: None }
     }
 }
 
@@ -133,9 +144,10 @@ impl Diagnostics {
         self
     }
 
-    /// Adds a diagnostic, once; many fields can take the same mistake from one type.
+    /// Adds a diagnostic, once; many fields can take the same mistake from one type. Past a thousand of one severity the others
+    /// are left out.
     pub fn push(&mut self, item: Diagnostic) {
-        if !self.items.contains(&item) {
+        if self.count(item.severity) < MOST && !self.items.contains(&item) {
             self.items.push(item);
         }
     }
@@ -143,8 +155,19 @@ impl Diagnostics {
     /// Adds a diagnostic, unless its rule is broken at that place already; many fields can break a rule by one key of a type.
     pub fn push_first(&mut self, item: Diagnostic) {
         if !self.items.iter().any(|known| known.rule == item.rule && known.at == item.at) {
-            self.items.push(item);
+            self.push(item);
         }
+    }
+
+    /// Takes out the warnings of a rule at a place and below it, such as `messages.output`; tells whether there were any.
+    pub fn allow(&mut self, rule: &str, place: &str) -> bool {
+        let before = self.items.len();
+        let is_inside = |at: &At| match at {
+            At::Key(path) | At::Value(path) => path.ancestors().any(|outer| outer.to_string() == place),
+            At::File | At::Span(_) => false,
+        };
+        self.items.retain(|item| item.severity == Severity::Error || item.rule != rule || !is_inside(&item.at));
+        self.items.len() < before
     }
 
     /// Returns the text of the spec.
@@ -218,6 +241,7 @@ impl Diagnostics {
             label: item.label.as_deref(),
             others: item.others.iter().map(|(at, text)| Other { place: self.place(at), text }).collect(),
             help: item.help.as_deref(),
+            replacement: item.replacement.as_deref(),
         }
     }
 
@@ -257,6 +281,8 @@ pub struct Located<'a> {
     pub others: Vec<Other<'a>>,
     /// What to do about it.
     pub help: Option<&'a str>,
+    /// What to write at the place, where that is certain.
+    pub replacement: Option<&'a str>,
 }
 
 impl fmt::Display for Located<'_> {

@@ -14,6 +14,8 @@ mod multiples;
 pub mod number;
 mod resolve;
 pub mod rules;
+#[cfg(feature = "schema")]
+pub mod schema;
 pub mod source;
 mod summary;
 pub mod syntax;
@@ -38,15 +40,21 @@ pub struct Outcome {
 
 /// Compiles a spec.
 pub fn compile(source: Source) -> Outcome {
+    compile_with_examples(source, None)
+}
+
+/// Compiles a spec in which of a hundred messages at least so many must have an example.
+pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
     let name = source.name().to_owned();
     let file = name.rsplit(['/', '\\']).next().unwrap_or(&name).to_owned();
     let (spec, mut diagnostics) = syntax::parse(source);
     let usable = spec.filter(|_| !diagnostics.has_errors());
-    let resolved = usable.and_then(|spec| resolve::resolve(&spec, &file, &mut diagnostics));
+    let resolved = usable.as_ref().and_then(|spec| resolve::resolve(spec, &file, &mut diagnostics));
     let counts = match &resolved {
-        Some(protocol) if !diagnostics.has_errors() => check::check(protocol, &mut diagnostics),
+        Some(protocol) if !diagnostics.has_errors() => check::check(protocol, percent, &mut diagnostics),
         _ => check::Counts::default(),
     };
+    check::allow(&usable.map(|spec| spec.allow).unwrap_or_default(), &mut diagnostics);
     let summary = Summary::new(&name, resolved.as_ref(), counts, &diagnostics);
     let protocol = resolved.filter(|_| !diagnostics.has_errors());
     Outcome { protocol, diagnostics, summary }

@@ -14,6 +14,7 @@ mod types;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{self, Protocol};
+use crate::rules::RULES;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -64,6 +65,7 @@ impl Resolver<'_> {
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
         self.check_types_used();
+        self.check_allowances();
         Some(Protocol {
             name,
             file: file.to_owned(),
@@ -91,6 +93,15 @@ impl Resolver<'_> {
             enumerations: self.tables.enumerations,
             status_words: self.tables.status_words,
         })
+    }
+
+    /// Tests that the allowances name rules.
+    fn check_allowances(&mut self) {
+        let root = Path::default().key("allow");
+        for (index, allowance) in self.spec.allow.iter().enumerate() {
+            let names = RULES.iter().map(|rule| rule.name);
+            self.lookup(&root.index(index).key("rule"), "rule", &allowance.rule, names);
+        }
     }
 
     /// Reports an error.

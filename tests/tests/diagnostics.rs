@@ -5,13 +5,16 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use canspec_codegen::compile;
+use canspec_codegen::compile_with_examples;
 use canspec_codegen::diagnostic::Diagnostics;
-use canspec_codegen::rules::RULES;
+use canspec_codegen::rules::{self, RULES};
 use canspec_codegen::source::Source;
 
 /// Rules that no YAML file can break, which the compiler tests itself.
 const WITHOUT_FIXTURE: [&str; 1] = ["file"];
+
+/// Rules that a whole spec on a page cannot break.
+const WITHOUT_EXAMPLE: [&str; 2] = ["file", "no_example"];
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
@@ -65,6 +68,35 @@ fn every_rule_has_a_folder_with_both_specs() -> Result {
 }
 
 #[test]
+fn every_rule_has_a_document_with_its_summary_and_examples() {
+    for rule in RULES {
+        assert!(rule.summary().ends_with('.'), "{}: the first line is one sentence", rule.name);
+        let paragraphs = rule.document.split("\n\n").count();
+        assert!(paragraphs >= 2, "{}: the document says why", rule.name);
+        let has_examples = rule.document.contains("```yaml fails\n") && rule.document.contains("\n```yaml\n");
+        assert!(has_examples || WITHOUT_EXAMPLE.contains(&rule.name), "{}: two blocks of YAML", rule.name);
+    }
+}
+
+#[test]
+fn every_document_is_that_of_a_rule() -> Result {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../codegen/src/rules");
+    let documents: BTreeSet<_> = files(&folder)?.iter().map(|path| file_name(path)).collect();
+    assert_eq!(documents, RULES.iter().map(|rule| format!("{}.md", rule.name)).collect());
+    Ok(())
+}
+
+#[test]
+fn the_page_of_rules_is_current() -> Result {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/rules.md");
+    if std::env::var_os("CANSPEC_BLESS").is_some() {
+        fs::write(&page, rules::reference())?;
+    }
+    assert!(fs::read_to_string(page)? == rules::reference(), "CANSPEC_BLESS=1 writes docs/rules.md anew");
+    Ok(())
+}
+
+#[test]
 fn every_rule_that_the_compiler_reports_is_listed() -> Result {
     let mut reported = BTreeSet::new();
     for file in rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../codegen/src"))? {
@@ -90,9 +122,11 @@ fn all_errors_of_one_stage_come_in_one_run_in_the_order_of_the_file() -> Result 
     Ok(())
 }
 
+/// Compiles a spec; one of the folder `no_example` as a caller does who wants an example of each message.
 fn diagnose(spec: &Path) -> Result<Diagnostics> {
     let source = Source::new(file_name(spec), fs::read(spec)?)?;
-    Ok(compile(source).diagnostics)
+    let percent = (folder_name(spec) == "no_example").then_some(100);
+    Ok(compile_with_examples(source, percent).diagnostics)
 }
 
 /// Returns the specs of all rules of which the name starts with `prefix`.

@@ -1,13 +1,10 @@
-//! `ambiguous`: one frame fits two messages, or two kinds of frames of one message.
-//!
-//! Whoever decodes the bus would have to guess. Give one of the two another constant, or addressing modes of its own. Messages that no
-//! device model has together may look the same.
+#![doc = include_str!("../rules/ambiguous.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, Kind, Message, Protocol, Shape, Who};
 
 /// Inclusive raw ranges.
-type Ranges = Vec<(u32, u32)>;
+pub type Ranges = Vec<(u32, u32)>;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let frames: Vec<_> =
@@ -57,7 +54,7 @@ fn agree(one: &Shape, other: &Shape) -> bool {
 }
 
 /// Returns the addressing patterns that the document allows for a frame.
-fn patterns<'a>(protocol: &'a Protocol, (message, shape): (&Message, &Shape)) -> Vec<&'a AddressPattern> {
+pub fn patterns<'a>(protocol: &'a Protocol, (message, shape): (&Message, &Shape)) -> Vec<&'a AddressPattern> {
     let answers = &message.accesses[shape.access].answers;
     let allowed = protocol.modes.iter().zip(answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
     allowed
@@ -77,7 +74,7 @@ fn intersect(protocol: &Protocol, one: &AddressPattern, other: &AddressPattern) 
 }
 
 /// Returns the raw values of a field that a pattern accepts, tolerated ones included.
-fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: usize) -> Ranges {
+pub fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: usize) -> Ranges {
     let known = &protocol.identifier.fields[field];
     let greatest = known.mask() >> known.shift;
     if pattern.mask & known.mask() != 0 {

@@ -1,6 +1,4 @@
-//! `default_value`: a default that lies outside the signal's range, or outside that of a device model.
-//!
-//! A default is sent where the caller leaves the signal out, so it must be a value that a request may carry.
+#![doc = include_str!("../rules/default_value.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Encoding, Message, Protocol, Signal};

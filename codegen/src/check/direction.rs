@@ -1,7 +1,4 @@
-//! `direction`: an identifier does not show whether it goes to a module or to the controller.
-//!
-//! Whoever reads the bus must know a request from its reply. Give the controller's address type `outside: refused`, or the two
-//! directions different constants in one field.
+#![doc = include_str!("../rules/direction.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldTest, IdentifierField, Mode, Protocol};

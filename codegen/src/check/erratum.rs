@@ -1,6 +1,4 @@
-//! `erratum`: an erratum that nothing refers to, or a reference to one that does not exist.
-//!
-//! An erratum says where the spec departs from the document; it belongs to the item or example that departs.
+#![doc = include_str!("../rules/erratum.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;

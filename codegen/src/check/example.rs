@@ -1,14 +1,18 @@
-//! `example`: a frame of the document that does not mean what the spec says, or does not encode back to the same bytes.
-//!
-//! `expected_failure`: a printed form that is said to fail, but no longer does, or fails in another way.
-//!
-//! Either the spec is wrong, or the document is; then an erratum says so, and the printed form stays with `fails`.
+#![doc = include_str!("../rules/example.md")]
+#![doc = include_str!("../rules/expected_failure.md")]
+
+mod contradiction;
+
+use std::collections::HashSet;
+
+use contradiction::Contradiction;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
 };
 use crate::model::{Example, Failure, Kind, Meaning, Message, Protocol, Signal, ValueExample};
+use crate::syntax::tree::Path;
 
 /// How many examples hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,9 +27,16 @@ pub struct Counts {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
     let mut counts = Counts::default();
+    let contradictions = contradiction::find(protocol);
+    for (field, contradiction) in &contradictions {
+        diagnostics.push(contradiction::report(protocol, *field, contradiction));
+    }
+    let explained: HashSet<&Path> = contradictions.values().flat_map(Contradiction::places).collect();
+    let is_explained = |at: &At| matches!(at, At::Value(path) if explained.contains(path));
     for example in &protocol.examples {
         let checked = Checker { protocol, example };
         match (checked.run(), example.fails, &example.data) {
+            (Err(diagnostic), _, _) if is_explained(&diagnostic.at) => {}
             (Err(diagnostic), _, _) => diagnostics.push(*diagnostic),
             (Ok(()), Some(_), _) => counts.expected_failures += 1,
             (Ok(()), None, Some(_)) => counts.frames += 1,
@@ -110,7 +121,8 @@ impl<'a> Checker<'a> {
                     format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text)
                 },
             );
-            return Err(wrong(meaning.path.at_value(), text));
+            let diagnostic = Diagnostic::error("example", meaning.path.at_value(), text);
+            return Err(Box::new(diagnostic.other(signal.doc.path.at_key(), "the field")));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {

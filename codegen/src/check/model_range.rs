@@ -1,9 +1,4 @@
-//! `model_range`: a device model has limits beyond the general ones.
-//!
-//! Limits that never count, because a field has its own, are found where fields take keys from types.
-//!
-//! The general range holds for a device whose model nobody names, so it must contain that of every model. Widen it, or take it out and
-//! give each model its own.
+#![doc = include_str!("../rules/model_range.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;

@@ -1,6 +1,4 @@
-//! `outside_frame`: a signal has bits beyond the data bytes of its message.
-//!
-//! A frame of 6 bytes has no byte 7: such a signal would read zeros for ever. Give the message its `length`, or the signal its right place.
+#![doc = include_str!("../rules/outside_frame.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;

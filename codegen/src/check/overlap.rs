@@ -1,6 +1,4 @@
-//! `overlap`: two signals of one frame share bits.
-//!
-//! One of the two places is wrong, or they are one word whose parts are fields of it. The bits are named as byte and bit of the frame.
+#![doc = include_str!("../rules/overlap.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Message, Protocol, SelectorPlace, Shape, Signal};

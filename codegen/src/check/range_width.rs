@@ -1,6 +1,4 @@
-//! `range_width`: a range that the raw value cannot hold.
-//!
-//! The limits or the scale are wrong: a byte in steps of 1/10 V never reaches 750 V.
+#![doc = include_str!("../rules/range_width.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;

@@ -1,7 +1,4 @@
-//! `refusal`: an access whose refusals are also replies, or are replies of no message.
-//!
-//! A refusal stands in place of the reply, so one field must tell the two apart, and what refuses says why: it is the reply of a message
-//! of its own. Give `refusal` a constant that `reply` has with another value, and write a message whose reply has this constant.
+#![doc = include_str!("../rules/refusal.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Kind, Message, Protocol, Shape};

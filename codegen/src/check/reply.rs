@@ -1,7 +1,4 @@
-//! `reply`: an example that does not answer the request before it.
-//!
-//! Within one list a reply belongs to the latest request: the same message or one that refuses it, the addresses bound by the addressing
-//! mode, and somebody who answers at all. A frame that the document prints wrongly is marked with `fails`.
+#![doc = include_str!("../rules/reply.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::{Decoded, Frame, decode};

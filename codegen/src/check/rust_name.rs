@@ -1,6 +1,4 @@
-//! `rust_name`: two names are one in the generated Rust, or a name is a word of the language.
-//!
-//! `output_1` and `output1` are two messages but one struct. Rename one of the two; a vendor's word can stand in the title.
+#![doc = include_str!("../rules/rust_name.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{camel_case, member};

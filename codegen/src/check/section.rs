@@ -1,6 +1,4 @@
-//! `section`: an item that does not say where it stands in the document.
-//!
-//! Whoever reviews the spec looks the fact up. Write `section: "2.4"`; what is inside an item inherits it.
+#![doc = include_str!("../rules/section.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;

@@ -1,6 +1,4 @@
-//! `special_value`: a special value that lies inside the range.
-//!
-//! A raw value either counts or has a name. Take it out of the range, or drop the name.
+#![doc = include_str!("../rules/special_value.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Protocol, Range, Signal};

@@ -249,7 +249,10 @@ impl Resolver<'_> {
         match raw_of_text(&self.tables.enumerations, signal, text, unit) {
             Ok(bits) => Some(bits),
             Err(Misfit { why, help }) => {
-                self.diagnostics.push_first(Diagnostic { help, ..Diagnostic::error("value", path.at_value(), why) });
+                let misfit = Diagnostic { help, ..Diagnostic::error("value", path.at_value(), why) };
+                let is_example = path.ancestors().all(|outer| *outer != signal.doc.path);
+                let field = signal.doc.path.at_key();
+                self.diagnostics.push_first(if is_example { misfit.other(field, "the field") } else { misfit });
                 None
             }
         }

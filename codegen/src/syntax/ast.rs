@@ -1,9 +1,12 @@
 //! A spec as it is written: every leaf is still its text.
 
+mod message;
 mod reading;
 
 use indexmap::IndexMap;
 use serde::Deserialize;
+
+pub use message::{Example, Means, Message, Sequence};
 
 /// Names to entries, in the order of the file.
 pub type Map<V> = IndexMap<String, V>;
@@ -13,6 +16,7 @@ pub type Pattern = Map<String>;
 
 /// A whole spec file.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Spec {
     /// Version of the spec language: `1`.
@@ -73,10 +77,15 @@ pub struct Spec {
     /// `{E1: {kind: ocr, prints: 13 38, uses: 13 88, because: the text says 500 V}}`; none if absent.
     #[serde(default)]
     pub errata: Map<Erratum>,
+    /// Warnings that are meant, a list: `[{rule: section, at: messages.output, because: only seen on the bus}]`; none if
+    /// absent.
+    #[serde(default)]
+    pub allow: Vec<Allowance>,
 }
 
 /// The vendor document that the spec follows.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Document {
     /// Title as printed: `Charging module CAN protocol`.
@@ -100,6 +109,7 @@ pub enum IdentifierEntry {
 
 /// A named bit range with a meaning: in the identifier, the header, a message, a word, or a type to take keys from.
 #[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Field {
     /// Bytes of the frame, 0 to 7, from the most to the least significant: `0..3` is big-endian, `7..4` little-endian,
@@ -180,6 +190,7 @@ pub struct Field {
 
 /// One bit of a status word.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StatusBit {
     /// Number of the bit in its word, 0 being the least significant: `3`.
@@ -208,6 +219,7 @@ pub struct StatusBit {
 
 /// Bytes of a type and the value they mean.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ValueExample {
     /// Bytes of the type alone in hexadecimal, 1 to 8, the first byte first: `43FA0000`.
@@ -223,6 +235,7 @@ pub struct ValueExample {
 
 /// An addressing mode: the request's addresses, and the reply's by who answers.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mode {
     /// What the identifier of a request shows, a number or an address type for each field:
@@ -249,6 +262,7 @@ pub struct Mode {
 
 /// How a message travels.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Access {
     /// Raw values that fields of the identifier and the header have in a request, which goes to a module:
@@ -286,6 +300,7 @@ pub struct Access {
 
 /// Identifiers that belong to somebody else on the bus.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Foreign {
     /// Number or range for fields of the identifier, all of which must hold; `identifier` is the whole of it:
@@ -303,98 +318,9 @@ pub struct Foreign {
     pub erratum: Names,
 }
 
-/// A message: what chooses it, how it travels, what it carries.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Message {
-    /// Raw values that fields of the identifier and the header have in every frame of the message: `{command: 0x03}`;
-    /// none if absent.
-    #[serde(rename = "match", default)]
-    pub pattern: Pattern,
-    /// Accesses by which the message travels, a list: `[read, set]`.
-    pub access: Vec<String>,
-    /// Who answers in the addressing modes that may be used, in place of what the accesses say: `{single: one}`; as
-    /// they say if absent.
-    #[serde(default)]
-    pub answers: Map<String>,
-    /// Data bytes of its frames, 0 to 8, which never choose the message: `4`; the protocol's `length` if absent.
-    pub length: Option<String>,
-    /// The only device models that have the message, a list: `[SM_750]`; every model has it if absent.
-    #[serde(default)]
-    pub models: Vec<String>,
-    /// Entry of `timing` that says how often its report comes: `cycle`; as its access says if absent.
-    pub every: Option<String>,
-    /// Fields by name that the message carries: `{voltage: {bytes: 0..1, scale: 1/10, unit: V}}`; none if absent.
-    #[serde(default)]
-    pub fields: Map<Field>,
-    /// The only field of the message, which is then called `value`, in place of `fields`:
-    /// `{bytes: 4..7, as: float, unit: V}`; none if absent.
-    pub value: Option<Field>,
-    /// Frames of the document in its order, in which a reply answers the request before it:
-    /// `[{request: 000302F0#0000000000000000}]`; none if absent.
-    #[serde(default)]
-    pub examples: Vec<Example>,
-    /// What it is, in a few words without a full stop: `Output voltage and current of one module`.
-    pub title: Option<String>,
-    /// What else a reader must know, in one sentence: `a module that is switched off answers with zeros`.
-    pub note: Option<String>,
-    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
-    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
-    #[serde(default)]
-    pub erratum: Names,
-}
-
-/// One frame of the document and what it means.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Example {
-    /// A frame towards a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` where the document prints
-    /// no data. An example has one of `request`, `reply` and `report`.
-    pub request: Option<String>,
-    /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` where the document prints no data.
-    pub reply: Option<String>,
-    /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` where the document prints no data.
-    pub report: Option<String>,
-    /// Message that the frame belongs to, in a sequence only: `output`; if absent, the frame fails as `identifier`,
-    /// `foreign` or `unknown_message`.
-    pub message: Option<String>,
-    /// Value of every signal in the frame with its unit: `{voltage: 500 V, alarms: [fan_fault]}`, or `500 V` if there
-    /// is only one. Absent where there are no signals or no data.
-    pub means: Option<Means>,
-    /// Device model that the frame comes from or goes to: `SM_750`; if absent, the first one that has the message, or
-    /// none if every model has it.
-    pub model: Option<String>,
-    /// Rules of all notes that decoding gives, a list: `[reserved_bit]`; no note if absent.
-    #[serde(default)]
-    pub notes: Vec<String>,
-    /// How the printed frame fails: `identifier`, `foreign`, `length`, `unknown_message`, `message` (it is another
-    /// one), `addressing` or `values`. If absent, it decodes and encodes back.
-    pub fails: Option<String>,
-    /// `ours` for a frame that the document does not print; if absent, it does.
-    pub origin: Option<String>,
-    /// What else a reader must know, in one sentence: `the data bytes are not legible`.
-    pub note: Option<String>,
-    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
-    pub section: Option<String>,
-    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
-    #[serde(default)]
-    pub erratum: Names,
-}
-
-/// What an example means: one value, the set bits of a status word, or a value for each signal.
-#[derive(Clone, Debug)]
-pub enum Means {
-    /// A number with its unit, a name or a text: `500 V`.
-    Value(String),
-    /// Names of the set bits of a status word: `[fan_fault]`, or `[]` if none is set.
-    Bits(Vec<String>),
-    /// A value for each signal: `{voltage: 500 V, alarms: []}`.
-    Signals(Map<Means>),
-}
-
 /// A device model and what differs with it.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DeviceModel {
     /// What it is, in a few words without a full stop: `Module for up to 750 V`.
@@ -425,6 +351,7 @@ pub struct DeviceModel {
 
 /// A time that the document states.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Timing {
     /// The time or its range, with its unit: `10 s` or `50..200 ms`.
@@ -444,6 +371,7 @@ pub struct Timing {
 
 /// Steps in order.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Procedure {
     /// Steps in order, a sentence each; a name in backquotes must be a message: ``[Wait 10 s, Read `output`]``.
@@ -459,26 +387,9 @@ pub struct Procedure {
     pub erratum: Names,
 }
 
-/// Example frames in the order in which the document shows them.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Sequence {
-    /// Frames in the document's order, each with its `message`:
-    /// `[{request: 000302F0#0000000000000000, message: output}]`.
-    pub frames: Vec<Example>,
-    /// What it is, in a few words without a full stop: `Two modules are read`.
-    pub title: Option<String>,
-    /// What else a reader must know, in one sentence: `the last reply is not legible`.
-    pub note: Option<String>,
-    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
-    pub section: Option<String>,
-    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
-    #[serde(default)]
-    pub erratum: Names,
-}
-
 /// Where the spec departs from the document.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Erratum {
     /// What is wrong: `vendor` (a mistake in the original), `translation`, `ocr` (of a scan), `unclear` (it can be read
@@ -492,6 +403,19 @@ pub struct Erratum {
     pub because: String,
     /// Section that prints it, in quotes: `"2.4"`; not stated if absent.
     pub section: Option<String>,
+}
+
+/// Warnings of one rule that are meant.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Allowance {
+    /// Rule that warns: `section`.
+    pub rule: String,
+    /// Item in which the warnings are, by the keys that lead to it: `messages.output`.
+    pub at: String,
+    /// Why they are meant: `only seen on the bus`.
+    pub because: String,
 }
 
 /// One name, or a list of names.

@@ -144,7 +144,7 @@ impl Gate<'_> {
         if style == ScalarStyle::Plain && UNCLEAR_WORDS.iter().any(|word| word.eq_ignore_ascii_case(text)) {
             let message = format!("`{text}` is written without quotes");
             let help = format!("write `\"{text}\"`: readers of YAML disagree on what the plain word means");
-            return Some(Diagnostic::error("plain_word", span, message).help(help));
+            return Some(Diagnostic::error("plain_word", span, message).help(help).replacement(format!("\"{text}\"")));
         }
         if is_key && style == ScalarStyle::Plain && text == "<<" {
             return Some(refused(span, "a merge key `<<`", "write out what it stands for"));

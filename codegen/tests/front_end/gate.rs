@@ -164,3 +164,10 @@ fn what_is_not_yaml_is_said_in_words() {
         assert_eq!(errors_after_whole(text), [format!("mini.yaml:{place}: error[yaml]: {message}")], "{text:?}");
     }
 }
+
+#[test]
+fn a_plain_word_comes_with_what_to_write_instead() {
+    let diagnostics = first(&format!("{WHOLE}types: {{a: {{values: {{0: on}}}}}}\n"));
+    let found: Vec<_> = diagnostics.located().map(|found| found.replacement).collect();
+    assert_eq!(found, [Some("\"on\"")]);
+}

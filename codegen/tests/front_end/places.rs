@@ -80,6 +80,7 @@ fn other_programs_get_the_places_as_numbers() {
     end_column: 6
     text: first given here
   help: remove one of the two, or give it another name
+  replacement: null
 ";
     assert_eq!(serde_yaml::to_string(&found).expect("plain data"), expected);
 }

@@ -1,0 +1,47 @@
+//! `canspec rules`.
+
+use std::io::{self, Write};
+
+use canspec_codegen::rules::{self, RULES};
+use clap::Args;
+
+use crate::failure::{Failure, Finish};
+
+/// Explain the rules that a spec must keep.
+///
+/// With a rule that an error names, why it exists, an example, and what to write instead; without, all of them in a line each.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec rules overlap")]
+pub struct Rules {
+    /// A rule, as in `error[overlap]`.
+    #[arg(value_name = "RULE")]
+    rule: Option<String>,
+}
+
+impl Rules {
+    /// Writes the document of a rule, or the list of rules.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let mut out = io::stdout().lock();
+        match &self.rule {
+            None => list(&mut out)?,
+            Some(name) => {
+                let rule = rules::find(name).ok_or_else(|| Failure::Call(unknown(name)))?;
+                writeln!(out, "{}", rule.document.trim_end())?;
+            }
+        }
+        Ok(Finish::Done)
+    }
+}
+
+fn list(out: &mut impl Write) -> io::Result<()> {
+    let width = RULES.iter().map(|rule| rule.name.len()).max().unwrap_or_default();
+    RULES.iter().try_for_each(|rule| writeln!(out, "{:width$}  {}", rule.name, rule.summary()))
+}
+
+fn unknown(name: &str) -> String {
+    let distance = |known: &&str| strsim::damerau_levenshtein(known, name);
+    let nearest = RULES.iter().map(|rule| rule.name).min_by_key(distance).filter(|known| distance(known) <= 2);
+    let help =
+        nearest.map_or_else(|| "`canspec rules` lists them".to_owned(), |known| format!("did you mean `{known}`?"));
+    format!("there is no rule `{name}`; {help}")
+}

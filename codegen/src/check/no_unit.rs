@@ -1,0 +1,19 @@
+#![doc = include_str!("../rules/no_unit.md")]
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Encoding, Protocol, Signal};
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        for signal in message.signals.iter().filter(|signal| is_nameless(signal)) {
+            let text = format!("`{}.{}` has a scale, but neither a unit nor a title", message.name, signal.name);
+            let help = "write its `unit`; for another than the language has, say it in the `title`";
+            diagnostics.push(Diagnostic::warning("no_unit", signal.doc.path.at_key(), text).help(help));
+        }
+    }
+}
+
+fn is_nameless(signal: &Signal) -> bool {
+    let is_scaled = matches!(signal.encoding, Encoding::Number { .. }) && !signal.encoding.is_unscaled();
+    is_scaled && signal.unit.is_none() && signal.doc.title.is_none()
+}

@@ -1,0 +1,22 @@
+#![doc = include_str!("../rules/read_only_range.md")]
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Kind, Message, Protocol};
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        for (index, signal) in message.signals.iter().enumerate() {
+            let is_own = signal.range_path.ancestors().any(|path| *path == message.doc.path);
+            let is_idle = signal.range.is_some() && signal.specials.is_empty();
+            if is_idle && is_own && !is_sent(message, index) {
+                let text = format!("`{}.{}` has a range, but no request carries it", message.name, signal.name);
+                let help = "take the range out, or allow it with a reason in `allow`";
+                diagnostics.push(Diagnostic::warning("read_only_range", signal.range_path.at_value(), text).help(help));
+            }
+        }
+    }
+}
+
+fn is_sent(message: &Message, signal: usize) -> bool {
+    message.shapes.iter().any(|shape| shape.kind == Kind::Request && shape.signals.contains(&signal))
+}

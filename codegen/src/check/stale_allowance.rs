@@ -1,0 +1,19 @@
+#![doc = include_str!("../rules/stale_allowance.md")]
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::ast::Allowance;
+use crate::syntax::tree::Path;
+
+/// Takes out the warnings that are allowed; an allowance without any is stale, unless an error kept rules from being applied.
+pub fn allow(allowances: &[Allowance], diagnostics: &mut Diagnostics) {
+    for (index, Allowance { rule, at, .. }) in allowances.iter().enumerate() {
+        let was_needed = diagnostics.allow(rule, at);
+        if was_needed || diagnostics.has_errors() {
+            continue;
+        }
+        let path = Path::default().key("allow").index(index).key("rule");
+        let text = format!("there is no warning of the rule `{rule}` in `{at}`");
+        let help = "take the allowance out, or correct `rule` and `at`; errors cannot be allowed";
+        diagnostics.push(Diagnostic::warning("stale_allowance", path.at_value(), text).help(help));
+    }
+}

@@ -1,0 +1,116 @@
+//! Messages as they are written, and the document's frames of them.
+
+use serde::Deserialize;
+
+use super::{Field, Map, Names, Pattern};
+
+/// A message: what chooses it, how it travels, what it carries.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Message {
+    /// Raw values that fields of the identifier and the header have in every frame of the message: `{command: 0x03}`;
+    /// none if absent.
+    #[serde(rename = "match", default)]
+    pub pattern: Pattern,
+    /// Accesses by which the message travels, a list: `[read, set]`.
+    pub access: Vec<String>,
+    /// Who answers in the addressing modes that may be used, in place of what the accesses say: `{single: one}`; as
+    /// they say if absent.
+    #[serde(default)]
+    pub answers: Map<String>,
+    /// Data bytes of its frames, 0 to 8, which never choose the message: `4`; the protocol's `length` if absent.
+    pub length: Option<String>,
+    /// The only device models that have the message, a list: `[SM_750]`; every model has it if absent.
+    #[serde(default)]
+    pub models: Vec<String>,
+    /// Entry of `timing` that says how often its report comes: `cycle`; as its access says if absent.
+    pub every: Option<String>,
+    /// Fields by name that the message carries: `{voltage: {bytes: 0..1, scale: 1/10, unit: V}}`; none if absent.
+    #[serde(default)]
+    pub fields: Map<Field>,
+    /// The only field of the message, which is then called `value`, in place of `fields`:
+    /// `{bytes: 4..7, as: float, unit: V}`; none if absent.
+    pub value: Option<Field>,
+    /// Frames of the document in its order, in which a reply answers the request before it:
+    /// `[{request: 000302F0#0000000000000000}]`; none if absent.
+    #[serde(default)]
+    pub examples: Vec<Example>,
+    /// What it is, in a few words without a full stop: `Output voltage and current of one module`.
+    pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `a module that is switched off answers with zeros`.
+    pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
+    pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
+    #[serde(default)]
+    pub erratum: Names,
+}
+
+/// One frame of the document and what it means.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Example {
+    /// A frame towards a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` where the document prints
+    /// no data. An example has one of `request`, `reply` and `report`.
+    pub request: Option<String>,
+    /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` where the document prints no data.
+    pub reply: Option<String>,
+    /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` where the document prints no data.
+    pub report: Option<String>,
+    /// Message that the frame belongs to, in a sequence only: `output`; if absent, the frame fails as `identifier`,
+    /// `foreign` or `unknown_message`.
+    pub message: Option<String>,
+    /// Value of every signal in the frame with its unit: `{voltage: 500 V, alarms: [fan_fault]}`, or `500 V` if there
+    /// is only one. Absent where there are no signals or no data.
+    pub means: Option<Means>,
+    /// Device model that the frame comes from or goes to: `SM_750`; if absent, the first one that has the message, or
+    /// none if every model has it.
+    pub model: Option<String>,
+    /// Rules of all notes that decoding gives, a list: `[reserved_bit]`; no note if absent.
+    #[serde(default)]
+    pub notes: Vec<String>,
+    /// How the printed frame fails: `identifier`, `foreign`, `length`, `unknown_message`, `message` (it is another
+    /// one), `addressing` or `values`. If absent, it decodes and encodes back.
+    pub fails: Option<String>,
+    /// `ours` for a frame that the document does not print; if absent, it does.
+    pub origin: Option<String>,
+    /// What else a reader must know, in one sentence: `the data bytes are not legible`.
+    pub note: Option<String>,
+    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
+    pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
+    #[serde(default)]
+    pub erratum: Names,
+}
+
+/// What an example means: one value, the set bits of a status word, or a value for each signal.
+#[derive(Clone, Debug)]
+pub enum Means {
+    /// A number with its unit, a name or a text: `500 V`.
+    Value(String),
+    /// Names of the set bits of a status word: `[fan_fault]`, or `[]` if none is set.
+    Bits(Vec<String>),
+    /// A value for each signal: `{voltage: 500 V, alarms: []}`.
+    Signals(Map<Means>),
+}
+
+/// Example frames in the order in which the document shows them.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Sequence {
+    /// Frames in the document's order, each with its `message`:
+    /// `[{request: 000302F0#0000000000000000, message: output}]`.
+    pub frames: Vec<Example>,
+    /// What it is, in a few words without a full stop: `Two modules are read`.
+    pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `the last reply is not legible`.
+    pub note: Option<String>,
+    /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
+    pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
+    #[serde(default)]
+    pub erratum: Names,
+}
