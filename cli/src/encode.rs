@@ -89,9 +89,10 @@ impl Encode {
         let pair = |word: &&String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
         let signals: Vec<_> = signals.iter().filter_map(pair).collect();
         let target = Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string()))?;
-        let frame = interpret::request(protocol, model, access, message, &target, self.source, &signals);
-        let frame = frame.map_err(|refusal| Failure::Input(refusal.to_string()))?;
-        log::write(&mut io::stdout().lock(), None, None, &frame)?;
+        let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
+        let frames = frames.map_err(|refusal| Failure::Input(refusal.to_string()))?;
+        let mut out = io::stdout().lock();
+        frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
         Ok(Finish::Done)
     }
 }

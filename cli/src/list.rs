@@ -4,7 +4,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use canspec_codegen::model::{
-    DeviceModel, Document, Encoding, Enumeration, Example, Message, NamedValue, Piece, Protocol, Signal, StatusWord,
+    DeviceModel, Document, Encoding, Enumeration, Example, Message, NamedValue, Piece, Protocol, Shape, Signal,
+    StatusWord,
 };
 use canspec_codegen::number::Rational;
 use canspec_specs::SPECS;
@@ -118,10 +119,14 @@ fn selectors(protocol: &Protocol) -> Vec<usize> {
     (0..protocol.selectors.len()).filter(chooses).collect()
 }
 
-/// Returns the value that a selector has in every frame of a message.
+/// Returns the value that a selector has in every frame of a message, but for those of sets if it has accesses of its own.
 fn constant(message: &Message, selector: usize) -> Option<u64> {
-    let mut values = message.shapes.iter().map(|shape| {
-        let constant = shape.constants.iter().find(|(index, _)| *index == selector);
+    let is_own = |shape: &Shape| message.accesses[shape.access].set.is_none();
+    let has_own = message.shapes.iter().any(is_own);
+    let own = message.shapes.iter().filter(|shape| is_own(shape) || !has_own);
+    let own = own.map(|shape| &shape.constants).chain(message.set.as_ref().map(|set| &set.replies));
+    let mut values = own.map(|constants| {
+        let constant = constants.iter().find(|(index, _)| *index == selector);
         constant.map(|(_, value)| *value)
     });
     let first = values.next()??;
@@ -133,7 +138,8 @@ fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> R
         let value = constant(message, *index);
         value.map_or(String::new(), |value| protocol.selector_value(*index, value))
     };
-    let accesses = message.accesses.iter().map(|access| protocol.accesses[access.access].name.as_str());
+    let accesses = message.accesses.iter().filter(|access| access.set.is_none());
+    let accesses = accesses.map(|access| protocol.accesses[access.access].name.as_str());
     let mut cells: Vec<String> = selectors.iter().map(shown).collect();
     cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
     cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_owned()));
@@ -144,8 +150,17 @@ fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> R
     let title = Some(title.trim_start()).filter(|title| !title.is_empty());
     match value(message) {
         Some(signal) => Row { cells, last: titled(title, meaning(protocol, signal)), separator: ", " },
+        None if message.set.is_some() => {
+            Row { cells, last: titled(title, members(protocol, message)), separator: ", " }
+        }
         None => Row { cells, last: words(title.unwrap_or_default()), separator: " " },
     }
+}
+
+/// Returns the names of the messages that travel in the frames of a set.
+fn members(protocol: &Protocol, message: &Message) -> Vec<String> {
+    let members = message.set.iter().flat_map(|set| &set.members);
+    members.map(|member| protocol.messages[*member].name.clone()).collect()
 }
 
 /// Returns the signal of a message that is nothing but a value, as a register is.

@@ -18,6 +18,7 @@ mod refusal;
 mod reply;
 mod rust_name;
 mod section;
+mod set;
 mod special_value;
 mod stale_allowance;
 mod unreachable;
@@ -33,7 +34,7 @@ use crate::model::Protocol;
 type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what the protocol is, in order.
-const RULES: [Check; 17] = [
+const RULES: [Check; 18] = [
     outside_frame::check,
     overlap::check,
     grid::check,
@@ -43,6 +44,7 @@ const RULES: [Check; 17] = [
     model_range::check,
     special_value::check,
     default_value::check,
+    set::check,
     direction::check,
     ambiguous::check,
     refusal::check,

@@ -9,7 +9,7 @@ mod value;
 pub(crate) use decode::coverage;
 pub use decode::decode;
 pub use encode::encode;
-pub use request::{Target, parse_input, request};
+pub use request::{Target, parse_input, request, requests};
 pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
@@ -51,6 +51,8 @@ pub struct Decoded {
     pub access: usize,
     /// What the frame is for.
     pub kind: Kind,
+    /// Index into [`Protocol::messages`]: the set of which the frame is one.
+    pub set: Option<usize>,
     /// Index into [`Protocol::modes`], if one fits.
     pub addressing: Option<usize>,
     /// Values of [`crate::model::Identifier::fields`], in order.

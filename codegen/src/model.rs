@@ -7,6 +7,7 @@ mod data;
 mod example;
 mod identifier;
 mod message;
+mod set;
 mod signal;
 
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
@@ -14,6 +15,7 @@ pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfMod
 pub use example::{Example, Failure, Meaning, ValueExample};
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use message::{Access, Kind, Message, MessageAccess, Shape, Who};
+pub use set::{Continuation, Set};
 pub use signal::{
     Encoding, Enumeration, NamedValue, OfModel, Piece, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit,
     raw_limits,

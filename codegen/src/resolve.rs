@@ -8,6 +8,7 @@ mod identifier;
 mod keys;
 mod messages;
 mod patterns;
+mod sets;
 mod signals;
 mod texts;
 mod types;

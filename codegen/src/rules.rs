@@ -28,7 +28,7 @@ pub const RULES: &[Rule] = rules! {
     "version" "identifier_name" "name" "number" "range" "unit" "place" "identifier_layout" "type" "format" "unused_type"
     "named_value" "value_width" "status_bit" "value" "addressing" "access" "match"
     "outside_frame" "overlap" "grid" "range_width" "read_only_range" "no_unit" "model_range" "special_value" "default_value"
-    "direction" "ambiguous" "refusal" "unreachable" "nobody_replies" "rust_name" "erratum" "section"
+    "set" "direction" "ambiguous" "refusal" "unreachable" "nobody_replies" "rust_name" "erratum" "section"
     "reply" "example" "expected_failure" "no_example" "stale_allowance"
 };
 

@@ -258,6 +258,11 @@ impl Addressing {
         fitting.reduce(|best, next| if next.rank > best.rank { next } else { best })
     }
 
+    /// Returns the number of a kind of address, if the mode shows one.
+    pub(crate) fn number(&self, kind: &AddressType, id: u32) -> Option<i32> {
+        self.pattern.addresses.iter().find(|address| address.kind.is(kind)).map(|address| address.number(id))
+    }
+
     /// Returns the mode.
     pub const fn mode(&self) -> &'static Mode {
         self.mode

@@ -39,6 +39,17 @@ impl Frame {
         F::new(embedded_can::Frame::id(self), embedded_can::Frame::data(self))
     }
 
+    /// Returns the same data under the low bits of another identifier.
+    pub(crate) fn with_id(&self, id: u64) -> Self {
+        let id = u32::try_from(id).unwrap_or(self.id);
+        Self::new_raw(id, self.extended, self.data, self.length)
+    }
+
+    /// Returns other data of the same length.
+    pub(crate) fn with_data(&self, data: Data) -> Self {
+        Self::new_raw(self.id, self.extended, data, self.length)
+    }
+
     pub(crate) fn length(&self) -> usize {
         self.length.into()
     }

@@ -18,6 +18,7 @@
 extern crate std;
 
 mod address;
+pub mod assembler;
 mod entry;
 mod error;
 mod filter;
@@ -34,6 +35,7 @@ mod raw;
 mod reply;
 mod request;
 mod scale;
+mod set;
 mod signal;
 mod status;
 #[cfg(test)]
@@ -73,6 +75,7 @@ pub use scale::{Scale, nearest};
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;
+pub use set::{Continuation, FrameSet};
 pub use signal::{AnySignal, Reading, Signal};
 pub use status::{Severity, StatusBit};
 pub use text::Text;

@@ -2,5 +2,5 @@
 
 pub use crate::{
     Data, Error, Failure, Frame, IdentifierFields, Kind, Layout, Meaning, Named, Number, Packed, Payload, Problem,
-    Reading, Replies, Route, Severity, StatusBit, StatusWord, Text, Word, embedded_can,
+    Reading, Replies, Route, Severity, StatusBit, StatusWord, Text, Word, assembler, embedded_can,
 };

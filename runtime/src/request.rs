@@ -5,7 +5,7 @@ use core::ptr;
 
 use crate::address::{AddressType, Addressing, Kind, Mode, Pattern, Who};
 use crate::reply::answer;
-use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
+use crate::{Continuation, Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
 /// Whom a request of a protocol can address.
 pub trait Destination: Copy {
@@ -71,6 +71,7 @@ pub struct Exchange {
     has_values: bool,
     answers: &'static [Option<Who>],
     models: &'static [u8],
+    set: Option<&'static str>,
     request: Option<Filter>,
     reply: Option<Filter>,
     report: Option<Filter>,
@@ -87,6 +88,7 @@ impl Exchange {
             has_values: false,
             answers,
             models: &[],
+            set: None,
             request: None,
             reply: None,
             report: None,
@@ -126,6 +128,12 @@ impl Exchange {
         Self { models, ..self }
     }
 
+    /// Sets of which set of frames the message is a member when it travels so.
+    #[must_use]
+    pub const fn member_of(self, set: &'static str) -> Self {
+        Self { set: Some(set), ..self }
+    }
+
     /// Adds what a request shows.
     #[must_use]
     pub const fn request(self, request: Filter) -> Self {
@@ -153,6 +161,11 @@ impl Exchange {
     /// Returns the name of the message.
     pub const fn message(&self) -> &'static str {
         self.message
+    }
+
+    /// Returns the name of the set of frames as a member of which the message travels.
+    pub const fn set(&self) -> Option<&'static str> {
+        self.set
     }
 
     /// Returns the number of data bytes.
@@ -361,6 +374,15 @@ impl<P: Protocol, R: Layout> Request<P, R> {
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
         let mut filters = self.built.replies.filter().into_iter().chain(self.refusal());
         filters.any(|filter| answer::<P>(filter, frame).is_some())
+    }
+}
+
+impl<P, R> Request<P, R> {
+    /// Lets the frame say that more follow; generated code calls it.
+    #[doc(hidden)]
+    pub fn followed(mut self, continuation: &Continuation) -> Self {
+        self.built.frame = continuation.put(&self.built.frame);
+        self
     }
 }
 

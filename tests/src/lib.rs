@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Form, Frame};
-use canspec_codegen::model::{AddressPattern, Protocol, SelectorPlace};
+use canspec_codegen::model::{AddressPattern, Message, Protocol, SelectorPlace, Shape};
 use canspec_codegen::{Outcome, compile, source::Source};
 use canspec_runtime::{Problem, Received};
 
@@ -133,7 +133,7 @@ impl<'a> Frames<'a> {
     fn shaped(&mut self) -> (u32, [u8; 8], usize) {
         let protocol = self.protocol;
         let message = &protocol.messages[self.random.usize(..protocol.messages.len())];
-        let shape = &message.shapes[self.random.usize(..message.shapes.len())];
+        let Some(shape) = self.shape_of(message) else { return self.shaped() };
         let mode = &protocol.modes[self.random.usize(..protocol.modes.len())];
         let patterns = [&mode.request, &mode.one, &mode.each, &mode.coordinator];
         let pattern = patterns[self.random.usize(..4)].as_ref();
@@ -153,6 +153,12 @@ impl<'a> Frames<'a> {
             }
         }
         (id, data, message.length.into())
+    }
+
+    /// Returns one of the kinds of frames of a message; a set whose requests are split too has none of its own.
+    fn shape_of<'m>(&mut self, message: &'m Message) -> Option<&'m Shape> {
+        let count = message.shapes.len();
+        (count > 0).then(|| &message.shapes[self.random.usize(..count)])
     }
 
     /// Returns an identifier that fits a pattern, mostly with documented addresses.

@@ -58,7 +58,7 @@ fn the_validator_refuses_wrong_keys_and_kinds_at_their_places() -> Result {
     let validator = validator()?;
     for (rule, places) in [
         ("unknown_key", &["", "/messages/temperature/value"][..]),
-        ("missing_key", &["", "/messages/temperature"]),
+        ("missing_key", &["", "/timing/pause"]),
         ("wrong_kind", &["/types/heater", "/messages/temperature/access"]),
     ] {
         let spec = read(&folder("specs/rules").join(rule).join("bad.yaml"))?;

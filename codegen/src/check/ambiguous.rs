@@ -22,8 +22,10 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape), diagnostics: &mut Diagnostics) {
     let name = |(message, shape): (&Message, &Shape)| {
-        let access = &protocol.accesses[message.accesses[shape.access].access].name;
-        format!("the {} of `{}` by `{access}`", shape.kind.name(), message.name)
+        let access = &message.accesses[shape.access];
+        let set = access.set.map_or_else(String::new, |set| format!(" in `{}`", protocol.messages[set].name));
+        let access = &protocol.accesses[access.access].name;
+        format!("the {} of `{}` by `{access}`{set}", shape.kind.name(), message.name)
     };
     let text = format!("a frame can be {} and {}", name(other), name(one));
     let help = "give one of the two another constant, addressing modes of its own, or `models` of its own";

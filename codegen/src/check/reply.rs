@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::{Decoded, Frame, decode};
-use crate::model::{AddressPattern, Example, Kind, Message, Mode, Protocol, SelectorPlace, Shape, Who};
+use crate::model::{AddressPattern, Example, Kind, Message, MessageAccess, Mode, Protocol, SelectorPlace, Shape, Who};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let mut latest: Option<(&Example, Decoded)> = None;
@@ -36,12 +36,13 @@ fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
 fn mismatch(protocol: &Protocol, asked: &Decoded, reply: &Decoded) -> Option<String> {
     let message = &protocol.messages[reply.message];
     let request = &protocol.messages[asked.message];
-    if asked.message != reply.message && !refuses(protocol, request, asked, reply) {
-        let other = &request.name;
-        return Some(format!("a reply of `{}` follows a request of `{other}`", message.name));
+    if whole(asked) != whole(reply) && !refuses(protocol, request, asked, reply) {
+        let (found, other) = (shown(protocol, reply), shown(protocol, asked));
+        return Some(format!("a reply of {found} follows a request of {other}"));
     }
     let mode = &protocol.modes[asked.addressing?];
-    let access = request.accesses.iter().find(|access| access.access == asked.access)?;
+    let is_asked = |access: &&MessageAccess| access.access == asked.access && access.set == asked.set;
+    let access = request.accesses.iter().find(is_asked)?;
     match access.answers[asked.addressing?] {
         Some(Who::Nobody) | None => Some(format!("nobody answers `{}` by `{}`", message.name, mode.name)),
         Some(who) => unbound(protocol, mode, who, asked, reply),
@@ -56,6 +57,18 @@ fn refuses(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Deco
     };
     let is_of_access = |refusal: &&Shape| request.accesses[refusal.access].access == asked.access;
     request.refusals.iter().filter(is_of_access).any(|refusal| refusal.constants.iter().all(shows))
+}
+
+/// Returns the message that a frame belongs to: its set, if it is one of a set.
+fn whole(decoded: &Decoded) -> usize {
+    decoded.set.unwrap_or(decoded.message)
+}
+
+/// Names the message of a frame, and its set if it is one of a set.
+fn shown(protocol: &Protocol, decoded: &Decoded) -> String {
+    let name = &protocol.messages[decoded.message].name;
+    let set = decoded.set.map(|set| format!(" in `{}`", protocol.messages[set].name));
+    format!("`{name}`{}", set.unwrap_or_default())
 }
 
 /// Says which address of the reply is not the request's.

@@ -11,7 +11,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             .iter()
             .flat_map(|shape| patterns(protocol, (message, shape)).into_iter().map(move |pattern| (shape, pattern)))
             .collect();
-        if frames.is_empty() {
+        if frames.is_empty() && message.set.is_none() {
             diagnostics.push(without_mode(message));
         }
         let mut owners = frames.iter().map(|(shape, pattern)| owner(protocol, shape, pattern));

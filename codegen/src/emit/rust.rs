@@ -17,6 +17,7 @@ mod parts;
 mod place;
 mod protocol;
 mod rows;
+mod set;
 mod spacing;
 mod word;
 
@@ -28,21 +29,24 @@ use crate::model::Protocol;
 use derives::Derives;
 use message::Emitter;
 use names::Names;
+use set::SetEmitter;
 
 pub(crate) use names::{camel_case, member};
 
 /// What generated code may take from the runtime beside the prelude, which it passes on.
-const RUNTIME: [&str; 23] = [
+const RUNTIME: [&str; 25] = [
     "Address",
     "AddressType",
     "AnySignal",
     "Bits",
+    "Continuation",
     "Decode",
     "Destination",
     "Encode",
     "Entry",
     "Exchange",
     "Filter",
+    "FrameSet",
     "Legend",
     "Mode",
     "Pattern",
@@ -84,15 +88,17 @@ fn items(protocol: &Protocol, options: &Options) -> TokenStream {
     let identifier = identifier::identifier(protocol, &names, derives);
     let target = address::target(protocol, &names, derives);
     let addressing = address::addressing(protocol);
+    let continuation = set::continuation(protocol);
     let models = model::models(protocol, &names, derives, options.float);
     let accesses = exchange::accesses(protocol, &names);
     let words = words(protocol, &names, derives);
     let messages = protocol.messages.iter().zip(&names.messages);
     let messages = messages.map(|(message, known)| {
-        Emitter { protocol, all: &names, names: known, message, derives, float: options.float }.items()
+        let emitter = Emitter { protocol, all: &names, names: known, message, derives, float: options.float };
+        SetEmitter::new(&emitter).map_or_else(|| emitter.items(), |set| set.items())
     });
     let last = protocol::protocol(protocol, &names, derives);
-    quote!(#frame #identifier #target #addressing #accesses #models #words #(#messages)* #last)
+    quote!(#frame #identifier #continuation #target #addressing #accesses #models #words #(#messages)* #last)
 }
 
 fn words(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {

@@ -330,6 +330,7 @@ impl<'a> Decoder<'a> {
             message: index,
             access: message.accesses[shape.access].access,
             kind: shape.kind,
+            set: message.accesses[shape.access].set,
             addressing: addressing.mode.map(|(mode, _)| mode),
             identifier: self.identifier(),
             selectors,

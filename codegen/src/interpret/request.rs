@@ -3,7 +3,7 @@
 use super::encode::{find_message, frame, not_of, refuse};
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
-use crate::model::{AddressType, Encoding, Kind, Message, Mode, Protocol, SelectorPlace, Shape, Signal};
+use crate::model::{AddressType, Encoding, Kind, Message, Mode, Protocol, SelectorPlace, Set, Shape, Signal};
 use crate::number::Rational;
 
 /// Whom a request goes to.
@@ -32,6 +32,78 @@ impl Target {
     }
 }
 
+/// Makes the frames of a request to a device `model` (an index into [`Protocol::models`]) or to any: one, or as many as a
+/// set has members. A signal that is left out takes its default.
+///
+/// # Errors
+///
+/// As [`request`].
+pub fn requests(
+    protocol: &Protocol,
+    model: Option<usize>,
+    access: Option<&str>,
+    message: &str,
+    target: &Target,
+    source: Option<i64>,
+    signals: &[(String, String)],
+) -> Result<Vec<Frame>, Refusal> {
+    let known = find_message(protocol, message)?;
+    match known.set.as_ref().filter(|set| set.kinds.contains(&Kind::Request)) {
+        Some(set) => of_members(protocol, model, (known, set), access, (target, source), signals),
+        None => Ok(vec![request(protocol, model, access, message, target, source, signals)?]),
+    }
+}
+
+/// Makes one request for each member of a set; all but the last say that more follow.
+fn of_members(
+    protocol: &Protocol,
+    model: Option<usize>,
+    (message, set): (&Message, &Set),
+    access: Option<&str>,
+    to: (&Target, Option<i64>),
+    signals: &[(String, String)],
+) -> Result<Vec<Frame>, Refusal> {
+    let name = message.accesses.first().map(|known| protocol.accesses[known.access].name.as_str());
+    if let Some(other) = access.filter(|access| Some(*access) != name) {
+        return Err(refuse(message, &format!("it has no request of the access `{other}`")));
+    }
+    if let Some((name, _)) = signals.first() {
+        return Err(refuse(message, &format!("there is no signal `{name}` to send; it has none")));
+    }
+    let mut frames = Vec::new();
+    for member in set.members.iter().map(|member| &protocol.messages[*member]) {
+        let is_of_set = |shape: &&Shape| {
+            shape.kind == Kind::Request
+                && member.accesses[shape.access].set.is_some_and(|set| protocol.messages[set].name == message.name)
+        };
+        let shape = member.shapes.iter().find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))?;
+        frames.push(made(protocol, model, (member, shape), to, signals)?);
+    }
+    if let Some((_, others)) = frames.split_last_mut() {
+        for frame in others {
+            continue_after(protocol, frame);
+        }
+    }
+    Ok(frames)
+}
+
+/// Lets a frame say that more follow.
+fn continue_after(protocol: &Protocol, frame: &mut Frame) {
+    let Some(continuation) = protocol.continuation() else { return };
+    match continuation.place {
+        SelectorPlace::Identifier(field) => {
+            let raw = u32::try_from(continuation.raw).unwrap_or(0);
+            frame.id = replaced(frame.id, &protocol.identifier.fields[field], raw);
+        }
+        SelectorPlace::Payload(place) => {
+            let mut data = [0; 8];
+            data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
+            place.put(&mut data, continuation.raw);
+            frame.data = data.into_iter().take(frame.data.len()).collect();
+        }
+    }
+}
+
 /// Makes the frame of a request to a device `model` (an index into [`Protocol::models`]) or to any; a signal that is left
 /// out takes its default.
 ///
@@ -48,10 +120,20 @@ pub fn request(
     signals: &[(String, String)],
 ) -> Result<Frame, Refusal> {
     let message = find_message(protocol, message)?;
+    let shape = request_shape(protocol, message, access)?;
+    made(protocol, model, (message, shape), (target, source), signals)
+}
+
+fn made(
+    protocol: &Protocol,
+    model: Option<usize>,
+    (message, shape): (&Message, &Shape),
+    (target, source): (&Target, Option<i64>),
+    signals: &[(String, String)],
+) -> Result<Frame, Refusal> {
     if let Some(model) = model.filter(|model| !message.is_of(*model)) {
         return Err(not_of(protocol, message, model));
     }
-    let shape = request_shape(protocol, message, access)?;
     let mode = mode(protocol, message, shape, target)?;
     let id = identifier(protocol, message, shape, mode, target, source)?;
     let mut data = [0; 8];
@@ -68,10 +150,13 @@ pub fn request(
 
 fn request_shape<'a>(protocol: &Protocol, message: &'a Message, access: Option<&str>) -> Result<&'a Shape, Refusal> {
     let name = |shape: &Shape| protocol.accesses[message.accesses[shape.access].access].name.as_str();
-    let requests: Vec<_> = message.shapes.iter().filter(|shape| shape.kind == Kind::Request).collect();
+    let requests = message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
+    let is_meant = |shape: &Shape| access.is_none_or(|access| name(shape) == access);
+    let is_own = |shape: &Shape| message.accesses[shape.access].set.is_none();
+    let has_own = requests.clone().any(|shape| is_own(shape) && is_meant(shape));
+    let requests: Vec<_> = requests.filter(|shape| is_own(shape) || !has_own).collect();
     let names: Vec<_> = requests.iter().map(|shape| format!("`{}`", name(shape))).collect();
-    let fitting: Vec<_> =
-        requests.into_iter().filter(|shape| access.is_none_or(|access| name(shape) == access)).collect();
+    let fitting: Vec<_> = requests.into_iter().filter(|shape| is_meant(shape)).collect();
     match (fitting.as_slice(), access) {
         ([shape], _) => Ok(shape),
         ([], Some(access)) if !names.is_empty() => {

@@ -36,6 +36,8 @@ pub struct IdentifierField {
     pub send: Option<u32>,
     /// The value of a reply that is no error reply.
     pub normal: Option<u32>,
+    /// The value that says that more frames of a set follow.
+    pub continues: Option<u32>,
     /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
     pub enumeration: Option<usize>,
 }
@@ -65,6 +67,8 @@ pub struct Selector {
     pub place: SelectorPlace,
     /// The value of a reply that is no error reply.
     pub normal: Option<u64>,
+    /// The value that says that more frames of a set follow.
+    pub continues: Option<u64>,
     /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
     pub enumeration: Option<usize>,
 }

@@ -1,6 +1,6 @@
 //! Messages, how they travel, and the frames that exist of them.
 
-use crate::model::{Doc, Signal};
+use crate::model::{Doc, Set, Signal};
 
 /// What a frame is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -84,6 +84,8 @@ pub struct Message {
     /// The only device models that have it, by [`Protocol::models`](crate::model::Protocol::models); empty if every
     /// model has it.
     pub models: Vec<usize>,
+    /// What it consists of, if it travels as several frames.
+    pub set: Option<Set>,
 }
 
 impl Message {
@@ -106,6 +108,9 @@ pub struct MessageAccess {
     pub access: usize,
     /// Who answers, by [`Protocol::modes`](crate::model::Protocol::modes); `None` where the mode is not allowed.
     pub answers: Vec<Option<Who>>,
+    /// Index into [`Protocol::messages`](crate::model::Protocol::messages): the set as a member of which the message
+    /// travels so.
+    pub set: Option<usize>,
 }
 
 /// One kind of frame of one message.

@@ -26,11 +26,8 @@ impl Resolver<'_> {
             let path = root.key("messages").key(name).key("examples");
             for (position, example) in message.examples.iter().enumerate() {
                 let at = path.index(position);
-                if example.message.is_some() {
-                    let text = "the message of this example is the one it stands in".to_owned();
-                    self.error("misplaced_key", at.key("message").at_key(), text);
-                }
-                examples.extend(self.example(&at, position, example, Some(index), &messages[index].doc, messages));
+                let of = self.message_in(&at, example, index, messages);
+                examples.extend(self.example(&at, position, example, of, &messages[index].doc, messages));
             }
         }
         for (name, sequence) in &spec.examples {
@@ -53,6 +50,19 @@ impl Resolver<'_> {
     pub fn sequences(&self) -> Vec<Doc> {
         let root = Path::default().key("examples");
         self.spec.examples.iter().map(|(name, sequence)| remarks!(sequence).doc(&root.key(name), None)).collect()
+    }
+
+    /// Finds the message of an example that stands in a message: that one, or a member that it names.
+    fn message_in(&mut self, path: &Path, example: &ast::Example, outer: usize, messages: &[Message]) -> Option<usize> {
+        let Some(name) = &example.message else { return Some(outer) };
+        let at = path.key("message");
+        let Some(set) = &messages[outer].set else {
+            self.error("misplaced_key", at.at_key(), "the message of this example is the one it stands in".to_owned());
+            return Some(outer);
+        };
+        let names = set.members.iter().map(|member| messages[*member].name.as_str());
+        let position = self.lookup(&at, "member", name, names)?;
+        Some(set.members[position])
     }
 
     /// Finds the message that an example of a sequence names.

@@ -79,11 +79,12 @@ impl Resolver<'_> {
         let constant = number("const", &merged.field.constant);
         let send = number("send", &merged.field.send);
         let normal = number("normal", &merged.field.normal);
+        let continues = number("continues", &merged.field.continues);
         let doc = remarks!(field).doc(path, None);
         let enumeration = self.enumeration(&merged, &format!("{name}_code"), width, &doc);
         let run = Run { high, low, path: path.clone() };
         let name = name.to_owned();
-        Some((IdentifierField { name, doc, shift: low, width, constant, send, normal, enumeration }, run))
+        Some((IdentifierField { name, doc, shift: low, width, constant, send, normal, continues, enumeration }, run))
     }
 
     /// Tests that the entries leave no gap and share no bit; tells whether the identifier is the widest one.

@@ -16,7 +16,7 @@ pub struct Role {
 
 impl Role {
     pub const IDENTIFIER: Self =
-        Self { name: "a field of the identifier", keys: &["bits", "const", "send", "normal", "values"] };
+        Self { name: "a field of the identifier", keys: &["bits", "const", "send", "normal", "continues", "values"] };
     pub const ADDRESS: Self =
         Self { name: "an address type", keys: &["range", "scale", "offset", "outside", "send", "examples"] };
     pub const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields", "reply"] };
@@ -30,7 +30,18 @@ impl Role {
             Encoding::Number { .. } => Self {
                 name: "a number",
                 keys: &[
-                    "bytes", "bits", "as", "scale", "offset", "unit", "range", "values", "default", "in", "normal",
+                    "bytes",
+                    "bits",
+                    "as",
+                    "scale",
+                    "offset",
+                    "unit",
+                    "range",
+                    "values",
+                    "default",
+                    "in",
+                    "normal",
+                    "continues",
                     "reply",
                 ],
             },
@@ -39,7 +50,7 @@ impl Role {
             }
             Encoding::Named(_) => Self {
                 name: "a signal of named values",
-                keys: &["bytes", "bits", "as", "values", "default", "in", "normal", "reply"],
+                keys: &["bytes", "bits", "as", "values", "default", "in", "normal", "continues", "reply"],
             },
             Encoding::Status(_) => Self { name: "a status word", keys: &["bytes", "bits", "status", "in", "reply"] },
             Encoding::Text => Self { name: "a text", keys: &["bytes", "bits", "as", "default", "in", "reply"] },
@@ -60,8 +71,10 @@ impl Resolver<'_> {
             self.misplaced(&field.key("examples"), "examples", role);
         }
         let in_header = field.ancestors().any(|outer| *outer == Path::default().key("header"));
-        if merged.field.normal.is_some() && !in_header && role.keys.contains(&"in") {
-            self.misplaced(&merged.path(self.diagnostics, "normal"), "normal", role);
+        for (key, text) in [("normal", &merged.field.normal), ("continues", &merged.field.continues)] {
+            if text.is_some() && !in_header && role.keys.contains(&"in") {
+                self.misplaced(&merged.path(self.diagnostics, key), key, role);
+            }
         }
         if !merged.field.reply.is_empty() && in_header {
             self.misplaced(&merged.path(self.diagnostics, "reply"), "reply", role);
@@ -99,6 +112,7 @@ fn written(field: &Field) -> impl Iterator<Item = &'static str> + use<> {
         ("const", field.constant.is_some()),
         ("send", field.send.is_some()),
         ("normal", field.normal.is_some()),
+        ("continues", field.continues.is_some()),
         ("default", field.default.is_some()),
         ("outside", field.outside.is_some()),
         ("in", !field.kinds.is_empty()),

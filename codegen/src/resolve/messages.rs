@@ -11,12 +11,22 @@ use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
 /// What messages refer to.
-struct Surroundings<'a> {
-    identifier: &'a Identifier,
+pub struct Surroundings<'a> {
+    pub identifier: &'a Identifier,
     modes: &'a [Mode],
-    accesses: &'a [Access],
+    pub accesses: &'a [Access],
     timing: &'a [Timing],
     length: u8,
+}
+
+/// What chooses the frames of a message, whatever its access.
+pub struct Choice {
+    /// Constants of `match`.
+    pub matched: Vec<Constant>,
+    /// Constants that replies show because of the message's fields.
+    pub replies: Vec<Constant>,
+    /// Constant fields, each with the only kinds of frames that have it.
+    fixed: Vec<(Constant, Vec<Kind>)>,
 }
 
 impl Resolver<'_> {
@@ -31,13 +41,21 @@ impl Resolver<'_> {
         let length = self.integer(&Path::default().key("length"), &spec.length, 0, 8).unwrap_or(8);
         let surroundings = Surroundings { identifier, modes, accesses, timing, length };
         let root = Path::default().key("messages");
-        spec.messages
-            .iter()
-            .map(|(name, message)| self.message(&root.key(name), name, message, &surroundings))
-            .collect()
+        let entries = spec.messages.iter();
+        let resolved = entries.map(|(name, message)| self.message(&root.key(name), name, message, &surroundings));
+        let (mut messages, choices): (Vec<_>, Vec<_>) = resolved.unzip();
+        self.sets(&choices, &surroundings, &mut messages);
+        self.check_travel(&messages);
+        messages
     }
 
-    fn message(&mut self, path: &Path, name: &str, message: &ast::Message, surroundings: &Surroundings) -> Message {
+    fn message(
+        &mut self,
+        path: &Path,
+        name: &str,
+        message: &ast::Message,
+        surroundings: &Surroundings,
+    ) -> (Message, Choice) {
         self.check_name(path, name);
         let doc = remarks!(message).doc(path, None);
         let leaves = self.contents(path, name, message, &doc);
@@ -46,28 +64,43 @@ impl Resolver<'_> {
         let matched = self.constants(&path.key("match"), &message.pattern, surroundings.identifier);
         let fixed: Vec<_> = leaves.constants.into_iter().map(|(signal, value)| self.fixed(signal, value)).collect();
         let replies = self.reply_constants(&leaves.replies, surroundings.identifier);
+        let choice = Choice { matched, replies, fixed };
+        let set = self.set(path, message);
+        let split = set.as_ref().map_or(&[][..], |set| &set.kinds);
         let mut shapes = Vec::new();
         for (index, access) in accesses.iter().enumerate() {
-            for kind in &surroundings.accesses[access.access].kinds {
-                let mut constants =
-                    [matched.clone(), self.access_constants(access.access, *kind, surroundings)].concat();
-                if *kind == Kind::Reply {
-                    constants.extend(&replies);
-                }
-                shapes.push(self.shape(path, (index, *kind), constants, &fixed, &leaves.signals, access, surroundings));
+            let known = &surroundings.accesses[access.access];
+            for kind in known.kinds.iter().filter(|kind| !split.contains(kind)) {
+                let travel = self.access_constants(access.access, *kind, surroundings);
+                let shape = self.shape(index, *kind, &choice, &travel, (&leaves.signals, known));
+                self.check_constants(path, &shape.constants, (access.access, *kind));
+                shapes.push(shape);
             }
         }
         let refused = accesses.iter().enumerate();
-        let refusals =
-            refused.filter_map(|(index, access)| self.refusal(path, index, &matched, access, surroundings)).collect();
-        let fixed = fixed.into_iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| constant);
-        let constants = matched.into_iter().chain(fixed).collect();
+        let refusals = refused
+            .filter_map(|(index, access)| self.refusal(path, index, &choice.matched, access, surroundings))
+            .collect();
+        let always = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| *constant);
+        let constants = choice.matched.iter().copied().chain(always).collect();
         let every = self.every(path, message.every.as_deref(), surroundings.timing);
         let length = length.unwrap_or(surroundings.length);
         let models = self.message_models(&path.key("models"), &message.models);
         let name = name.to_owned();
         let signals = leaves.signals;
-        Message { name, doc, length, signals, constants, accesses, shapes, refusals, every, models }
+        let message = Message { name, doc, length, signals, constants, accesses, shapes, refusals, every, models, set };
+        (message, choice)
+    }
+
+    /// Tests that every message has an access, or is a member of a set.
+    fn check_travel(&mut self, messages: &[Message]) {
+        let spec = self.spec;
+        let lacking = messages.iter().zip(spec.messages.values()).filter(|(_, written)| written.access.is_empty());
+        for (message, _) in lacking.filter(|(message, _)| message.set.is_some() || message.accesses.is_empty()) {
+            let text = format!("`{}` has no access, so it has no frames", message.name);
+            let help = "name at least one access: `access: [read]`";
+            self.error_with_help("access", message.doc.path.key("access").at_key(), text, help);
+        }
     }
 
     /// Finds the device models that have a message.
@@ -125,10 +158,6 @@ impl Resolver<'_> {
         surroundings: &Surroundings,
     ) -> Vec<MessageAccess> {
         let mut accesses: Vec<MessageAccess> = Vec::new();
-        if message.access.is_empty() {
-            let text = "the message has no access, so it has no frames".to_owned();
-            self.error_with_help("access", path.key("access").at_key(), text, "name at least one access");
-        }
         for (index, name) in message.access.iter().enumerate() {
             let names = surroundings.accesses.iter().map(|access| access.name.as_str());
             let Some(access) = self.lookup(&path.key("access").index(index), "access", name, names) else { continue };
@@ -143,12 +172,13 @@ impl Resolver<'_> {
             } else {
                 self.answers(&path.key("answers"), &message.answers, surroundings.modes, &known.kinds)
             };
-            accesses.push(MessageAccess { access, answers });
+            accesses.push(MessageAccess { access, answers, set: None });
         }
         accesses
     }
 
-    fn access_constants(&mut self, access: usize, kind: Kind, surroundings: &Surroundings) -> Vec<Constant> {
+    /// Returns what a kind of frame shows because of its access.
+    pub fn access_constants(&mut self, access: usize, kind: Kind, surroundings: &Surroundings) -> Vec<Constant> {
         let spec = self.spec;
         let Some((name, access)) = spec.access.get_index(access) else { return Vec::new() };
         let Some(pattern) = pattern_of(access, kind) else { return Vec::new() };
@@ -156,23 +186,24 @@ impl Resolver<'_> {
         self.constants(&path, pattern, surroundings.identifier)
     }
 
-    #[allow(clippy::too_many_arguments, reason = "a shape is the product of these")]
-    fn shape(
-        &mut self,
-        path: &Path,
-        (index, kind): (usize, Kind),
-        mut constants: Vec<Constant>,
-        fixed: &[(Constant, Vec<Kind>)],
-        signals: &[Signal],
-        access: &MessageAccess,
-        surroundings: &Surroundings,
+    /// Makes the frame of one kind of a message; `travel` is what it shows because of its access.
+    pub fn shape(
+        &self,
+        index: usize,
+        kind: Kind,
+        choice: &Choice,
+        travel: &[Constant],
+        (signals, access): (&[Signal], &Access),
     ) -> Shape {
-        let carries = surroundings.accesses[access.access].carries.contains(&kind);
+        let carries = access.carries.contains(&kind);
         let present = |kinds: &[Kind]| if kinds.is_empty() { carries } else { kinds.contains(&kind) };
+        let mut constants = [&choice.matched, travel].concat();
+        if kind == Kind::Reply {
+            constants.extend(&choice.replies);
+        }
         let header = constants.iter().any(|(selector, _)| self.is_payload(*selector));
-        let fixed = fixed.iter().filter(|(_, kinds)| kinds.is_empty() || kinds.contains(&kind));
+        let fixed = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty() || kinds.contains(&kind));
         constants.extend(fixed.map(|(constant, _)| *constant));
-        self.check_constants(path, &constants, (access.access, kind));
         let mut selectors = if header { self.header() } else { Vec::new() };
         selectors.extend(constants.iter().map(|(selector, _)| *selector).filter(|selector| self.is_payload(*selector)));
         selectors.sort_unstable();
@@ -194,8 +225,12 @@ impl Resolver<'_> {
         let (name, known) = spec.access.get_index(access.access)?;
         let pattern = known.refusal.as_ref()?;
         let path_of_pattern = Path::default().key("access").key(name).key("refusal");
-        let constants = [matched.to_vec(), self.constants(&path_of_pattern, pattern, surroundings.identifier)].concat();
-        Some(self.shape(path, (index, Kind::Reply), constants, &[], &[], access, surroundings))
+        let travel = self.constants(&path_of_pattern, pattern, surroundings.identifier);
+        let choice = Choice { matched: matched.to_vec(), replies: Vec::new(), fixed: Vec::new() };
+        let known = &surroundings.accesses[access.access];
+        let shape = self.shape(index, Kind::Reply, &choice, &travel, (&[], known));
+        self.check_constants(path, &shape.constants, (access.access, Kind::Reply));
+        Some(shape)
     }
 
     fn is_payload(&self, selector: usize) -> bool {
@@ -203,7 +238,7 @@ impl Resolver<'_> {
     }
 
     /// Returns the selectors that the header declares.
-    fn header(&self) -> Vec<usize> {
+    pub fn header(&self) -> Vec<usize> {
         let root = Path::default().key("header");
         let selectors = self.tables.selectors.iter().enumerate();
         selectors

@@ -16,16 +16,21 @@ impl Resolver<'_> {
         let spec = self.spec;
         let leaves = self.signals(&path, &spec.header, None, &Doc::default(), "header");
         for signal in leaves {
-            let normal = self.header_normal(&signal);
-            self.add_selector(signal, normal);
+            let (normal, continues) = self.header_values(&signal).unwrap_or_default();
+            let index = self.add_selector(signal, normal);
+            self.tables.selectors[index].continues = continues;
         }
     }
 
-    fn header_normal(&mut self, signal: &Signal) -> Option<u64> {
+    /// Returns the raw value of a field that is no error, and the one that says that more frames follow.
+    fn header_values(&mut self, signal: &Signal) -> Option<(Option<u64>, Option<u64>)> {
         let field = ast_field(&self.spec.header, &signal.name)?.clone();
         let merged = self.merged(&signal.doc.path, &field)?;
-        let text = merged.field.normal.clone()?;
-        self.integer(&merged.path(self.diagnostics, "normal"), &text, 0, signal.place.max())
+        let mut value = |key: &str, text: &Option<String>| {
+            let path = merged.path(self.diagnostics, key);
+            text.as_ref().and_then(|text| self.integer(&path, text, 0, signal.place.max()))
+        };
+        Some((value("normal", &merged.field.normal), value("continues", &merged.field.continues)))
     }
 
     /// Adds a payload selector.
@@ -37,7 +42,8 @@ impl Resolver<'_> {
         let place = SelectorPlace::Payload(signal.place);
         let known = self.tables.selectors.iter().position(|known| known.name == signal.name && known.place == place);
         known.unwrap_or_else(|| {
-            self.tables.selectors.push(Selector { name: signal.name, doc: signal.doc, place, normal, enumeration });
+            let Signal { name, doc, .. } = signal;
+            self.tables.selectors.push(Selector { name, doc, place, normal, continues: None, enumeration });
             self.tables.selectors.len() - 1
         })
     }
@@ -71,6 +77,7 @@ impl Resolver<'_> {
             doc: field.doc.clone(),
             place: SelectorPlace::Identifier(index),
             normal: None,
+            continues: None,
             enumeration: field.enumeration,
         });
         Some(self.tables.selectors.len() - 1)

@@ -99,7 +99,7 @@ impl Resolver<'_> {
             merged.types.push(name.clone());
             self.tables.used_types.push(name.clone());
             let field = &mut merged.field;
-            take!(field, other, bytes bits format_of_number scale offset unit range format constant send normal default outside title;
+            take!(field, other, bytes bits format_of_number scale offset unit range format constant send normal continues default outside title;
                 values fields status kinds reply);
             self.merge_types(&source, &other.types.0, merged, &[outer, &[name.as_str()]].concat())?;
         }

@@ -3,10 +3,10 @@
 mod message;
 mod reading;
 
+pub use message::{Example, Means, Message, Sequence};
+
 use indexmap::IndexMap;
 use serde::Deserialize;
-
-pub use message::{Example, Means, Message, Sequence};
 
 /// Names to entries, in the order of the file.
 pub type Map<V> = IndexMap<String, V>;
@@ -160,6 +160,9 @@ pub struct Field {
     /// Raw value of a reply that is no error reply, in a field of the identifier or the header: `0`; none if absent.
     /// Any other value gets the note `error_code`.
     pub normal: Option<String>,
+    /// Raw value of a field of the identifier or the header that says that more frames of a set follow: `1`; any other
+    /// value says that this one is the last. None if absent; only one field of a protocol has it.
+    pub continues: Option<String>,
     /// Physical value without its unit, or name, that the device starts with and that stands for a signal left out:
     /// `60` or `automatic`; none if absent.
     pub default: Option<String>,

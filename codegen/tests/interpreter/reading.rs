@@ -167,3 +167,19 @@ fn the_message_of_another_model_is_noted_only_if_the_frame_can_be_that_one() {
     assert_eq!((message(&ends, None, "007#07"), notes(&ends, "007#07")), ("right", vec![]));
     assert_eq!(notes(&feature("model_layouts"), "003#08FC"), ["model_dependent"]);
 }
+
+#[test]
+fn a_frame_of_a_set_is_its_member_by_the_access_of_the_set() {
+    let ovens = protocol("tests/downstream/specs/oven.yaml");
+    let shown = |text: &str| {
+        let decoded = decoded(&ovens, text);
+        let set = decoded.set.map(|set| ovens.messages[set].name.as_str());
+        (ovens.messages[decoded.message].name.as_str(), ovens.accesses[decoded.access].name.as_str(), set)
+    };
+    assert_eq!(shown("486#01000907"), ("temperature", "scan", Some("measured")));
+    assert_eq!(shown("4A7#01000907"), ("temperature", "scan", Some("identity")));
+    assert_eq!(shown("446#01000907"), ("temperature", "read", None));
+    assert_eq!(shown("086#00000000"), ("measured", "scan", None));
+    assert_eq!(problem(&ovens, "486#03001234"), Some(Problem::UnknownMessage));
+    assert_eq!(notes(&ovens, "487#02070000"), ["error_code"]);
+}

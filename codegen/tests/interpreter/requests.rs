@@ -1,6 +1,9 @@
 //! Requests by name, with values as a person types them.
 
-use super::{feature, model, protocol, requested};
+use canspec_codegen::interpret::{Target, requests};
+use canspec_codegen::model::Protocol;
+
+use super::{feature, model, printed, protocol, requested};
 
 fn output(signals: &[(&str, &str)]) -> Option<String> {
     requested(&feature("scaled_signal"), None, "set_output", "module:3", signals).ok()
@@ -106,4 +109,39 @@ fn the_written_limit_of_a_float_is_legal_although_the_nearest_float_lies_beside_
     // The float nearest to 0.1 is 0x3DCCCCCD and lies above it.
     assert_eq!(write("0.1").as_deref(), Some("013#030000213DCCCCCD"));
     assert_eq!([write("0.0999"), write("750.1")], [const { None }; 2]);
+}
+
+/// Makes the requests of a message that may be a set.
+fn frames(protocol: &Protocol, access: Option<&str>, message: &str, signals: &[(&str, &str)]) -> Vec<String> {
+    let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    let target = Target::parse("oven:3").expect("a target");
+    let made = requests(protocol, None, access, message, &target, None, &signals);
+    made.map_or_else(|refusal| vec![refusal.to_string()], |frames| frames.iter().map(printed).collect())
+}
+
+#[test]
+fn a_set_is_asked_for_in_one_frame_or_in_one_a_member_of_which_the_last_says_so() {
+    let ovens = protocol("tests/downstream/specs/oven.yaml");
+    assert_eq!(frames(&ovens, None, "measured", &[]), ["086#00000000"]);
+    assert_eq!(frames(&ovens, None, "identity", &[]), ["0A7#03000000", "0A6#01000000"]);
+    assert_eq!(frames(&ovens, Some("scan"), "identity", &[]), ["0A7#03000000", "0A6#01000000"]);
+    let refused = frames(&ovens, Some("read"), "identity", &[]);
+    assert_eq!(refused, ["identity: it has no request of the access `read`"]);
+    let refused = frames(&ovens, None, "identity", &[("value", "1")]);
+    assert_eq!(refused, ["identity: there is no signal `value` to send; it has none"]);
+    let pumps = protocol("tests/specs/devices/split_request.yaml");
+    let target = Target::parse("pump:3").expect("a target");
+    let made = requests(&pumps, None, None, "identity", &target, None, &[]).expect("a legal request");
+    assert_eq!(made.iter().map(printed).collect::<Vec<_>>(), ["503#01AA000000", "503#0200000000"]);
+}
+
+#[test]
+fn a_member_is_asked_for_by_its_own_access_unless_that_of_the_set_is_named() {
+    let ovens = protocol("tests/downstream/specs/oven.yaml");
+    assert_eq!(frames(&ovens, None, "temperature", &[]), ["046#01000000"]);
+    assert_eq!(frames(&ovens, Some("scan"), "temperature", &[]), ["0A6#01000000"]);
+    assert_eq!(frames(&ovens, None, "serial", &[]), ["0A6#03000000"]);
+    let refused = frames(&ovens, Some("write"), "temperature", &[]);
+    assert_eq!(refused, ["temperature: it has no request of the access `write`; it has `read`, `scan`"]);
+    assert_eq!(frames(&ovens, None, "power", &[]), ["power: nobody requests it"]);
 }

@@ -3,9 +3,10 @@
 use core::fmt::{self, Display, Write};
 use core::hint::black_box;
 
+use canspec_runtime::assembler::{Assembler, Partial};
 use canspec_runtime::{
-    AnySignal, Destination, Error, Layout, Meaning, Named, Packed, Problem, Protocol, Raw, Reading, Received, Request,
-    Route, Signal, StatusWord,
+    AnySignal, Destination, Error, FrameSet, Layout, Meaning, Named, Packed, Problem, Protocol, Raw, Reading, Received,
+    Request, Route, Signal, StatusWord,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -103,6 +104,38 @@ pub fn request<P: Protocol, R: Layout>(request: Result<Request<P, R>, Error>) {
         }
         Err(error) => sink(error),
     }
+}
+
+/// Looks at the requests of a set, one for each member.
+pub fn requests<P: Protocol, R: Layout, const N: usize>(requests: Result<[Request<P, R>; N], Error>) {
+    match requests {
+        Ok(requests) => requests.into_iter().for_each(|built| request(Ok(built))),
+        Err(error) => sink(error),
+    }
+}
+
+/// Puts frames of a set together, and asks for all that is known of them.
+pub fn assembler<S: FrameSet>() {
+    let mut assembler = Assembler::<S, 3>::listening(unknown());
+    if unknown() {
+        assembler = Assembler::new(unknown()).for_model(unknown::<u8>());
+    }
+    if let Err(full) = assembler.ask(unknown::<i32>(), unknown()) {
+        text(&full);
+    }
+    for _ in 0..unknown::<u8>() {
+        sink(assembler.receive(&unknown_frame(), unknown()));
+    }
+    assembler.partial(unknown::<i32>()).into_iter().for_each(partial);
+    assembler.timed_out(unknown()).into_iter().for_each(partial);
+    assembler.forget(unknown::<i32>());
+    sink(assembler);
+}
+
+fn partial<S>(partial: Partial<S>) {
+    sink((partial.missing.is_empty(), partial.node));
+    partial.missing.names().chain(partial.failed.names()).for_each(sink);
+    sink(partial.set);
 }
 
 /// Builds a request and no more.

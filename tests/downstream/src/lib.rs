@@ -25,6 +25,13 @@ pub mod meter {
 pub mod meters;
 pub mod pumps;
 
+/// Ovens, as `specs/oven.yaml` describes them.
+pub mod oven {
+    canspec_runtime::include_protocol!("oven");
+}
+
+pub mod ovens;
+
 use winch::{Error, Message, Request, Run, Target, embedded_can};
 
 /// Lets a winch pull its rope in.

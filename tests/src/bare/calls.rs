@@ -96,6 +96,7 @@ impl Function<'_> {
     fn call(self) -> TokenStream {
         let result = self.result();
         match &self.signature.output {
+            _ if self.builds_requests() => quote!(calls::requests(#result);),
             _ if self.builds_request() => quote!(calls::request(#result);),
             ReturnType::Type(_, output) if matches!(**output, Type::ImplTrait(_)) => {
                 quote!(#result.for_each(calls::sink);)
@@ -106,7 +107,7 @@ impl Function<'_> {
 
     fn encode(self) -> TokenStream {
         let result = self.result();
-        quote!(calls::encode(#result);)
+        if self.builds_requests() { quote!(calls::sink(#result);) } else { quote!(calls::encode(#result);) }
     }
 
     fn result(self) -> TokenStream {
@@ -117,6 +118,11 @@ impl Function<'_> {
             FnArg::Typed(argument) => unknown(&argument.ty),
         });
         quote!(<#owner #of_trait>::#name(#(#arguments),*))
+    }
+
+    /// Tests whether it builds a request for each member of a set.
+    fn builds_requests(&self) -> bool {
+        text(&self.signature.output).contains("[Request <")
     }
 
     fn builds_request(&self) -> bool {
@@ -160,6 +166,7 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("Single") => quote!(calls::layout::<#owner>();),
         Some("Destination") => quote!(calls::questions::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
+        Some("FrameSet") => quote!(calls::assembler::<#owner>();),
         Some("Display") => quote!(calls::text(&unknown::<#owner>());),
         _ => TokenStream::new(),
     }

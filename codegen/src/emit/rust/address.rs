@@ -46,7 +46,8 @@ fn number(number: i64) -> TokenStream {
     u32::try_from(number).map_or_else(|_| decimal(number), |number| hexadecimal(number, 8))
 }
 
-fn address_name(name: &str) -> Ident {
+/// Returns the name of the constant of an address type.
+pub fn address_name(name: &str) -> Ident {
     ident(&format!("{}_ADDRESS", name.to_ascii_uppercase()))
 }
 

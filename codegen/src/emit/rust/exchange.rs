@@ -10,6 +10,7 @@ use super::identifier::field_place;
 use super::literal::decimal;
 use super::model::models_of;
 use super::names::{Names, ident};
+use super::set;
 use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape, Who};
 
 /// An access as messages share it.
@@ -17,6 +18,8 @@ pub struct Shared {
     pub name: Ident,
     /// Index into [`Protocol::accesses`].
     access: usize,
+    /// Index into [`Protocol::messages`]: the set of which the messages are members.
+    set: Option<usize>,
     frames: Vec<SharedFrame>,
 }
 
@@ -44,29 +47,36 @@ impl SharedFrame {
 pub fn shared(protocol: &Protocol) -> Vec<Shared> {
     let mut known: Vec<Shared> = Vec::new();
     for (access, of) in protocol.accesses.iter().enumerate() {
-        for message in &protocol.messages {
-            let index = message.accesses.iter().position(|known| known.access == access);
-            let Some(frames) = index.map(|index| frames(message, index)) else { continue };
-            let same: Vec<_> = known.iter().filter(|shared| shared.access == access).collect();
+        for (message, index, set) in protocol.messages.iter().flat_map(|message| ways(message, access)) {
+            let frames = frames(protocol, message, index);
+            let same: Vec<_> = known.iter().filter(|shared| shared.access == access && shared.set == set).collect();
             if same.iter().all(|shared| shared.frames != frames) {
                 let suffix = if same.is_empty() { String::new() } else { format!("_{}", same.len() + 1) };
-                let name = ident(&format!("{}_ACCESS{suffix}", of.name.to_ascii_uppercase()));
-                known.push(Shared { name, access, frames });
+                let name = set::exchange_name(protocol, &of.name, set).to_ascii_uppercase();
+                known.push(Shared { name: ident(&format!("{name}_ACCESS{suffix}")), access, set, frames });
             }
         }
     }
     known
 }
 
-fn frames(message: &Message, access: usize) -> Vec<SharedFrame> {
+/// Returns how a message travels by an access, alone and as a member of sets: index into [`Message::accesses`], and set.
+fn ways(message: &Message, access: usize) -> impl Iterator<Item = (&Message, usize, Option<usize>)> {
+    let known = message.accesses.iter().enumerate().filter(move |(_, known)| known.access == access);
+    known.map(move |(index, known)| (message, index, known.set))
+}
+
+fn frames(protocol: &Protocol, message: &Message, access: usize) -> Vec<SharedFrame> {
     let shapes = message.shapes.iter().filter(|shape| shape.access == access);
-    shapes.map(|shape| SharedFrame::new(message, shape)).collect()
+    let whole = set::reply(protocol, message);
+    shapes.chain(&whole).map(|shape| SharedFrame::new(message, shape)).collect()
 }
 
 /// Returns the shared constant of a message's access.
-pub fn shared_name<'a>(names: &'a Names, message: &Message, access: usize) -> Option<&'a Ident> {
-    let (index, frames) = (message.accesses[access].access, frames(message, access));
-    let shared = names.shared.iter().find(|shared| shared.access == index && shared.frames == frames);
+pub fn shared_name<'a>(protocol: &Protocol, names: &'a Names, message: &Message, access: usize) -> Option<&'a Ident> {
+    let (known, frames) = (&message.accesses[access], frames(protocol, message, access));
+    let is_its = |shared: &&Shared| (shared.access, shared.set) == (known.access, known.set) && shared.frames == frames;
+    let shared = names.shared.iter().find(is_its);
     shared.map(|shared| &shared.name)
 }
 
@@ -75,9 +85,11 @@ pub fn accesses(protocol: &Protocol, names: &Names) -> TokenStream {
     names.shared.iter().map(|known| access(protocol, names, known)).collect()
 }
 
-fn access(protocol: &Protocol, names: &Names, Shared { name, access, frames }: &Shared) -> TokenStream {
+fn access(protocol: &Protocol, names: &Names, Shared { name, access, set, frames }: &Shared) -> TokenStream {
     let known = &protocol.accesses[*access];
-    let sentence = doc::sentence_of(&doc::title(&known.doc, &known.name));
+    let membership = set::membership(protocol, *set);
+    let sentence = doc::sentence_of(&format!("{}{membership}", doc::title(&known.doc, &known.name)));
+    let member_of = set::member_of(protocol, *set);
     let shows = names.shared.iter().filter(|other| other.access == *access).nth(1).map(|_| shows(protocol, frames));
     let modes = modes(protocol, &known.answers);
     let paragraphs = doc::paragraphs(protocol, &known.doc, &sentence, None);
@@ -88,7 +100,7 @@ fn access(protocol: &Protocol, names: &Names, Shared { name, access, frames }: &
         let (kind, filter) = (ident(frame.kind.name()), filter(protocol, &frame.selectors, &frame.constants));
         quote!(.#kind(#filter))
     });
-    quote!(#comment pub const #name: Exchange = Exchange::new(#text, &#answers) #has_values #(#filters)*;)
+    quote!(#comment pub const #name: Exchange = Exchange::new(#text, &#answers) #has_values #member_of #(#filters)*;)
 }
 
 /// Says by which constants one way to use an access differs from the others.
@@ -121,8 +133,9 @@ pub fn modes(protocol: &Protocol, answers: &[Option<Who>]) -> String {
 pub fn exchange(protocol: &Protocol, names: &Names, message: &Message, name: &Ident, index: usize) -> TokenStream {
     let access = &message.accesses[index];
     let known = &protocol.accesses[access.access];
-    let (shared, text) = (shared_name(names, message, index), &message.name);
-    let comment = doc::line(format!("How it travels by `{}`.{}", known.name, period(protocol, message, access.access)));
+    let (shared, text) = (shared_name(protocol, names, message, index), &message.name);
+    let (set, period) = (set::membership(protocol, access.set), period(protocol, message, access.access));
+    let comment = doc::line(format!("How it travels by `{}`{set}.{period}", known.name));
     let own = filter(protocol, &[], &message.constants);
     let answers = (access.answers != known.answers).then(|| {
         let list = answers_list(&access.answers);

@@ -44,7 +44,7 @@ impl Emitter<'_> {
         &self.names.structs[0].name
     }
 
-    fn sentence(&self) -> String {
+    pub fn sentence(&self) -> String {
         let Message { name, doc, .. } = self.message;
         doc::sentence_of(&doc::title(doc, name))
     }
@@ -119,7 +119,8 @@ impl Emitter<'_> {
         let exchanges = (0..self.message.accesses.len())
             .filter(|_| is_home)
             .map(|access| exchange(self.protocol, self.all, self.message, &self.names.exchanges[access], access));
-        let requests = self.message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
+        let is_in_set = |shape: &Shape| self.message.accesses[shape.access].set.is_some();
+        let requests = self.message.shapes.iter().filter(|shape| shape.kind == Kind::Request && !is_in_set(shape));
         let requests: Vec<_> = requests.filter(|shape| self.host(shape) == name).collect();
         let within = requests.first().and_then(|shape| self.within(shape));
         let methods = requests.iter().map(|shape| self.method(shape));
@@ -197,7 +198,8 @@ impl Emitter<'_> {
         (!known.signals.is_empty()).then(|| quote!(#comment pub const RESERVED: Data = #reserved;))
     }
 
-    fn method(&self, shape: &Shape) -> TokenStream {
+    /// Emits the method that builds a request.
+    pub fn method(&self, shape: &Shape) -> TokenStream {
         let (method, exchange) = (&self.names.methods[shape.access], self.exchange_path(shape));
         let reply = self.message.shapes.iter().find(|other| other.access == shape.access && other.kind == Kind::Reply);
         let reply = reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name);
@@ -222,7 +224,7 @@ impl Emitter<'_> {
         let own = &self.message.accesses[shape.access];
         let access = &self.protocol.accesses[own.access];
         let values = if carries { " with these values" } else { "" };
-        let shared = shared_name(self.all, self.message, shape.access);
+        let shared = shared_name(self.protocol, self.all, self.message, shape.access);
         let shared = shared.map_or_else(String::new, |shared| format!("({shared})"));
         let first = format!("Builds the request [`{}`]{shared}{values}.", access.name);
         let modes = (own.answers != access.answers).then(|| modes(self.protocol, &own.answers));

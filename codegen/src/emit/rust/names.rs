@@ -4,10 +4,11 @@ use proc_macro2::{Ident, Span};
 
 use super::exchange::{Shared, shared};
 use super::model::{Limits, limits};
+use super::set::exchange_name;
 use crate::model::{Encoding, Kind, Message, Protocol, Shape, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 77] = [
+const TAKEN: [&str; 79] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -15,6 +16,7 @@ const TAKEN: [&str; 77] = [
     "BitOr",
     "Bits",
     "Clone",
+    "Continuation",
     "Copy",
     "Data",
     "Debug",
@@ -34,6 +36,7 @@ const TAKEN: [&str; 77] = [
     "Fn",
     "Formatter",
     "Frame",
+    "FrameSet",
     "From",
     "Hash",
     "Identifier",
@@ -273,9 +276,10 @@ fn message_names(
         message.signals.iter().map(|signal| members.take(signal.name.to_ascii_uppercase(), "_SIGNAL")).collect();
     let fields = message.signals.iter().map(|signal| fields.take(member(signal), "_")).collect();
     let packed = message.signals.iter().map(|signal| packed(message, signal, types)).collect();
-    let accesses = message.accesses.iter().map(|access| protocol.accesses[access.access].name.as_str());
+    let accesses = message.accesses.iter();
+    let accesses = accesses.map(|access| exchange_name(protocol, &protocol.accesses[access.access].name, access.set));
     let exchanges = accesses.clone().map(|access| members.take(access.to_ascii_uppercase(), "_EXCHANGE")).collect();
-    let methods = accesses.map(|access| members.take(access.to_owned(), "_request")).collect();
+    let methods = accesses.map(|access| members.take(access, "_request")).collect();
     let mut names = MessageNames { structs, constants, fields, packed, exchanges, methods, variants: Vec::new() };
     names.variants = message.shapes.iter().map(|shape| variant(protocol, message, &names, shape, variants)).collect();
     names

@@ -13,7 +13,9 @@ pub struct Message {
     /// none if absent.
     #[serde(rename = "match", default)]
     pub pattern: Pattern,
-    /// Accesses by which the message travels, a list: `[read, set]`.
+    /// Accesses by which the message travels, a list: `[read, set]`. A member of a set travels as part of it too, and
+    /// then needs none.
+    #[serde(default)]
     pub access: Vec<String>,
     /// Who answers in the addressing modes that may be used, in place of what the accesses say: `{single: one}`; as
     /// they say if absent.
@@ -32,6 +34,14 @@ pub struct Message {
     /// The only field of the message, which is then called `value`, in place of `fields`:
     /// `{bytes: 4..7, as: float, unit: V}`; none if absent.
     pub value: Option<Field>,
+    /// Messages of which one travels in each frame, in this order, in place of `fields`: `[voltage, current]`; none if
+    /// absent. Such a message is a set of frames.
+    #[serde(default)]
+    pub members: Vec<String>,
+    /// Kinds of frames of which there is one for each of the `members`, of `request` and `reply`:
+    /// `[request, reply]`; `[reply]` if absent.
+    #[serde(rename = "in", default)]
+    pub kinds: Vec<String>,
     /// Frames of the document in its order, in which a reply answers the request before it:
     /// `[{request: 000302F0#0000000000000000}]`; none if absent.
     #[serde(default)]
@@ -59,8 +69,8 @@ pub struct Example {
     pub reply: Option<String>,
     /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` where the document prints no data.
     pub report: Option<String>,
-    /// Message that the frame belongs to, in a sequence only: `output`; if absent, the frame fails as `identifier`,
-    /// `foreign` or `unknown_message`.
+    /// Message that the frame belongs to, in a sequence or a set of frames only: `output`. If absent, it is the set, or
+    /// the frame of a sequence fails as `identifier`, `foreign` or `unknown_message`.
     pub message: Option<String>,
     /// Value of every signal in the frame with its unit: `{voltage: 500 V, alarms: [fan_fault]}`, or `500 V` if there
     /// is only one. Absent where there are no signals or no data.

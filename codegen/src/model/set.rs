@@ -1,0 +1,62 @@
+//! Sets: messages that travel as several frames.
+
+use crate::model::{Kind, MessageAccess, Mode, Protocol, SelectorPlace, Who};
+
+/// What a message consists of that travels as several frames.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Set {
+    /// Messages of which one travels in each frame, in order: indices into [`Protocol::messages`].
+    pub members: Vec<usize>,
+    /// Kinds of frames of which there is one for each member.
+    pub kinds: Vec<Kind>,
+    /// What each reply shows, whatever it carries: selectors (index into [`Protocol::selectors`]) and their values.
+    pub replies: Vec<(usize, u64)>,
+}
+
+/// The field that says whether more frames of a set follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Continuation {
+    /// Where it stands.
+    pub place: SelectorPlace,
+    /// The value if more frames follow; another one says that this frame is the last.
+    pub raw: u64,
+}
+
+impl Protocol {
+    /// Returns the field that says whether more frames of a set follow, if there is one.
+    pub fn continuation(&self) -> Option<Continuation> {
+        let fields = self.identifier.fields.iter().enumerate();
+        let mut in_identifier = fields.filter_map(|(index, field)| {
+            Some(Continuation { place: SelectorPlace::Identifier(index), raw: field.continues?.into() })
+        });
+        let in_data = || {
+            let mut selectors = self.selectors.iter();
+            selectors.find_map(|selector| Some(Continuation { place: selector.place, raw: selector.continues? }))
+        };
+        in_identifier.next().or_else(in_data)
+    }
+}
+
+impl Protocol {
+    /// Returns the kind of address that shows which node sends a reply, an index into [`Protocol::address_types`];
+    /// `None` if some reply does not show it, or replies show different kinds.
+    pub fn answering(&self, access: &MessageAccess) -> Option<usize> {
+        let answers = self.modes.iter().zip(&access.answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
+        let mut patterns = answers.filter(|(_, who)| *who != Who::Nobody).map(|(mode, who)| self.sender(mode, who));
+        let first = patterns.next()??;
+        patterns.all(|other| other == Some(first)).then_some(first)
+    }
+
+    /// Returns the kind of address of whoever answers: that of the one addressed, or else the only one that nobody sends
+    /// by default.
+    fn sender(&self, mode: &Mode, who: Who) -> Option<usize> {
+        let types = || mode.reply(who).into_iter().flat_map(|pattern| &pattern.addresses);
+        let types = || types().map(|address| address.address_type);
+        let addressed = types().find(|known| Some(*known) == mode.target);
+        let mut free = types().filter(|known| self.address_types[*known].send.is_none());
+        let alone = free.next().filter(|_| free.next().is_none());
+        addressed.or(alone)
+    }
+}

@@ -1,0 +1,128 @@
+//! Sets: messages whose frames carry a member each. A member travels as part of the set as it does by an access.
+
+use super::Resolver;
+use super::messages::{Choice, Surroundings};
+use super::patterns::Constant;
+use crate::diagnostic::Diagnostic;
+use crate::model::{Kind, Message, MessageAccess, Set};
+use crate::syntax::ast;
+use crate::syntax::tree::Path;
+
+impl Resolver<'_> {
+    /// Reads `members` and `in` of a message; the members are looked up when all messages are known.
+    pub fn set(&mut self, path: &Path, message: &ast::Message) -> Option<Set> {
+        if message.members.is_empty() {
+            if !message.kinds.is_empty() {
+                let help =
+                    "take it out, or list `members`; which frames carry fields stands in the access or in a field";
+                let text = "`in` means nothing for a message without `members`".to_owned();
+                self.error_with_help("misplaced_key", path.key("in").at_key(), text, help);
+            }
+            return None;
+        }
+        let other = if message.value.is_some() { "value" } else { "fields" };
+        if message.value.is_some() || !message.fields.is_empty() {
+            let text = format!("a set of frames has `{other}` of its own");
+            let help = "a frame of a set carries one of its members; put the fields into a message, and name it";
+            self.error_with_help("set", path.key(other).at_key(), text, help);
+        }
+        let named = self.kinds(&path.key("in"), &message.kinds);
+        let kinds = if message.kinds.is_empty() { vec![Kind::Reply] } else { named };
+        Some(Set { members: Vec::new(), kinds, replies: Vec::new() })
+    }
+
+    /// Finds the members of each set, and gives them the frames in which they travel as part of it.
+    pub fn sets(&mut self, choices: &[Choice], surroundings: &Surroundings, messages: &mut [Message]) {
+        for index in 0..messages.len() {
+            let Some(mut set) = messages[index].set.clone() else { continue };
+            set.members = self.members(&messages[index], messages);
+            for access in messages[index].accesses.clone() {
+                for member in &set.members {
+                    self.join((index, &set.kinds), *member, &access, choices, surroundings, messages);
+                }
+                let travel = self.access_constants(access.access, Kind::Reply, surroundings);
+                set.replies = distinct([&choices[index].matched, &travel[..]].concat());
+            }
+            messages[index].set = Some(set);
+        }
+    }
+
+    /// Finds the members of a set.
+    fn members(&mut self, set: &Message, messages: &[Message]) -> Vec<usize> {
+        let spec = self.spec;
+        let written = spec.messages.get(&set.name).map_or(&[][..], |set| &set.members);
+        let mut members = Vec::new();
+        for (index, name) in written.iter().enumerate() {
+            let at = set.doc.path.key("members").index(index);
+            let Some(member) = self.lookup(&at, "message", name, spec.messages.keys().map(String::as_str)) else {
+                continue;
+            };
+            if members.contains(&member) {
+                self.error("set", at.at_value(), format!("the member `{name}` is named twice"));
+            } else if messages[member].set.is_some() {
+                let help = "name its members instead";
+                self.error_with_help("set", at.at_value(), format!("`{name}` is a set of frames itself"), help);
+            } else {
+                members.push(member);
+            }
+        }
+        members
+    }
+
+    /// Lets a member travel as part of a set.
+    fn join(
+        &mut self,
+        (set, kinds): (usize, &[Kind]),
+        member: usize,
+        access: &MessageAccess,
+        choices: &[Choice],
+        surroundings: &Surroundings,
+        messages: &mut [Message],
+    ) {
+        let known = &surroundings.accesses[access.access];
+        let index = messages[member].accesses.len();
+        messages[member].accesses.push(MessageAccess { set: Some(set), ..access.clone() });
+        for kind in known.kinds.iter().filter(|kind| kinds.contains(kind)) {
+            let travel = self.access_constants(access.access, *kind, surroundings);
+            let travel = [&choices[set].matched, &travel[..]].concat();
+            let mut shape = self.shape(index, *kind, &choices[member], &travel, (&messages[member].signals, known));
+            self.check_member(&messages[set], &messages[member].name, &shape.constants);
+            shape.constants = distinct(shape.constants);
+            shape.selectors.extend(self.continuing_header());
+            shape.selectors.sort_unstable();
+            shape.selectors.dedup();
+            messages[member].shapes.push(shape);
+        }
+    }
+
+    /// Returns the header if it says whether more frames follow; every frame of a set has it then.
+    fn continuing_header(&self) -> Vec<usize> {
+        let is_in_header = self.tables.selectors.iter().any(|selector| selector.continues.is_some());
+        if is_in_header { self.header() } else { Vec::new() }
+    }
+
+    /// Tests that no selector has one value for the set and another one for its member.
+    fn check_member(&mut self, set: &Message, member: &str, constants: &[Constant]) {
+        let differs =
+            |(selector, value): &&Constant| constants.iter().any(|(known, other)| known == selector && other != value);
+        let Some((selector, value)) = constants.iter().find(differs) else { return };
+        let other = constants.iter().find(|(known, other)| known == selector && other != value);
+        let (name, other) = (&self.tables.selectors[*selector].name, other.map_or(0, |(_, other)| *other));
+        let text = format!("in a frame of `{}`, `{name}` would have to be both {value:#X} and {other:#X}", set.name);
+        let position =
+            self.spec.messages.get(&set.name).and_then(|set| set.members.iter().position(|name| name == member));
+        let at = set.doc.path.key("members").index(position.unwrap_or(0));
+        let help = format!("take `{name}` out of the `match` of `{member}` or of the set");
+        self.diagnostics.push(Diagnostic::error("match", at.at_value(), text).help(help));
+    }
+}
+
+/// Leaves out what stands there before.
+fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
+    constants.into_iter().fold(Vec::new(), |mut known, constant| {
+        if !known.contains(&constant) {
+            known.push(constant);
+        }
+        known
+    })
+}

@@ -1,0 +1,192 @@
+//! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
+
+use crate::{
+    Address, AddressType, AnySignal, Bits, Continuation, Data, Error, Exchange, Filter, Frame, FrameSet,
+    IdentifierFields, Layout, Mode, Pattern, Payload, Place, Protocol, Recognised, Selector, Signal, Who,
+};
+
+const DIRECTION: Bits = Bits::new(10, 10);
+const COMMAND: Bits = Bits::new(9, 5);
+const NODE: Bits = Bits::new(4, 1);
+const MORE: Bits = Bits::new(0, 0);
+const SIGNAL: Selector = Selector::new("signal", Place::byte(0));
+const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0);
+
+const OVEN: AddressType = AddressType::new("oven", 1, 9);
+
+const SINGLE: Mode = Mode {
+    name: "single",
+    target: Some(&OVEN),
+    request: Some(Pattern { constants: &[(DIRECTION, 0)], addresses: &[Address::new(NODE, &OVEN)] }),
+    one: Some(Pattern { constants: &[(DIRECTION, 1)], addresses: &[Address::new(NODE, &OVEN).excluding(&[(0, 0)])] }),
+    each: None,
+    coordinator: None,
+};
+
+const ANSWERS: &[Option<Who>] = &[Some(Who::One)];
+
+/// Returns how a member travels, alone or as part of a set.
+const fn exchange(name: &'static str, access: &'static str, command: u32, signal: u64) -> Exchange {
+    let filter = Filter::STANDARD.selectors(&[SIGNAL, RESULT]).id(COMMAND, command).data(SIGNAL.place, signal);
+    Exchange::new(access, ANSWERS).length(4).request(filter).reply(filter).of(name, Filter::STANDARD)
+}
+
+const fn whole(name: &'static str, command: u32) -> Exchange {
+    let filter = Filter::STANDARD.id(COMMAND, command);
+    Exchange::new("scan", ANSWERS).length(4).request(filter).reply(filter).of(name, Filter::STANDARD)
+}
+
+static ALL: Exchange = whole("all", 5);
+static PAIR: Exchange = whole("pair", 6);
+
+static OF_ALL: [Exchange; 6] = [
+    exchange("a", "scan", 5, 1).member_of("all"),
+    exchange("b", "scan", 5, 2).member_of("all"),
+    exchange("c", "scan", 5, 3).member_of("all"),
+    exchange("d", "scan", 5, 4).member_of("all"),
+    exchange("e", "scan", 5, 5).member_of("all"),
+    exchange("f", "scan", 5, 6).member_of("all"),
+];
+
+static OF_PAIR: [Exchange; 2] =
+    [exchange("a", "scan", 6, 1).member_of("pair"), exchange("b", "scan", 6, 2).member_of("pair")];
+
+static ALONE: [Exchange; 6] = [
+    exchange("a", "read", 7, 1),
+    exchange("b", "read", 7, 2),
+    exchange("c", "read", 7, 3),
+    exchange("d", "read", 7, 4),
+    exchange("e", "read", 7, 5),
+    exchange("f", "read", 7, 6),
+];
+
+/// A member by its place among the six, and what it says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    position: usize,
+    value: u16,
+}
+
+const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3));
+
+impl Layout for Value {
+    fn decode(data: &Data) -> Self {
+        Self { position: usize::from(data[0]).wrapping_sub(1), value: VALUE.get(data) }
+    }
+
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+        VALUE.put(self.value, payload)
+    }
+
+    fn signals(&self) -> &'static [&'static dyn AnySignal] {
+        &[&VALUE]
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Identifier(u32);
+
+impl IdentifierFields for Identifier {
+    fn from_raw(id: u32) -> Self {
+        Self(id)
+    }
+
+    fn to_raw(self) -> u32 {
+        self.0
+    }
+
+    fn is_to_module(id: u32) -> bool {
+        DIRECTION.of(id) == 0
+    }
+
+    fn is_to_controller(id: u32) -> bool {
+        DIRECTION.of(id) == 1
+    }
+}
+
+impl Protocol for Value {
+    type Identifier = Identifier;
+    const FRAME: Filter = Filter::STANDARD;
+    const NORMAL: Filter = Filter::STANDARD;
+    const MODES: &'static [Mode] = &[SINGLE];
+
+    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+        let exchanges = exchanges(frame, model);
+        exchanges.map(|exchange| Recognised::request(exchange, Layout::decode(&frame.bytes())))
+    }
+
+    fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+        let exchanges = exchanges(frame, model);
+        exchanges.map(|exchange| Recognised::reply(exchange, Layout::decode(&frame.bytes())))
+    }
+
+    fn request_lengths(_: u32) -> &'static [u8] {
+        &[4]
+    }
+
+    fn reply_lengths(_: u32) -> &'static [u8] {
+        &[4, 8]
+    }
+
+    fn layout(&self) -> &dyn Layout {
+        self
+    }
+}
+
+/// Finds how a frame travels; device model 1 takes the six as members of no set.
+fn exchanges(frame: &Frame, model: Option<u8>) -> Option<&'static Exchange> {
+    let known: &[Exchange] = match (COMMAND.of(frame.raw_id()), model) {
+        (5, None) => &OF_ALL,
+        (6, None) => &OF_PAIR,
+        (5 | 7, _) => &ALONE,
+        _ => return None,
+    };
+    known.get(usize::from(frame.bytes()[0]).wrapping_sub(1))
+}
+
+/// The six values of an oven.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct All(pub [Option<u16>; 6]);
+
+impl FrameSet for All {
+    type Protocol = Value;
+    const EXCHANGE: &'static Exchange = &ALL;
+    const NODE: &'static AddressType = &OVEN;
+    const CONTINUATION: Continuation = Continuation::identifier(MORE, 1);
+    const MEMBERS: &'static [&'static str] = &["a", "b", "c", "d", "e", "f"];
+
+    fn position(message: &Value) -> Option<usize> {
+        Some(message.position).filter(|position| *position < 6)
+    }
+
+    fn put(&mut self, message: &Value) -> bool {
+        self.0[message.position].replace(message.value) == Some(message.value)
+    }
+}
+
+/// The two values of a smaller set, of which byte 3 says whether more follow.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pair(pub [Option<u16>; 2]);
+
+impl FrameSet for Pair {
+    type Protocol = Value;
+    const EXCHANGE: &'static Exchange = &PAIR;
+    const NODE: &'static AddressType = &OVEN;
+    const CONTINUATION: Continuation = Continuation::data(Place::byte(3), 0xAA);
+    const MEMBERS: &'static [&'static str] = &["a", "b"];
+
+    fn position(message: &Value) -> Option<usize> {
+        Some(message.position)
+    }
+
+    fn put(&mut self, message: &Value) -> bool {
+        self.0[message.position].replace(message.value) == Some(message.value)
+    }
+}
+
+/// Returns the reply of an oven by a command; signals are counted from 1.
+pub fn reply(command: u32, node: u32, more: bool, signal: u8, value: u16) -> Frame {
+    let [high, low] = value.to_be_bytes();
+    let id = 0x400 | command << 5 | node << 1 | u32::from(more);
+    Frame::new_raw(id, false, [signal, 0, high, low, 0, 0, 0, 0], 4)
+}
