@@ -4,9 +4,9 @@ use core::ops::BitOr;
 
 pub use canspec_runtime::prelude::*;
 use canspec_runtime::{
-    Address, AddressType, AnySignal, Bits, Decode, Destination, Encode, Entry, Exchange,
-    Filter, Legend, Mode, Pattern, Place, Protocol, Recognised, Selector, Signal, Single,
-    Who,
+    Address, AddressType, AnySignal, Bits, Continuation, Decode, Destination, Encode,
+    Entry, Exchange, Filter, FrameSet, Legend, Mode, Pattern, Place, Protocol,
+    Recognised, Selector, Signal, Single, Who,
 };
 
 /// What every frame shows.
@@ -93,6 +93,9 @@ impl IdentifierFields for Identifier {
         Self::SENDER.of(id) == 0x0
     }
 }
+
+/// The field that says whether more frames of a set follow.
+pub const CONTINUATION: Continuation = Continuation::identifier(Identifier::MORE, 0x1);
 
 /// Whom a request addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -188,34 +191,46 @@ pub const STORE_ACCESS: Exchange = Exchange::new("store", &[Some(Who::One), Some
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81))
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x81));
 
-/// Read from one module what does not change. Section 2.1, 3.3.
+/// Read several signals from one module in the set `inherent_information`. Section 2.1, 3.3, 3.4.
 ///
-/// The three signals are asked for in three frames, of which the last has `more` 0, and answered in
-/// three frames.
+/// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
+/// addresses are assigned", used is "the error type in the frames of the members".
 ///
-/// Erratum M6: printed is "after receiving the point-to-point setting command", used is "the query
-/// before it".
-///
-/// Erratum M7: printed is "three rows of data for one query, CNT 0/1, and an explanation of two of
-/// them", used is "three frames, CNT 1 in the first two and 0 in the last".
+/// In a request, `command` is `0x50`. In a reply, `command` is `0x50`.
 ///
 /// `point_to_point`: the module answers.
-pub const READ_INHERENT_ACCESS: Exchange = Exchange::new("read_inherent", &[Some(Who::One), None])
+pub const READ_ALL_INHERENT_INFORMATION_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None])
+    .member_of("inherent_information")
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50))
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x50));
 
-/// Ask one module for all that changes. Section 2.1, 3.4.
+/// Read several signals from one module in the set `real_time_data`. Section 2.1, 3.3, 3.4.
 ///
-/// The answer is a frame of each message with `real_time`, of which the last has `more` 0.
+/// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
+/// addresses are assigned", used is "the error type in the frames of the members".
 ///
-/// `point_to_point`: nobody answers.
-pub const ASK_REAL_TIME_ACCESS: Exchange = Exchange::new("ask_real_time", &[Some(Who::Nobody), None]).request(FRAME);
-
-/// Part of the answer to `real_time_data`. Section 2.1, 3.4.
+/// In a reply, `command` is `0x40`.
 ///
 /// `point_to_point`: the module answers.
-pub const REAL_TIME_ACCESS: Exchange = Exchange::new("real_time", &[Some(Who::One), None])
+pub const READ_ALL_REAL_TIME_DATA_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None])
+    .member_of("real_time_data")
     .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x40));
+
+/// Read several signals from one module. Section 2.1, 3.3, 3.4.
+///
+/// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
+/// addresses are assigned", used is "the error type in the frames of the members".
+///
+/// `point_to_point`: the module answers.
+pub const READ_ALL_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None]).reply(FRAME);
+
+/// Read several signals from one module. Section 2.1, 3.3, 3.4.
+///
+/// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
+/// addresses are assigned", used is "the error type in the frames of the members".
+///
+/// `point_to_point`: the module answers.
+pub const READ_ALL_ACCESS_2: Exchange = Exchange::new("read_all", &[Some(Who::One), None]).request(FRAME).reply(FRAME);
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -281,10 +296,10 @@ const OVERVOLTAGE_POINT_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 58.5, 6
 /// what is kept in the EEPROM".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CommandCode {
-    /// 64: `read_real_time`.
-    ReadRealTime,
-    /// 80: `read_inherent`.
-    ReadInherent,
+    /// 64: `real_time_data`.
+    RealTimeData,
+    /// 80: `inherent_information`.
+    InherentInformation,
     /// 128: `set`.
     Set,
     /// 129: `store`.
@@ -299,8 +314,8 @@ impl Word for CommandCode {
     type Raw = u8;
     const LEGEND: Legend<Self> = Legend::Names(
         &[
-            (Self::ReadRealTime, "read_real_time"),
-            (Self::ReadInherent, "read_inherent"),
+            (Self::RealTimeData, "real_time_data"),
+            (Self::InherentInformation, "inherent_information"),
             (Self::Set, "set"),
             (Self::Store, "store"),
             (Self::Read, "read"),
@@ -309,8 +324,8 @@ impl Word for CommandCode {
 
     fn from_raw(raw: u8) -> Self {
         match raw {
-            64 => Self::ReadRealTime,
-            80 => Self::ReadInherent,
+            64 => Self::RealTimeData,
+            80 => Self::InherentInformation,
             128 => Self::Set,
             129 => Self::Store,
             130 => Self::Read,
@@ -320,8 +335,8 @@ impl Word for CommandCode {
 
     fn raw(self) -> u8 {
         match self {
-            Self::ReadRealTime => 64,
-            Self::ReadInherent => 80,
+            Self::RealTimeData => 64,
+            Self::InherentInformation => 80,
             Self::Set => 128,
             Self::Store => 129,
             Self::Read => 130,
@@ -561,26 +576,26 @@ impl Named for Phases {}
 /// Type of the input voltage. Section 2.2.3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum InputType {
-    /// 3: `ac_and_dc`.
-    AcAndDc,
+    /// 3: `ac_and_other`.
+    AcAndOther,
     /// A value without a name; it is sent as it is.
     Unknown(u8),
 }
 
 impl Word for InputType {
     type Raw = u8;
-    const LEGEND: Legend<Self> = Legend::Names(&[(Self::AcAndDc, "ac_and_dc")]);
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::AcAndOther, "ac_and_other")]);
 
     fn from_raw(raw: u8) -> Self {
         match raw {
-            3 => Self::AcAndDc,
+            3 => Self::AcAndOther,
             _ => Self::Unknown(raw),
         }
     }
 
     fn raw(self) -> u8 {
         match self {
-            Self::AcAndDc => 3,
+            Self::AcAndOther => 3,
             Self::Unknown(raw) => raw,
         }
     }
@@ -923,8 +938,8 @@ impl Named for Shielding {}
 ///
 /// The controller always uses software addresses; among themselves modules use hardware addresses with
 /// `hardware` and else software addresses; with `hardware` a module whose address conflicts or that has
-/// no address board does not start, and its yellow light flashes at 4 Hz, else it works without the
-/// board.
+/// no address board does not start, and its yellow light flashes at 4 Hz; in the other modes it works
+/// without the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressMode {
     /// 0: `hardware`.
@@ -1320,7 +1335,7 @@ impl BitOr for Alarms {
 
 /// Characteristic word. Section 2.2.2, 2.2.3.
 ///
-/// A controller recognises modules of the same type by it.
+/// A controller recognises modules of the same type by it when it loads their software.
 ///
 /// Erratum M25: printed is "rated power in the text and rated output current in the table", used is
 /// "the current".
@@ -1340,11 +1355,11 @@ pub struct CharacteristicWord {
     pub efficiency: Efficiency,
     /// Minor version of the hardware: bytes 6..7, bits 8..5.
     ///
-    /// Defined by the maker of the module.
+    /// Defined case by case for each module.
     pub minor_version: u8,
     /// Version of the hardware: byte 7, bits 4..2.
     ///
-    /// 0 to 7 for as many generations of the module.
+    /// 7 is the 7th generation of the module.
     pub generation: u8,
 }
 
@@ -1371,8 +1386,8 @@ impl CharacteristicWord {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x03];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
-    /// How it travels by `read_inherent`.
-    pub const READ_INHERENT: Exchange = READ_INHERENT_ACCESS
+    /// How it travels by `read_all` in the set `inherent_information`.
+    pub const READ_ALL_INHERENT_INFORMATION: Exchange = READ_ALL_INHERENT_INFORMATION_ACCESS
         .of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
 
     /// Builds the request [`read`](READ_ACCESS).
@@ -1382,15 +1397,6 @@ impl CharacteristicWord {
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
-    }
-
-    /// Builds the request [`read_inherent`](READ_INHERENT_ACCESS).
-    ///
-    /// # Errors
-    ///
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_inherent(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_INHERENT.request_to(route, &())
     }
 }
 
@@ -1457,8 +1463,9 @@ impl Versions {
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
-    /// How it travels by `read_inherent`.
-    pub const READ_INHERENT: Exchange = READ_INHERENT_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
+    /// How it travels by `read_all` in the set `inherent_information`.
+    pub const READ_ALL_INHERENT_INFORMATION: Exchange = READ_ALL_INHERENT_INFORMATION_ACCESS
+        .of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -1467,15 +1474,6 @@ impl Versions {
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
-    }
-
-    /// Builds the request [`read_inherent`](READ_INHERENT_ACCESS).
-    ///
-    /// # Errors
-    ///
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_inherent(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_INHERENT.request_to(route, &())
     }
 }
 
@@ -1497,14 +1495,14 @@ impl Layout for Versions {
 
 /// Place of the module in the system. Section 2.2.2, 2.2.3, 4.
 ///
-/// The number of the slot is (group - 1) x 8 + slave; in the address mode `software` it is the software
-/// address of the module.
+/// The number of the slot is (group - 1) x 8 + slave, good only for showing it; with the address mode
+/// `software` a module gives its software address here.
 ///
 /// Erratum M15: printed is "type VII, an integer of two bytes, for 0x006", used is "two numbers of one
 /// byte".
 ///
-/// Erratum M35: printed is "01 02 as slot 2 and 0 2 02 as slot 10, and 0 without an address board",
-/// used is "8 slots a group, the slave from 1 to 8, and 00 00 for none".
+/// Erratum M35: printed is "01 02 as slot 2 and 0 2 02 as slot 10, 0 without an address board, and a
+/// software address instead", used is "8 slots a group, the slave from 1 to 8, and 00 00 for none".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct HardwareAddress {
     /// Number of the group of 8 modules: byte 2, `1..=255`, raw 0 is `none`.
@@ -1526,8 +1524,8 @@ impl HardwareAddress {
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
-    /// How it travels by `read_inherent`.
-    pub const READ_INHERENT: Exchange = READ_INHERENT_ACCESS
+    /// How it travels by `read_all` in the set `inherent_information`.
+    pub const READ_ALL_INHERENT_INFORMATION: Exchange = READ_ALL_INHERENT_INFORMATION_ACCESS
         .of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
 
     /// Builds the request [`read`](READ_ACCESS).
@@ -1537,15 +1535,6 @@ impl HardwareAddress {
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
-    }
-
-    /// Builds the request [`read_inherent`](READ_INHERENT_ACCESS).
-    ///
-    /// # Errors
-    ///
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_inherent(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_INHERENT.request_to(route, &())
     }
 }
 
@@ -1900,10 +1889,7 @@ impl Single for WalkInTime {
 
 /// Total running time. Section 2.2.2, 3.4.
 ///
-/// Printed as one that can be written.
-///
-/// Erratum M10: printed is "signals of 16 bits, such as 0x010E", used is "12 bits, after an error type
-/// of 4 bits".
+/// Printed as one that can be written, with the default 0, which is never filled in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TotalRunningTime {
     /// Value in h: bytes 4..7.
@@ -1921,8 +1907,9 @@ impl TotalRunningTime {
     pub const SET: Exchange = SET_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
     /// How it travels by `store`.
     pub const STORE: Exchange = STORE_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -1961,6 +1948,9 @@ impl Single for TotalRunningTime {
 /// Switch modules on or off. Section 2.2.2.
 ///
 /// On by default.
+///
+/// Erratum M50: printed is "(all shutdown) after the name of 0x132", used is "a switch of the modules
+/// addressed".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SwitchModules {
     /// Power switch (0 is on): byte 3.
@@ -2139,9 +2129,11 @@ impl Layout for ControlLights {
     }
 }
 
-/// Choose the alarms that are not shown. Section 2.2.2, 2.2.3.
+/// Choose the alarms that are shielded. Section 2.2.2, 2.2.3.
 ///
 /// Erratum M14: printed is "type III, 4 bytes, for 0x142", used is "type IV, 6 bytes".
+///
+/// Erratum M40: printed is "no default", used is "none".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ShieldAlarms {
     /// Extension of alarms that are shielded: bytes 2..3.
@@ -2241,8 +2233,9 @@ impl InputPower {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2274,8 +2267,9 @@ impl InputFrequency {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2307,8 +2301,9 @@ impl InputCurrent {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2340,8 +2335,9 @@ impl OutputPower {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2373,8 +2369,9 @@ impl OutputVoltage {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2406,8 +2403,8 @@ impl ActualCurrentLimit {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
         .of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
 
     /// Builds the request [`read`](READ_ACCESS).
@@ -2477,8 +2474,9 @@ impl InputVoltage {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2513,8 +2511,8 @@ impl AmbientTemperature {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
         .of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
 
     /// Builds the request [`read`](READ_ACCESS).
@@ -2547,8 +2545,9 @@ impl OutputCurrent {
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -2586,8 +2585,9 @@ impl ModuleStatus {
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `read`.
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
-    /// How it travels by `real_time`.
-    pub const REAL_TIME: Exchange = REAL_TIME_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
+    /// How it travels by `read_all` in the set `real_time_data`.
+    pub const READ_ALL_REAL_TIME_DATA: Exchange = READ_ALL_REAL_TIME_DATA_ACCESS
+        .of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -4242,29 +4242,180 @@ impl Single for CustomerInformation8 {
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
-/// Ask one module for all that changes. Section 3.4, 4.
+/// Inherent information. Section 3.3, 4.
 ///
-/// The module answers with the messages that have `real_time`, in the order of their signals.
+/// Asked for in three frames and answered in three.
+///
+/// Erratum M6: printed is "after receiving the point-to-point setting command", used is "the query
+/// before it".
+///
+/// Erratum M7: printed is "three rows of data for one query, CNT 0/1, and an explanation of two of
+/// them", used is "three frames, CNT 1 in the first two and 0 in the last".
+///
+/// An [`Assembler`](assembler::Assembler) puts it together of the frames that come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InherentInformation {
+    /// Characteristic word.
+    pub characteristic_word: Option<CharacteristicWord>,
+    /// Versions of hardware and software.
+    pub versions: Option<Versions>,
+    /// Place of the module in the system.
+    pub hardware_address: Option<HardwareAddress>,
+}
+
+impl InherentInformation {
+    /// How it travels by `read_all`.
+    pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("inherent_information", FRAME.id(Identifier::COMMAND, 0x50));
+
+    /// Builds the requests [`read_all`](READ_ALL_ACCESS), one for each member in the order in which they
+    /// are sent.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn read_all(route: impl Into<Route<Target>>) -> Result<[Request<()>; 3], Error> {
+        let route = route.into();
+        Ok([
+            CharacteristicWord::READ_ALL_INHERENT_INFORMATION
+                .request_to(route, &())?
+                .followed(&CONTINUATION),
+            Versions::READ_ALL_INHERENT_INFORMATION
+                .request_to(route, &())?
+                .followed(&CONTINUATION),
+            HardwareAddress::READ_ALL_INHERENT_INFORMATION.request_to(route, &())?,
+        ])
+    }
+}
+
+impl FrameSet for InherentInformation {
+    type Protocol = Message;
+    const EXCHANGE: &'static Exchange = &Self::READ_ALL;
+    const NODE: &'static AddressType = &MODULE_ADDRESS;
+    const CONTINUATION: Continuation = CONTINUATION;
+    const MEMBERS: &'static [&'static str] = &["characteristic_word", "versions", "hardware_address"];
+
+    fn position(message: &Message) -> Option<usize> {
+        match message {
+            Message::CharacteristicWord(_) => Some(0),
+            Message::Versions(_) => Some(1),
+            Message::HardwareAddress(_) => Some(2),
+            _ => None,
+        }
+    }
+
+    fn put(&mut self, message: &Message) -> bool {
+        match *message {
+            Message::CharacteristicWord(values) => self.characteristic_word.replace(values) == Some(values),
+            Message::Versions(values) => self.versions.replace(values) == Some(values),
+            Message::HardwareAddress(values) => self.hardware_address.replace(values) == Some(values),
+            _ => false,
+        }
+    }
+}
+
+/// All real-time data. Section 3.4, 4.
 ///
 /// Erratum M8: printed is "command 0x40, without identifier or data", used is "108140FE with eight
 /// bytes of 0, for module 1".
 ///
 /// Erratum M9: printed is "0x174, 0x179, 0x17A and 0x17B with a stroke, and no 0x177 and 0x184", used
 /// is "no message for the four; 0x177 and 0x184 are read alone".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct RealTimeData;
+///
+/// Erratum M10: printed is "signals of 16 bits, such as 0x010E", used is "12 bits, after an error type
+/// of 4 bits".
+///
+/// An [`Assembler`](assembler::Assembler) puts it together of the frames that come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RealTimeData {
+    /// Total running time.
+    pub total_running_time: Option<TotalRunningTime>,
+    /// Input power.
+    pub input_power: Option<InputPower>,
+    /// Input frequency.
+    pub input_frequency: Option<InputFrequency>,
+    /// Input current.
+    pub input_current: Option<InputCurrent>,
+    /// DC output power.
+    pub output_power: Option<OutputPower>,
+    /// DC output voltage measured.
+    pub output_voltage: Option<OutputVoltage>,
+    /// Output current limit in effect.
+    pub actual_current_limit: Option<ActualCurrentLimit>,
+    /// Input voltage of a single-phase module.
+    pub input_voltage: Option<InputVoltage>,
+    /// Ambient temperature at the air inlet.
+    pub ambient_temperature: Option<AmbientTemperature>,
+    /// Output current shown.
+    pub output_current: Option<OutputCurrent>,
+    /// Alarms and states.
+    pub module_status: Option<ModuleStatus>,
+}
 
 impl RealTimeData {
-    /// How it travels by `ask_real_time`.
-    pub const ASK_REAL_TIME: Exchange = ASK_REAL_TIME_ACCESS.of("real_time_data", FRAME.id(Identifier::COMMAND, 0x40));
+    /// How it travels by `read_all`.
+    pub const READ_ALL: Exchange = READ_ALL_ACCESS_2.of("real_time_data", FRAME.id(Identifier::COMMAND, 0x40));
 
-    /// Builds the request [`ask_real_time`](ASK_REAL_TIME_ACCESS).
+    /// Builds the request [`read_all`](READ_ALL_ACCESS_2).
     ///
     /// # Errors
     ///
     /// Refuses other addressing modes, and undocumented addresses.
-    pub fn ask_real_time(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::ASK_REAL_TIME.request_to(route, &())
+    pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        Self::READ_ALL.request_to(route, &())
+    }
+}
+
+impl FrameSet for RealTimeData {
+    type Protocol = Message;
+    const EXCHANGE: &'static Exchange = &Self::READ_ALL;
+    const NODE: &'static AddressType = &MODULE_ADDRESS;
+    const CONTINUATION: Continuation = CONTINUATION;
+    const MEMBERS: &'static [&'static str] = &[
+        "total_running_time",
+        "input_power",
+        "input_frequency",
+        "input_current",
+        "output_power",
+        "output_voltage",
+        "actual_current_limit",
+        "input_voltage",
+        "ambient_temperature",
+        "output_current",
+        "module_status",
+    ];
+
+    fn position(message: &Message) -> Option<usize> {
+        match message {
+            Message::TotalRunningTime(_) => Some(0),
+            Message::InputPower(_) => Some(1),
+            Message::InputFrequency(_) => Some(2),
+            Message::InputCurrent(_) => Some(3),
+            Message::OutputPower(_) => Some(4),
+            Message::OutputVoltage(_) => Some(5),
+            Message::ActualCurrentLimit(_) => Some(6),
+            Message::InputVoltage(_) => Some(7),
+            Message::AmbientTemperature(_) => Some(8),
+            Message::OutputCurrent(_) => Some(9),
+            Message::ModuleStatus(_) => Some(10),
+            _ => None,
+        }
+    }
+
+    fn put(&mut self, message: &Message) -> bool {
+        match *message {
+            Message::TotalRunningTime(values) => self.total_running_time.replace(values) == Some(values),
+            Message::InputPower(values) => self.input_power.replace(values) == Some(values),
+            Message::InputFrequency(values) => self.input_frequency.replace(values) == Some(values),
+            Message::InputCurrent(values) => self.input_current.replace(values) == Some(values),
+            Message::OutputPower(values) => self.output_power.replace(values) == Some(values),
+            Message::OutputVoltage(values) => self.output_voltage.replace(values) == Some(values),
+            Message::ActualCurrentLimit(values) => self.actual_current_limit.replace(values) == Some(values),
+            Message::InputVoltage(values) => self.input_voltage.replace(values) == Some(values),
+            Message::AmbientTemperature(values) => self.ambient_temperature.replace(values) == Some(values),
+            Message::OutputCurrent(values) => self.output_current.replace(values) == Some(values),
+            Message::ModuleStatus(values) => self.module_status.replace(values) == Some(values),
+            _ => false,
+        }
     }
 }
 
@@ -4275,20 +4426,20 @@ pub enum Message {
     ReadCharacteristicWord,
     /// Characteristic word.
     CharacteristicWord(CharacteristicWord),
-    /// The request of `characteristic_word` by `read_inherent`.
-    ReadInherentCharacteristicWord,
+    /// The request of `characteristic_word` by `read_all`.
+    ReadAllCharacteristicWord,
     /// The request of `versions` by `read`.
     ReadVersions,
     /// Versions of hardware and software.
     Versions(Versions),
-    /// The request of `versions` by `read_inherent`.
-    ReadInherentVersions,
+    /// The request of `versions` by `read_all`.
+    ReadAllVersions,
     /// The request of `hardware_address` by `read`.
     ReadHardwareAddress,
     /// Place of the module in the system.
     HardwareAddress(HardwareAddress),
-    /// The request of `hardware_address` by `read_inherent`.
-    ReadInherentHardwareAddress,
+    /// The request of `hardware_address` by `read_all`.
+    ReadAllHardwareAddress,
     /// The request of `output_voltage_setting` by `read`.
     ReadOutputVoltageSetting,
     /// DC output voltage set.
@@ -4327,7 +4478,7 @@ pub enum Message {
     AssignAddresses(AssignAddresses),
     /// Control the lights of modules.
     ControlLights(ControlLights),
-    /// Choose the alarms that are not shown.
+    /// Choose the alarms that are shielded.
     ShieldAlarms(ShieldAlarms),
     /// Shield the yellow light while the controller is not heard.
     ShieldCommunicationAlarm(ShieldCommunicationAlarm),
@@ -4517,8 +4668,8 @@ pub enum Message {
     ReadCustomerInformation8,
     /// Customer information part 8.
     CustomerInformation8(CustomerInformation8),
-    /// The request of `real_time_data` by `ask_real_time`.
-    AskRealTimeRealTimeData,
+    /// The request of `real_time_data` by `read_all`.
+    ReadAllRealTimeData,
 }
 
 /// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
@@ -4553,6 +4704,9 @@ impl Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
+            (0x80, 0x133) => {
+                Recognised::request(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
+            }
             (0x80, 0x135) => Recognised::request(&FlashGreenLight::SET, Self::FlashGreenLight(Layout::decode(data))),
             (0x80, 0x13A) => Recognised::request(&AssignAddresses::SET, Self::AssignAddresses(Layout::decode(data))),
             (0x80, 0x140) => Recognised::request(&ControlLights::SET, Self::ControlLights(Layout::decode(data))),
@@ -4608,12 +4762,6 @@ impl Message {
             (0x82, 0x22D) => {
                 Recognised::request(&RectifierCurrentLimitSetting::READ, Self::ReadRectifierCurrentLimitSetting)
             }
-            (0x80, 0x22D) => {
-                Recognised::request(
-                    &RectifierCurrentLimitSetting::SET,
-                    Self::RectifierCurrentLimitSetting(Layout::decode(data)),
-                )
-            }
             _ => return Self::request_3(frame, model),
         };
         Some(recognised)
@@ -4623,6 +4771,12 @@ impl Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
+            (0x80, 0x22D) => {
+                Recognised::request(
+                    &RectifierCurrentLimitSetting::SET,
+                    Self::RectifierCurrentLimitSetting(Layout::decode(data)),
+                )
+            }
             (0x82, 0x22E) => Recognised::request(&PvCurrentLimitSetting::READ, Self::ReadPvCurrentLimitSetting),
             (0x80, 0x22E) => {
                 Recognised::request(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(Layout::decode(data)))
@@ -4673,13 +4827,6 @@ impl Message {
             (0x80, 0x301) => {
                 Recognised::request(&CustomerInformation1::SET, Self::CustomerInformation1(Layout::decode(data)))
             }
-            (0x81, 0x301) => {
-                Recognised::request(&CustomerInformation1::STORE, Self::CustomerInformation1(Layout::decode(data)))
-            }
-            (0x82, 0x302) => Recognised::request(&CustomerInformation2::READ, Self::ReadCustomerInformation2),
-            (0x80, 0x302) => {
-                Recognised::request(&CustomerInformation2::SET, Self::CustomerInformation2(Layout::decode(data)))
-            }
             _ => return Self::request_4(frame, model),
         };
         Some(recognised)
@@ -4689,6 +4836,13 @@ impl Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
+            (0x81, 0x301) => {
+                Recognised::request(&CustomerInformation1::STORE, Self::CustomerInformation1(Layout::decode(data)))
+            }
+            (0x82, 0x302) => Recognised::request(&CustomerInformation2::READ, Self::ReadCustomerInformation2),
+            (0x80, 0x302) => {
+                Recognised::request(&CustomerInformation2::SET, Self::CustomerInformation2(Layout::decode(data)))
+            }
             (0x81, 0x302) => {
                 Recognised::request(&CustomerInformation2::STORE, Self::CustomerInformation2(Layout::decode(data)))
             }
@@ -4734,7 +4888,7 @@ impl Message {
             (0x81, 0x308) => {
                 Recognised::request(&CustomerInformation8::STORE, Self::CustomerInformation8(Layout::decode(data)))
             }
-            (0x40, _) => Recognised::request(&RealTimeData::ASK_REAL_TIME, Self::AskRealTimeRealTimeData),
+            (0x40, _) => Recognised::request(&RealTimeData::READ_ALL, Self::ReadAllRealTimeData),
             _ => return None,
         };
         Some(recognised)
@@ -4744,6 +4898,22 @@ impl Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
+            (0x81, 0x104) => {
+                Recognised::reply(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(Layout::decode(data)))
+            }
+            (0x82, 0x10C) => Recognised::reply(&WalkInTime::READ, Self::WalkInTime(Layout::decode(data))),
+            (0x80, 0x10C) => Recognised::reply(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
+            (0x81, 0x10C) => Recognised::reply(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
+            (0x82, 0x10E) => Recognised::reply(&TotalRunningTime::READ, Self::TotalRunningTime(Layout::decode(data))),
+            (0x80, 0x10E) => Recognised::reply(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
+            (0x81, 0x10E) => Recognised::reply(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data))),
+            (0x40, 0x10E) => {
+                Recognised::reply(
+                    &TotalRunningTime::READ_ALL_REAL_TIME_DATA,
+                    Self::TotalRunningTime(Layout::decode(data)),
+                )
+            }
+            (0x80, 0x132) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
             (0x80, 0x133) => {
                 Recognised::reply(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
             }
@@ -4761,34 +4931,65 @@ impl Message {
                 )
             }
             (0x82, 0x170) => Recognised::reply(&InputPower::READ, Self::InputPower(Layout::decode(data))),
-            (0x40, 0x170) => Recognised::reply(&InputPower::REAL_TIME, Self::InputPower(Layout::decode(data))),
+            (0x40, 0x170) => {
+                Recognised::reply(&InputPower::READ_ALL_REAL_TIME_DATA, Self::InputPower(Layout::decode(data)))
+            }
             (0x82, 0x171) => Recognised::reply(&InputFrequency::READ, Self::InputFrequency(Layout::decode(data))),
-            (0x40, 0x171) => Recognised::reply(&InputFrequency::REAL_TIME, Self::InputFrequency(Layout::decode(data))),
+            (0x40, 0x171) => {
+                Recognised::reply(&InputFrequency::READ_ALL_REAL_TIME_DATA, Self::InputFrequency(Layout::decode(data)))
+            }
             (0x82, 0x172) => Recognised::reply(&InputCurrent::READ, Self::InputCurrent(Layout::decode(data))),
-            (0x40, 0x172) => Recognised::reply(&InputCurrent::REAL_TIME, Self::InputCurrent(Layout::decode(data))),
+            (0x40, 0x172) => {
+                Recognised::reply(&InputCurrent::READ_ALL_REAL_TIME_DATA, Self::InputCurrent(Layout::decode(data)))
+            }
             (0x82, 0x173) => Recognised::reply(&OutputPower::READ, Self::OutputPower(Layout::decode(data))),
-            (0x40, 0x173) => Recognised::reply(&OutputPower::REAL_TIME, Self::OutputPower(Layout::decode(data))),
+            (0x40, 0x173) => {
+                Recognised::reply(&OutputPower::READ_ALL_REAL_TIME_DATA, Self::OutputPower(Layout::decode(data)))
+            }
             (0x82, 0x175) => Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data))),
-            (0x40, 0x175) => Recognised::reply(&OutputVoltage::REAL_TIME, Self::OutputVoltage(Layout::decode(data))),
+            (0x40, 0x175) => {
+                Recognised::reply(&OutputVoltage::READ_ALL_REAL_TIME_DATA, Self::OutputVoltage(Layout::decode(data)))
+            }
             (0x82, 0x176) => {
                 Recognised::reply(&ActualCurrentLimit::READ, Self::ActualCurrentLimit(Layout::decode(data)))
             }
             (0x40, 0x176) => {
-                Recognised::reply(&ActualCurrentLimit::REAL_TIME, Self::ActualCurrentLimit(Layout::decode(data)))
+                Recognised::reply(
+                    &ActualCurrentLimit::READ_ALL_REAL_TIME_DATA,
+                    Self::ActualCurrentLimit(Layout::decode(data)),
+                )
             }
             (0x82, 0x177) => Recognised::reply(&ActualPowerLimit::READ, Self::ActualPowerLimit(Layout::decode(data))),
             (0x82, 0x178) => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))),
-            (0x40, 0x178) => Recognised::reply(&InputVoltage::REAL_TIME, Self::InputVoltage(Layout::decode(data))),
+            _ => return Self::reply_3(frame, model),
+        };
+        Some(recognised)
+    }
+
+    fn reply_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+        let id = frame.raw_id();
+        let data = &frame.bytes();
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
+            (0x40, 0x178) => {
+                Recognised::reply(&InputVoltage::READ_ALL_REAL_TIME_DATA, Self::InputVoltage(Layout::decode(data)))
+            }
             (0x82, 0x180) => {
                 Recognised::reply(&AmbientTemperature::READ, Self::AmbientTemperature(Layout::decode(data)))
             }
             (0x40, 0x180) => {
-                Recognised::reply(&AmbientTemperature::REAL_TIME, Self::AmbientTemperature(Layout::decode(data)))
+                Recognised::reply(
+                    &AmbientTemperature::READ_ALL_REAL_TIME_DATA,
+                    Self::AmbientTemperature(Layout::decode(data)),
+                )
             }
             (0x82, 0x182) => Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data))),
-            (0x40, 0x182) => Recognised::reply(&OutputCurrent::REAL_TIME, Self::OutputCurrent(Layout::decode(data))),
+            (0x40, 0x182) => {
+                Recognised::reply(&OutputCurrent::READ_ALL_REAL_TIME_DATA, Self::OutputCurrent(Layout::decode(data)))
+            }
             (0x82, 0x183) => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
-            (0x40, 0x183) => Recognised::reply(&ModuleStatus::REAL_TIME, Self::ModuleStatus(Layout::decode(data))),
+            (0x40, 0x183) => {
+                Recognised::reply(&ModuleStatus::READ_ALL_REAL_TIME_DATA, Self::ModuleStatus(Layout::decode(data)))
+            }
             (0x82, 0x184) => Recognised::reply(&ExternalVoltage::READ, Self::ExternalVoltage(Layout::decode(data))),
             (0x82, 0x188) => Recognised::reply(&RatedCurrent::READ, Self::RatedCurrent(Layout::decode(data))),
             (0x82, 0x21D) => Recognised::reply(&AddressModeSwitch::READ, Self::AddressModeSwitch(Layout::decode(data))),
@@ -4812,15 +5013,6 @@ impl Message {
             (0x80, 0x226) => Recognised::reply(&Barcode4::SET, Self::Barcode4(Layout::decode(data))),
             (0x81, 0x226) => Recognised::reply(&Barcode4::STORE, Self::Barcode4(Layout::decode(data))),
             (0x82, 0x22B) => Recognised::reply(&FanDutyCycle::READ, Self::FanDutyCycle(Layout::decode(data))),
-            _ => return Self::reply_3(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x22D) => {
                 Recognised::reply(
                     &RectifierCurrentLimitSetting::READ,
@@ -4845,6 +5037,15 @@ impl Message {
                     Self::RectifierOutputVoltageSetting(Layout::decode(data)),
                 )
             }
+            _ => return Self::reply_4(frame, model),
+        };
+        Some(recognised)
+    }
+
+    fn reply_4(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+        let id = frame.raw_id();
+        let data = &frame.bytes();
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x80, 0x22F) => {
                 Recognised::reply(
                     &RectifierOutputVoltageSetting::SET,
@@ -4892,15 +5093,6 @@ impl Message {
             (0x80, 0x277) => {
                 Recognised::reply(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(Layout::decode(data)))
             }
-            _ => return Self::reply_4(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_4(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x301) => {
                 Recognised::reply(&CustomerInformation1::READ, Self::CustomerInformation1(Layout::decode(data)))
             }
@@ -4919,6 +5111,15 @@ impl Message {
             (0x81, 0x302) => {
                 Recognised::reply(&CustomerInformation2::STORE, Self::CustomerInformation2(Layout::decode(data)))
             }
+            _ => return Self::reply_5(frame, model),
+        };
+        Some(recognised)
+    }
+
+    fn reply_5(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
+        let id = frame.raw_id();
+        let data = &frame.bytes();
+        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x303) => {
                 Recognised::reply(&CustomerInformation3::READ, Self::CustomerInformation3(Layout::decode(data)))
             }
@@ -4992,12 +5193,14 @@ impl Protocol for Message {
         let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
             (0x82, 0x001) => Recognised::request(&CharacteristicWord::READ, Self::ReadCharacteristicWord),
             (0x50, 0x001) => {
-                Recognised::request(&CharacteristicWord::READ_INHERENT, Self::ReadInherentCharacteristicWord)
+                Recognised::request(&CharacteristicWord::READ_ALL_INHERENT_INFORMATION, Self::ReadAllCharacteristicWord)
             }
             (0x82, 0x005) => Recognised::request(&Versions::READ, Self::ReadVersions),
-            (0x50, 0x005) => Recognised::request(&Versions::READ_INHERENT, Self::ReadInherentVersions),
+            (0x50, 0x005) => Recognised::request(&Versions::READ_ALL_INHERENT_INFORMATION, Self::ReadAllVersions),
             (0x82, 0x006) => Recognised::request(&HardwareAddress::READ, Self::ReadHardwareAddress),
-            (0x50, 0x006) => Recognised::request(&HardwareAddress::READ_INHERENT, Self::ReadInherentHardwareAddress),
+            (0x50, 0x006) => {
+                Recognised::request(&HardwareAddress::READ_ALL_INHERENT_INFORMATION, Self::ReadAllHardwareAddress)
+            }
             (0x82, 0x100) => Recognised::request(&OutputVoltageSetting::READ, Self::ReadOutputVoltageSetting),
             (0x80, 0x100) => {
                 Recognised::request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
@@ -5044,9 +5247,6 @@ impl Protocol for Message {
                 Recognised::request(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data)))
             }
             (0x80, 0x132) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            (0x80, 0x133) => {
-                Recognised::request(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
-            }
             _ => return Self::request_2(frame, model),
         };
         Some(recognised)
@@ -5060,13 +5260,21 @@ impl Protocol for Message {
                 Recognised::reply(&CharacteristicWord::READ, Self::CharacteristicWord(Layout::decode(data)))
             }
             (0x50, 0x001) => {
-                Recognised::reply(&CharacteristicWord::READ_INHERENT, Self::CharacteristicWord(Layout::decode(data)))
+                Recognised::reply(
+                    &CharacteristicWord::READ_ALL_INHERENT_INFORMATION,
+                    Self::CharacteristicWord(Layout::decode(data)),
+                )
             }
             (0x82, 0x005) => Recognised::reply(&Versions::READ, Self::Versions(Layout::decode(data))),
-            (0x50, 0x005) => Recognised::reply(&Versions::READ_INHERENT, Self::Versions(Layout::decode(data))),
+            (0x50, 0x005) => {
+                Recognised::reply(&Versions::READ_ALL_INHERENT_INFORMATION, Self::Versions(Layout::decode(data)))
+            }
             (0x82, 0x006) => Recognised::reply(&HardwareAddress::READ, Self::HardwareAddress(Layout::decode(data))),
             (0x50, 0x006) => {
-                Recognised::reply(&HardwareAddress::READ_INHERENT, Self::HardwareAddress(Layout::decode(data)))
+                Recognised::reply(
+                    &HardwareAddress::READ_ALL_INHERENT_INFORMATION,
+                    Self::HardwareAddress(Layout::decode(data)),
+                )
             }
             (0x82, 0x100) => {
                 Recognised::reply(&OutputVoltageSetting::READ, Self::OutputVoltageSetting(Layout::decode(data)))
@@ -5113,19 +5321,6 @@ impl Protocol for Message {
             (0x80, 0x104) => {
                 Recognised::reply(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
             }
-            (0x81, 0x104) => {
-                Recognised::reply(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x82, 0x10C) => Recognised::reply(&WalkInTime::READ, Self::WalkInTime(Layout::decode(data))),
-            (0x80, 0x10C) => Recognised::reply(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
-            (0x81, 0x10C) => Recognised::reply(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
-            (0x82, 0x10E) => Recognised::reply(&TotalRunningTime::READ, Self::TotalRunningTime(Layout::decode(data))),
-            (0x80, 0x10E) => Recognised::reply(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
-            (0x81, 0x10E) => Recognised::reply(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data))),
-            (0x40, 0x10E) => {
-                Recognised::reply(&TotalRunningTime::REAL_TIME, Self::TotalRunningTime(Layout::decode(data)))
-            }
-            (0x80, 0x132) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
             _ => return Self::reply_2(frame, model),
         };
         Some(recognised)
@@ -5229,19 +5424,19 @@ pub const MESSAGES: &[Entry<Message>] = &[
             &CharacteristicWord::MINOR_VERSION,
             &CharacteristicWord::GENERATION,
         ],
-        &[&CharacteristicWord::READ, &CharacteristicWord::READ_INHERENT],
+        &[&CharacteristicWord::READ, &CharacteristicWord::READ_ALL_INHERENT_INFORMATION],
     ),
     Entry::new(
         "Versions of hardware and software",
         &[("signal", 0x005)],
         &[&Versions::HARDWARE, &Versions::DCDC, &Versions::PFC],
-        &[&Versions::READ, &Versions::READ_INHERENT],
+        &[&Versions::READ, &Versions::READ_ALL_INHERENT_INFORMATION],
     ),
     Entry::new(
         "Place of the module in the system",
         &[("signal", 0x006)],
         &[&HardwareAddress::GROUP, &HardwareAddress::SLAVE],
-        &[&HardwareAddress::READ, &HardwareAddress::READ_INHERENT],
+        &[&HardwareAddress::READ, &HardwareAddress::READ_ALL_INHERENT_INFORMATION],
     ),
     Entry::new(
         "DC output voltage set",
@@ -5283,7 +5478,12 @@ pub const MESSAGES: &[Entry<Message>] = &[
         "Total running time",
         &[("signal", 0x10E)],
         &[&TotalRunningTime::VALUE],
-        &[&TotalRunningTime::READ, &TotalRunningTime::SET, &TotalRunningTime::STORE, &TotalRunningTime::REAL_TIME],
+        &[
+            &TotalRunningTime::READ,
+            &TotalRunningTime::SET,
+            &TotalRunningTime::STORE,
+            &TotalRunningTime::READ_ALL_REAL_TIME_DATA,
+        ],
     ),
     Entry::new("Switch modules on or off", &[("signal", 0x132)], &[&SwitchModules::VALUE], &[&SwitchModules::SET]),
     Entry::new(
@@ -5311,7 +5511,7 @@ pub const MESSAGES: &[Entry<Message>] = &[
         &[&ControlLights::SET],
     ),
     Entry::new(
-        "Choose the alarms that are not shown",
+        "Choose the alarms that are shielded",
         &[("signal", 0x142)],
         &[&ShieldAlarms::EXTENDED, &ShieldAlarms::ALARMS],
         &[&ShieldAlarms::SET],
@@ -5326,37 +5526,37 @@ pub const MESSAGES: &[Entry<Message>] = &[
         "Input power",
         &[("signal", 0x170)],
         &[&InputPower::VALUE],
-        &[&InputPower::READ, &InputPower::REAL_TIME],
+        &[&InputPower::READ, &InputPower::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Input frequency",
         &[("signal", 0x171)],
         &[&InputFrequency::VALUE],
-        &[&InputFrequency::READ, &InputFrequency::REAL_TIME],
+        &[&InputFrequency::READ, &InputFrequency::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Input current",
         &[("signal", 0x172)],
         &[&InputCurrent::VALUE],
-        &[&InputCurrent::READ, &InputCurrent::REAL_TIME],
+        &[&InputCurrent::READ, &InputCurrent::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "DC output power",
         &[("signal", 0x173)],
         &[&OutputPower::VALUE],
-        &[&OutputPower::READ, &OutputPower::REAL_TIME],
+        &[&OutputPower::READ, &OutputPower::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "DC output voltage measured",
         &[("signal", 0x175)],
         &[&OutputVoltage::VALUE],
-        &[&OutputVoltage::READ, &OutputVoltage::REAL_TIME],
+        &[&OutputVoltage::READ, &OutputVoltage::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Output current limit in effect",
         &[("signal", 0x176)],
         &[&ActualCurrentLimit::VALUE],
-        &[&ActualCurrentLimit::READ, &ActualCurrentLimit::REAL_TIME],
+        &[&ActualCurrentLimit::READ, &ActualCurrentLimit::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Output power limit in effect",
@@ -5368,25 +5568,25 @@ pub const MESSAGES: &[Entry<Message>] = &[
         "Input voltage of a single-phase module",
         &[("signal", 0x178)],
         &[&InputVoltage::VALUE],
-        &[&InputVoltage::READ, &InputVoltage::REAL_TIME],
+        &[&InputVoltage::READ, &InputVoltage::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Ambient temperature at the air inlet",
         &[("signal", 0x180)],
         &[&AmbientTemperature::VALUE],
-        &[&AmbientTemperature::READ, &AmbientTemperature::REAL_TIME],
+        &[&AmbientTemperature::READ, &AmbientTemperature::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Output current shown",
         &[("signal", 0x182)],
         &[&OutputCurrent::VALUE],
-        &[&OutputCurrent::READ, &OutputCurrent::REAL_TIME],
+        &[&OutputCurrent::READ, &OutputCurrent::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new(
         "Alarms and states",
         &[("signal", 0x183)],
         &[&ModuleStatus::EXTENDED, &ModuleStatus::ALARMS],
-        &[&ModuleStatus::READ, &ModuleStatus::REAL_TIME],
+        &[&ModuleStatus::READ, &ModuleStatus::READ_ALL_REAL_TIME_DATA],
     ),
     Entry::new("Output external voltage", &[("signal", 0x184)], &[&ExternalVoltage::VALUE], &[&ExternalVoltage::READ]),
     Entry::new("Rated current", &[("signal", 0x188)], &[&RatedCurrent::VALUE], &[&RatedCurrent::READ]),
@@ -5554,5 +5754,6 @@ pub const MESSAGES: &[Entry<Message>] = &[
         &[&CustomerInformation8::VALUE],
         &[&CustomerInformation8::READ, &CustomerInformation8::SET, &CustomerInformation8::STORE],
     ),
-    Entry::new("Ask one module for all that changes", &[("command", 0x40)], &[], &[&RealTimeData::ASK_REAL_TIME]),
+    Entry::new("Inherent information", &[("command", 0x50)], &[], &[&InherentInformation::READ_ALL]),
+    Entry::new("All real-time data", &[("command", 0x40)], &[], &[&RealTimeData::READ_ALL]),
 ];
