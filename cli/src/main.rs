@@ -9,6 +9,7 @@ mod encode;
 mod examples;
 mod export;
 mod failure;
+mod import;
 mod input;
 mod line;
 mod list;
@@ -43,6 +44,7 @@ enum Command {
     Encode(encode::Encode),
     Examples(examples::Examples),
     Export(export::Export),
+    Import(import::Import),
     List(list::List),
     Rules(rules::Rules),
     Schema(schema::Schema),
@@ -57,6 +59,7 @@ impl Command {
             Self::Encode(encode) => encode.run(),
             Self::Examples(examples) => examples.run(),
             Self::Export(export) => export.run(),
+            Self::Import(import) => import.run(),
             Self::List(list) => list.run(),
             Self::Rules(rules) => rules.run(),
             Self::Schema(_) => schema::Schema::run(),

@@ -24,7 +24,7 @@ mod stale_allowance;
 mod unreachable;
 
 pub use example::Counts;
-pub use grid::fits;
+pub use grid::{fits, has_exact_steps};
 pub use stale_allowance::allow;
 
 use crate::diagnostic::Diagnostics;

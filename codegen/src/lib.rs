@@ -10,7 +10,7 @@ pub mod emit;
 pub mod files;
 pub mod interpret;
 pub mod model;
-mod multiples;
+pub mod multiples;
 pub mod number;
 mod resolve;
 pub mod rules;

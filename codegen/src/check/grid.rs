@@ -24,11 +24,15 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         if scale == Rational::ZERO {
             return Some("a scale of 0 makes every value 0".to_owned());
         }
-        let extreme = largest(full_width(signal, signed), scale, offset);
-        (!is_below(extreme, DOUBLE)).then(|| {
-            format!("{} bits times {scale} reach 2^50, beyond which a double misses steps", signal.place.width())
-        })
+        let width = signal.place.width();
+        (!has_exact_steps(width, signed, scale, offset))
+            .then(|| format!("{width} bits times {scale} reach 2^50, beyond which a double misses steps"))
     });
+}
+
+/// Tests whether a double tells all steps of a scaled number of so many bits apart.
+pub fn has_exact_steps(width: u8, signed: bool, scale: Rational, offset: Rational) -> bool {
+    scale != Rational::ZERO && is_below(largest(full_width(width, signed), scale, offset), DOUBLE)
 }
 
 /// Looks for scales and limits that do not fit single precision, if that is what generated code is to calculate in.
@@ -55,8 +59,11 @@ fn missed_by_single(
         return Some(format!("the denominator of {scale} reaches 2^{EXACT}, beyond which a single misses integers"));
     };
     let limit = if denominator.numerator().count_ones() == 1 { EXACT } else { SINGLE };
-    let extreme =
-        largest(documented.unwrap_or_else(|| full_width(signal, signed) - i128::from(!signed)), scale, offset);
+    let extreme = largest(
+        documented.unwrap_or_else(|| full_width(signal.place.width(), signed) - i128::from(!signed)),
+        scale,
+        offset,
+    );
     let raw = documented.map_or_else(|| format!("{} bits", signal.place.width()), |raw| format!("raw values to {raw}"));
     (!is_below(extreme, limit))
         .then(|| format!("{raw} times {scale} reach 2^{limit}, beyond which a single misses steps"))
@@ -103,8 +110,8 @@ fn is_below(number: Option<i128>, power: u32) -> bool {
 }
 
 /// Returns one more than the largest raw value that the bits can hold.
-fn full_width(signal: &Signal, signed: bool) -> i128 {
-    1 << (u32::from(signal.place.width()) - u32::from(signed))
+fn full_width(width: u8, signed: bool) -> i128 {
+    1 << (u32::from(width) - u32::from(signed))
 }
 
 /// Returns the largest |raw| that the document speaks of, if there is a range.

@@ -1,7 +1,7 @@
 #![doc = include_str!("../rules/rust_name.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::emit::{camel_case, member};
+use crate::emit::{camel_case, is_word_of_rust, member};
 use crate::model::{Doc, Protocol};
 use crate::syntax::tree::Path;
 
@@ -30,7 +30,7 @@ fn check_types(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a Doc)>, diagnostics: &mut Diagnostics) {
     let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
     for (rust, name, doc) in names {
-        if syn::parse_str::<syn::Ident>(&rust).is_err() {
+        if is_word_of_rust(&rust) {
             let text = format!("`{name}` is a word of Rust");
             diagnostics.push(Diagnostic::error("rust_name", doc.path.at_key(), text).help("choose another name"));
         }

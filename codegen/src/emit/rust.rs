@@ -31,6 +31,7 @@ use message::Emitter;
 use names::Names;
 use set::SetEmitter;
 
+pub use names::is_word_of_rust;
 pub(crate) use names::{camel_case, member};
 
 /// What generated code may take from the runtime beside the prelude, which it passes on.

@@ -129,6 +129,11 @@ impl Pool {
     }
 }
 
+/// Tests whether a name is a word of the language, so that nothing can be called so.
+pub fn is_word_of_rust(name: &str) -> bool {
+    syn::parse_str::<Ident>(name).is_err()
+}
+
 /// Makes an identifier; a word of the language becomes a raw identifier.
 pub fn ident(name: &str) -> Ident {
     match syn::parse_str::<Ident>(name) {

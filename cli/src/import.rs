@@ -1,0 +1,29 @@
+//! `canspec import`.
+
+mod dbc;
+
+use clap::{Args, Subcommand};
+
+use crate::failure::{Failure, Finish};
+
+/// Begin a spec from the file of another tool.
+#[derive(Args)]
+#[command(verbatim_doc_comment)]
+pub struct Import {
+    #[command(subcommand)]
+    source: Source,
+}
+
+#[derive(Subcommand)]
+enum Source {
+    Dbc(dbc::Dbc),
+}
+
+impl Import {
+    /// Writes the spec.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        match &self.source {
+            Source::Dbc(dbc) => dbc.run(),
+        }
+    }
+}

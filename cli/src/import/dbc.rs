@@ -1,0 +1,80 @@
+//! `canspec import dbc`.
+
+mod limits;
+mod messages;
+mod names;
+mod places;
+mod read;
+mod signals;
+mod spec;
+mod variants;
+mod yaml;
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::failure::{Failure, Finish, tell};
+use names::snake_case;
+use spec::Spec;
+
+/// Begin a spec from a DBC.
+///
+/// Every message becomes a report of one whole identifier. Comments with the word DECIDE stand where the vendor's
+/// document must say more, and those at the top list what the DBC says and the spec does not.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
+pub struct Dbc {
+    /// The DBC.
+    file: PathBuf,
+    /// Name of the protocol, in place of that of the file.
+    #[arg(long, value_name = "NAME", value_parser = protocol)]
+    protocol: Option<String>,
+    /// A new file for the spec; standard output without it.
+    #[arg(short, long, value_name = "SPEC")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "Examples:
+  canspec import dbc vehicle.dbc > vehicle.yaml
+  canspec import dbc vehicle.dbc --protocol battery -o battery.yaml";
+
+impl Dbc {
+    /// Writes the spec, and tells how much of the DBC it holds.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let dbc = read::read(&self.file)?;
+        let name = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+        let (file, stem) = (name(self.file.file_name()), name(self.file.file_stem()));
+        let protocol = self.protocol.clone().unwrap_or_else(|| snake_case(&stem, "protocol"));
+        let spec = messages::spec(&dbc, &file, &protocol);
+        self.write(&spec.to_string())?;
+        tell(format_args!("canspec: {}", summary(&spec, dbc.messages.len())));
+        Ok(Finish::Done)
+    }
+
+    /// Writes the spec; a file that somebody may have worked on is left alone.
+    fn write(&self, text: &str) -> Result<(), Failure> {
+        let Some(path) = &self.out else { return Ok(io::stdout().lock().write_all(text.as_bytes())?) };
+        let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
+        written.map_err(|error| Failure::input(&path.display().to_string(), &error))
+    }
+}
+
+fn summary(spec: &Spec, messages: usize) -> String {
+    let lost = match spec.limits.len() {
+        0 => "nothing is left out".to_owned(),
+        1 => "1 remark at the top says what is left out".to_owned(),
+        count => format!("{count} remarks at the top say what is left out"),
+    };
+    format!("{}: messages: {messages} of the DBC, {} of the spec; {lost}", spec.file, spec.messages.len())
+}
+
+/// Reads the name of a protocol.
+fn protocol(text: &str) -> Result<String, String> {
+    let is_name = !text.is_empty() && snake_case(text, "protocol") == text;
+    is_name.then(|| text.to_owned()).ok_or_else(|| {
+        "names are lower-case letters, digits and single `_` between them, and start with a letter".to_owned()
+    })
+}

@@ -1,0 +1,180 @@
+//! What the number of a signal means.
+
+use can_dbc::{Dbc, MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
+use canspec_codegen::check::has_exact_steps;
+use canspec_codegen::model::Unit;
+use canspec_codegen::multiples::{prefixed, respelled};
+use canspec_codegen::number::Rational;
+
+use super::names::{Names, snake_case, type_name};
+use super::spec::one_line;
+use super::yaml::{map, quoted};
+
+/// The keys of a field but for its place, and what is said about it.
+#[derive(Default)]
+pub struct Meaning {
+    pub keys: Vec<(&'static str, String)>,
+    pub unit: Option<Unit>,
+    /// Its values have names, and it is no number.
+    pub is_named: bool,
+    pub decide: Vec<String>,
+    /// What of it the spec does not say.
+    pub lost: Vec<String>,
+}
+
+/// Lowest and highest physical value.
+type Range = (Rational, Rational);
+
+/// A raw value and its name in the DBC.
+type Named<'a> = (i64, &'a str);
+
+/// Returns what a signal means, or why a spec cannot say it.
+pub fn meaning(dbc: &Dbc, id: MessageId, signal: &Signal) -> Result<Meaning, String> {
+    let format = dbc.extended_value_type_for_signal(id, &signal.name);
+    let named = dbc.value_descriptions_for_signal(id, &signal.name).unwrap_or_default();
+    let named: Vec<Named> = named.iter().map(|value| (value.id, value.description.as_str())).collect();
+    match format {
+        None | Some(SignalExtendedValueType::SignedOrUnsignedInteger) => number(signal, &named),
+        Some(SignalExtendedValueType::IEEEfloat32Bit) => float(signal, &named),
+        Some(SignalExtendedValueType::IEEEdouble64bit) => Err("it is a float of 64 bits".to_owned()),
+    }
+}
+
+fn float(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
+    if signal.size != 32 {
+        return Err(format!("it is a float of 32 bits in {}", signal.size));
+    }
+    if exact(signal.factor) != Some(Rational::ONE) || exact(signal.offset) != Some(Rational::ZERO) {
+        return Err("it is a float with a scale or an offset".to_owned());
+    }
+    let mut meaning = Meaning { keys: vec![("as", "float".to_owned())], ..Meaning::default() };
+    let range = stated(signal, &mut meaning);
+    if !named.is_empty() {
+        meaning.lost.push("it is a float, whose values have no names".to_owned());
+    }
+    unit(signal, &mut meaning);
+    meaning.keys.extend(range.map(range_key));
+    Ok(meaning)
+}
+
+fn number(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
+    let scale = exact(signal.factor).ok_or_else(|| format!("no spec can write its scale {}", signal.factor))?;
+    let offset = exact(signal.offset).ok_or_else(|| format!("no spec can write its offset {}", signal.offset))?;
+    let is_scaled = (scale, offset) != (Rational::ONE, Rational::ZERO);
+    let signed = signal.value_type == ValueType::Signed;
+    let width = u8::try_from(signal.size).unwrap_or(u8::MAX);
+    if scale == Rational::ZERO {
+        return Err("it has a scale of 0".to_owned());
+    }
+    if is_scaled && !has_exact_steps(width, signed, scale, offset) {
+        return Err(format!("a double cannot tell the steps of {scale} of its {width} bits apart"));
+    }
+    let value = |raw: i128| Rational::integer(raw).times(scale)?.plus(offset);
+    let (first, last) = raw_limits(width, signed);
+    let mut meaning = Meaning::default();
+    let named = fitting(named, (first, last), &mut meaning);
+    let held = value(first).zip(value(last)).map(|(one, other)| (one.min(other), one.max(other)));
+    let stated = stated(signal, &mut meaning);
+    let range = stated.zip(held).and_then(|(range, held)| within(range, held, &mut meaning));
+    let range = beside(range, &named, |raw| value(raw.into()), &mut meaning);
+    meaning.is_named = !named.is_empty() && !signed && !is_scaled && range.is_none() && unit_of(signal).is_none();
+    meaning.keys.extend(signed.then(|| ("as", "signed".to_owned())));
+    let is_plain = !named.is_empty() && !meaning.is_named && !is_scaled;
+    meaning.keys.extend((scale != Rational::ONE || is_plain).then(|| ("scale", scale.to_string())));
+    meaning.keys.extend((offset != Rational::ZERO).then(|| ("offset", offset.to_string())));
+    unit(signal, &mut meaning);
+    meaning.keys.extend(range.map(range_key));
+    meaning.keys.extend((!named.is_empty()).then(|| ("values", values(&named))));
+    Ok(meaning)
+}
+
+fn exact(number: f64) -> Option<Rational> {
+    Rational::parse(&number.to_string())
+}
+
+fn range_key((minimum, maximum): Range) -> (&'static str, String) {
+    ("range", format!("{minimum}..{maximum}"))
+}
+
+/// Returns the lowest and the highest raw value of so many bits.
+fn raw_limits(width: u8, signed: bool) -> (i128, i128) {
+    let all = 1_i128 << width.min(64);
+    if signed { (-all / 2, all / 2 - 1) } else { (0, all - 1) }
+}
+
+/// Returns the limits that the DBC states; two zeros state none.
+fn stated(signal: &Signal, meaning: &mut Meaning) -> Option<Range> {
+    let number = |limit: NumericValue| Rational::parse(&limit.to_string());
+    let range = number(signal.min).zip(number(signal.max));
+    if range.is_none_or(|(minimum, maximum)| minimum > maximum) {
+        meaning.lost.push(format!("no spec can write its limits {} to {}", signal.min, signal.max));
+        return None;
+    }
+    range.filter(|range| *range != (Rational::ZERO, Rational::ZERO))
+}
+
+/// Cuts limits to what the bits hold; limits that exclude nothing are left out.
+fn within(range: Range, held: Range, meaning: &mut Meaning) -> Option<Range> {
+    let cut = (range.0.max(held.0), range.1.min(held.1));
+    if cut.0 > cut.1 {
+        meaning.lost.push(format!("its limits {} to {} lie outside of its bits", range.0, range.1));
+        return None;
+    }
+    (cut != held).then_some(cut)
+}
+
+/// Drops limits that hold named values, which would have two meanings.
+fn beside(
+    range: Option<Range>,
+    named: &[Named],
+    value: impl Fn(i64) -> Option<Rational>,
+    meaning: &mut Meaning,
+) -> Option<Range> {
+    let (minimum, maximum) = range?;
+    let is_inside = |raw: i64| value(raw).is_some_and(|value| (minimum..=maximum).contains(&value));
+    if named.iter().any(|(raw, _)| is_inside(*raw)) {
+        meaning.decide.push(format!("the limits {minimum}..{maximum} of the DBC hold values with names"));
+        return None;
+    }
+    range
+}
+
+/// Returns the values that the bits hold, each once.
+fn fitting<'a>(named: &[Named<'a>], (first, last): (i128, i128), meaning: &mut Meaning) -> Vec<Named<'a>> {
+    let mut kept: Vec<Named> = Vec::new();
+    for (raw, name) in named {
+        if !(first..=last).contains(&i128::from(*raw)) {
+            meaning.lost.push(format!("its bits do not hold {raw}, which is called {}", one_line(name)));
+        } else if kept.iter().any(|(known, _)| known == raw) {
+            meaning.lost.push(format!("{raw} is also called {}", one_line(name)));
+        } else {
+            kept.push((*raw, name));
+        }
+    }
+    kept.sort_by_key(|(raw, _)| *raw);
+    kept
+}
+
+/// Writes the names of values.
+fn values(named: &[Named]) -> String {
+    let mut taken = Names::default();
+    let mut name = |text: &str| quoted(&taken.take(&snake_case(text, "value"), type_name));
+    let entries: Vec<_> = named.iter().map(|(raw, text)| (raw.to_string(), name(text))).collect();
+    map(entries.iter().map(|(raw, name)| (raw.as_str(), name.as_str())))
+}
+
+/// Returns the unit that the DBC states; `-` and `1` state none.
+pub fn unit_of(signal: &Signal) -> Option<&str> {
+    Some(signal.unit.trim()).filter(|symbol| !["", "-", "1"].contains(symbol))
+}
+
+/// Adds the unit, where the language has it.
+fn unit(signal: &Signal, meaning: &mut Meaning) {
+    let Some(symbol) = unit_of(signal) else { return };
+    // `C` may as well be coulomb.
+    meaning.unit = Unit::find(symbol).or_else(|| respelled(symbol).filter(|_| symbol != "C"));
+    meaning.keys.extend(meaning.unit.map(|unit| ("unit", quoted(unit.symbol))));
+    if let Some((unit, factor)) = prefixed(symbol).filter(|_| meaning.unit.is_none()) {
+        meaning.decide.push(format!("a unit of {symbol}, or `unit: {}` and a scale times {factor}", unit.symbol));
+    }
+}

@@ -1,0 +1,53 @@
+//! What a first spec consists of.
+
+use super::places::Place;
+
+/// A spec with reports only.
+pub struct Spec {
+    /// Name of the DBC.
+    pub file: String,
+    pub protocol: String,
+    /// What the DBC says of its version.
+    pub version: String,
+    pub extended: bool,
+    /// Data bytes of most messages.
+    pub length: u8,
+    pub messages: Vec<Message>,
+    /// What the DBC says and the spec does not, a sentence each.
+    pub limits: Vec<String>,
+}
+
+pub struct Message {
+    pub name: String,
+    pub title: String,
+    pub note: String,
+    /// Who sends it, by the DBC.
+    pub sender: Option<String>,
+    pub id: u32,
+    pub length: u8,
+    /// Milliseconds from one frame to the next.
+    pub cycle: Option<u64>,
+    pub fields: Vec<Field>,
+}
+
+/// A signal or a constant.
+pub struct Field {
+    pub name: String,
+    pub place: Place,
+    pub is_constant: bool,
+    /// Keys and their values, as YAML.
+    pub keys: Vec<(&'static str, String)>,
+    /// What a human must decide.
+    pub decide: Vec<String>,
+}
+
+/// Returns a text in one line of characters that can be seen.
+pub fn one_line(text: &str) -> String {
+    let seen = text.split(|letter: char| letter.is_whitespace() || letter.is_control() || is_break(letter));
+    seen.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// Tests for what some readers of YAML take for the end of a line, and for a byte-order mark.
+fn is_break(letter: char) -> bool {
+    matches!(letter, '\u{2028}' | '\u{2029}' | '\u{FEFF}')
+}
