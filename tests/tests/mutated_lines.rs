@@ -5,10 +5,10 @@
 
 use std::fs;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
 
 use canspec_codegen::compile;
 use canspec_codegen::source::Source;
+use canspec_tests::specs;
 use fastrand::Rng;
 
 const MISTAKES_A_SPEC: usize = 20;
@@ -60,7 +60,7 @@ enum Notice {
 #[test]
 fn most_mistakes_are_noticed_and_most_of_these_in_their_own_line() {
     let mut notices = Vec::new();
-    for path in specs() {
+    for path in specs("specs") {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let text = fs::read_to_string(&path).expect("a spec that ships can be read");
         let lines: Vec<_> = text.lines().collect();
@@ -81,15 +81,6 @@ fn most_mistakes_are_noticed_and_most_of_these_in_their_own_line() {
     eprintln!("of 100 mistakes {in_the_line} are noticed in their line, {nothing} not at all");
     assert!(in_the_line >= NOTICED_IN_THE_LINE, "{in_the_line} of 100 in their line");
     assert!(100 - nothing >= NOTICED, "{nothing} of 100 not at all");
-}
-
-/// Returns the specs that ship.
-fn specs() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs");
-    let entries = fs::read_dir(folder).expect("the specs are there").flatten().map(|entry| entry.path());
-    let mut specs: Vec<_> = entries.filter(|path| path.extension().is_some_and(|kind| kind == "yaml")).collect();
-    specs.sort();
-    specs
 }
 
 /// Makes a mistake in some line; without text the line is deleted.
