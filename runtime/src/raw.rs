@@ -9,6 +9,9 @@ pub trait Raw: Copy {
     /// Whether the bits are a number in two's complement.
     const SIGNED: bool = false;
 
+    /// Whether a number in the signal's unit means a raw value.
+    const IS_NUMBER: bool = false;
+
     /// Takes the low bits of a word, sign-extended if the type is signed.
     fn from_bits(bits: u64) -> Self;
 
@@ -87,6 +90,8 @@ macro_rules! unsigned {
         impl Integer for $type {}
 
         impl Raw for $type {
+            const IS_NUMBER: bool = true;
+
             #[expect(clippy::allow_attributes, reason = "not every width truncates")]
             #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
             fn from_bits(bits: u64) -> Self {
@@ -114,6 +119,7 @@ macro_rules! signed {
 
         impl Raw for $type {
             const SIGNED: bool = true;
+            const IS_NUMBER: bool = true;
 
             #[expect(clippy::allow_attributes, reason = "not every width truncates")]
             #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
@@ -149,6 +155,8 @@ fn whole(meaning: Meaning<'_>) -> Option<i128> {
 }
 
 impl Raw for f32 {
+    const IS_NUMBER: bool = true;
+
     #[expect(clippy::cast_possible_truncation, reason = "a float has 32 bits")]
     fn from_bits(bits: u64) -> Self {
         Self::from_bits(bits as u32)

@@ -334,7 +334,9 @@ impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
             return self.put(raw, payload);
         }
         match meaning {
-            Meaning::Number(number) => encode_scaled(self, self.exact_scale(), F::nearest(number), payload),
+            Meaning::Number(number) if R::IS_NUMBER => {
+                encode_scaled(self, self.exact_scale(), F::nearest(number), payload)
+            }
             _ => Err(self.meaningless(payload)),
         }
     }
@@ -345,6 +347,7 @@ mod tests {
     use std::string::ToString;
 
     use super::*;
+    use crate::Text;
 
     const CURRENT: Signal<i16> = Signal::new("current", Place::bytes(7, 0).bits(23, 12)).unit("A").scale(1, 10);
     const TEMPERATURE: Signal<u8> = Signal::new("temperature", Place::byte(3))
@@ -423,6 +426,18 @@ mod tests {
         let written = |value| FREQUENCY.write(Meaning::Number(Number::Float(value)), &mut request());
         assert_eq!(written(65.7), Ok(()));
         assert!(written(65.700_01).is_err());
+    }
+
+    #[test]
+    fn a_number_is_refused_where_a_text_is_meant() {
+        const NAME: Signal<Text<2>> = Signal::new("name", Place::bytes(0, 1));
+        let mut payload = reply();
+        for number in [Number::Float(65.0), Number::Single(65.0), Number::Unsigned(65), Number::Signed(65)] {
+            assert!(NAME.write(Meaning::Number(number), &mut payload).is_err());
+        }
+        assert_eq!(payload, reply());
+        assert_eq!(NAME.write(Meaning::Text("A"), &mut payload), Ok(()));
+        assert_eq!(payload.data(), &[b'A', 0, 0, 0, 0, 0, 0, 0]);
     }
 
     #[test]

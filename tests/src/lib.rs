@@ -1,6 +1,8 @@
 //! What the tests share: every protocol with both of its engines, and random frames.
 
 pub mod bare;
+pub mod engines;
+pub mod fuzz;
 
 use std::fs;
 use std::path::{Path, PathBuf};

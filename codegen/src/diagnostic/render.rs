@@ -17,7 +17,7 @@ impl Diagnostics {
     pub fn render(&self, color: bool) -> String {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let drawn = self.sorted().into_iter().map(|item| renderer.render(&[self.group(item)]));
-        drawn.collect::<Vec<_>>().join("\n\n")
+        drawn.collect::<Vec<_>>().join("\n\n").replace(is_left_by_renderer, "\u{FFFD}")
     }
 
     fn group<'a>(&'a self, item: &'a Diagnostic) -> Group<'a> {
@@ -66,4 +66,9 @@ impl Diagnostics {
 
 fn distance(one: &Range<usize>, other: &Range<usize>) -> usize {
     one.start.abs_diff(other.start)
+}
+
+/// Tests whether the renderer draws a control character as it is, so that it would act on a terminal.
+fn is_left_by_renderer(character: char) -> bool {
+    matches!(character, '\u{80}'..='\u{9F}')
 }

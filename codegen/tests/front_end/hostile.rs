@@ -1,8 +1,16 @@
 //! Hostile texts: small ones for what is said, and one of each at full size to see that it ends.
 
+use canspec_codegen::compile;
 use canspec_codegen::source::SIZE_LIMIT;
 
-use super::{errors, lines, refusal, spec};
+use super::{WHOLE, errors, lines, refusal, source, spec};
+
+/// Returns what is said of types whose keys contradict each other, in a spec with a message of one field.
+fn errors_in_types(types: &str, field: &str) -> Vec<String> {
+    let message = format!("messages: {{one: {{access: [read], fields: {{first: {field}}}}}}}\n");
+    let found = compile(source(&format!("{WHOLE}{message}types:\n{types}"))).diagnostics.concise();
+    found.lines().filter(|line| line.contains("error[type]")).map(str::to_owned).collect()
+}
 
 #[test]
 fn deep_nesting_is_refused() {
@@ -50,4 +58,48 @@ fn long_lines_are_read() {
     );
     let spec = spec(&format!("bit_rates: [{long}]"));
     assert_eq!(spec.bit_rates[0].len(), long.len() - 1);
+}
+
+#[test]
+fn a_type_with_a_field_of_its_own_type_is_refused() {
+    let word = errors_in_types("  a: {bytes: 0..1, fields: {inner: {type: a}}}\n", "{type: a}");
+    assert_eq!(word, ["mini.yaml:10:43: error[type]: `inner` has a type that brings `inner` with it"]);
+    let ring = "  a: {bits: 7..0, fields: {b: {type: b}}}\n  b: {bits: 7..0, fields: {a: {type: a}}}\n";
+    let through_another = errors_in_types(ring, "{bytes: 0, fields: {inner: {type: a}}}");
+    assert_eq!(through_another, ["mini.yaml:11:38: error[type]: `a` has a type that brings `a` with it"]);
+    let packed = errors_in_types("  a: {format: \"{inner}\", fields: {inner: {type: a}}}\n", "{type: a}");
+    assert_eq!(packed, ["mini.yaml:10:49: error[type]: `inner` has a type that brings `inner` with it"]);
+}
+
+#[test]
+fn types_that_double_their_fields_are_refused_without_being_spread_out() {
+    let doubled =
+        |level| format!("  t{level}: {{bits: 7..0, fields: {{a: {{type: t{0}}}, b: {{type: t{0}}}}}}}\n", level + 1);
+    let types = lines(60, doubled) + "  t60: {bits: 7..0}\n";
+    let found = errors_in_types(&types, "{bytes: 0, fields: {inner: {type: t0}}}");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].ends_with("error[type]: `one` comes to more than 256 fields"), "{}", found[0]);
+}
+
+#[test]
+fn a_long_chain_of_types_is_refused() {
+    let chain = |length| {
+        lines(length, |level| format!("  t{level}: {{type: t{}}}\n", level + 1))
+            + &format!("  t{length}: {{bytes: 0}}\n")
+    };
+    assert_eq!(errors_in_types(&chain(63), "{type: t0}"), [""; 0]);
+    let message = "error[type]: more than 64 types take keys from one another, down to `t64`";
+    for length in [64, 40_000] {
+        assert_eq!(errors_in_types(&chain(length), "{type: t0}"), [format!("mini.yaml:73:15: {message}")]);
+    }
+}
+
+#[test]
+fn a_message_of_very_many_fields_is_refused() {
+    let fields =
+        |count| format!("{{bytes: 0..7, fields: {{{}}}}}", lines(count, |number| format!("f{number}: {{bits: 0}}, ")));
+    assert_eq!(errors_in_types("  a: {}\n", &fields(255)), [""; 0]);
+    let found = errors_in_types("  a: {}\n", &fields(30_000));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].ends_with("`one` comes to more than 256 fields"), "{}", found[0]);
 }

@@ -1,6 +1,7 @@
 //! How it is shown.
 
 use canspec_codegen::diagnostic::{At, Diagnostic};
+use canspec_codegen::source::Source;
 
 use super::{WHOLE, first};
 
@@ -70,4 +71,15 @@ warning[quiet]: says little
  = help: say more";
     assert_eq!(diagnostics.render(false), expected);
     assert!(diagnostics.render(true).contains('\u{1b}'));
+}
+
+#[test]
+fn no_control_character_of_the_file_reaches_the_terminal() {
+    let controls = (0..0x20).chain(0x7F..0xA0).filter_map(char::from_u32).filter(|letter| !"\t\n\r".contains(*letter));
+    let text = controls.fold(String::new(), |text, letter| format!("{text}a: {letter}\n"));
+    let diagnostics = Source::new("mini.yaml", text.into_bytes()).expect_err("control characters are refused");
+    assert_eq!(diagnostics.errors(), 29 + 33);
+    let drawn = diagnostics.render(false);
+    assert!(!drawn.contains(|letter: char| letter.is_control() && letter != '\n'), "{drawn:?}");
+    assert!(drawn.contains("a: \u{FFFD}"));
 }
