@@ -43,7 +43,7 @@ impl Rational {
             None => (1, numerator),
         };
         let (digits, places) = match magnitude.split_once('.') {
-            Some((whole, fraction)) if !whole.is_empty() && !fraction.is_empty() => {
+            Some((whole, fraction)) if is_decimal(whole) && is_decimal(fraction) => {
                 (format!("{whole}{fraction}"), fraction.len())
             }
             Some(_) => return None,
@@ -52,6 +52,14 @@ impl Rational {
         let power = 10_i128.checked_pow(u32::try_from(places).ok()?)?;
         let value = Self::new(negative * natural(&digits)?, denominator.checked_mul(power)?)?;
         (value.numerator.abs() < LIMIT && value.denominator < LIMIT).then_some(value)
+    }
+
+    /// Writes the number as a spec writes a scale: the whole part of one as `1/10`.
+    pub fn fraction(self) -> String {
+        match (self.numerator, self.denominator) {
+            (1, denominator @ 2..) => format!("1/{denominator}"),
+            _ => self.to_string(),
+        }
     }
 
     /// Returns the numerator.
@@ -99,6 +107,10 @@ impl Rational {
     pub fn over(self, other: Self) -> Option<Self> {
         Self::new(self.numerator.checked_mul(other.denominator)?, self.denominator.checked_mul(other.numerator)?)
     }
+}
+
+fn is_decimal(digits: &str) -> bool {
+    !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// Reads an unsigned decimal or `0x` hexadecimal number.
@@ -174,8 +186,8 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_refused() {
-        for text in
-            ["", "-", "0x", "0X1F", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1", "1/-2", "9".repeat(45).as_str()]
+        let too_long = "9".repeat(45);
+        for text in ["", "-", "0x", "0X1F", "0x1.5", "1_000", "1.", ".5", "1/0", "18E5", "+1", "--1", "1/-2", &too_long]
         {
             assert_eq!(parts(text), None, "{text}");
         }

@@ -1,5 +1,7 @@
 //! The JSON Schema of the language, which editors read; made of the structs that a spec is read into.
 
+mod values;
+
 use std::borrow::Cow;
 
 use schemars::generate::SchemaSettings;
@@ -7,14 +9,14 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use crate::model::Unit;
-use crate::syntax::ast::{Field, IdentifierEntry, Map, Means, Names, Spec};
+use crate::syntax::ast::{Field, Map, Means, Names, Spec};
 
 /// Returns the schema as indented text that ends in a line feed.
 pub fn schema() -> String {
     let settings = SchemaSettings::draft07().with_transform(as_written);
-    let schema = settings.into_generator().into_root_schema_for::<Spec>();
-    format!("{:#}\n", schema.to_value())
+    let mut schema = settings.into_generator().into_root_schema_for::<Spec>().to_value();
+    values::restrict(&mut schema);
+    format!("{schema:#}\n")
 }
 
 /// Says what a spec file holds, rather than what Rust makes of it.
@@ -23,19 +25,21 @@ fn as_written(schema: &mut Schema) {
     schema.remove("default");
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = text.replace('\n', " ");
+        // Editors show the backquotes of a mere `description`.
+        let text = text.clone();
+        schema.insert("markdownDescription".to_owned(), text.into());
     }
     for words in ["type", "anyOf"] {
         if let Some(kinds) = schema.get_mut(words) {
             take_out_null(kinds);
         }
     }
+    // Editors show what is said beside `anyOf`, but not what is said beside `allOf`.
+    if let Some(only) = schema.remove("allOf") {
+        schema.insert("anyOf".to_owned(), only);
+    }
     if let Some(kind) = schema.get_mut("type").filter(|kind| *kind == "string") {
         *kind = json!(["string", "number"]);
-    }
-    if let Some(unit) =
-        schema.get_mut("properties").and_then(|keys| keys.get_mut("unit")).and_then(Value::as_object_mut)
-    {
-        unit.insert("enum".to_owned(), Unit::ALL.iter().map(|unit| unit.symbol).collect());
     }
 }
 
@@ -46,6 +50,24 @@ fn take_out_null(kinds: &mut Value) {
     if let ([Value::String(_)], Some(only)) = (list.as_slice(), list.first().cloned()) {
         *kinds = only;
     }
+}
+
+/// Returns the schema of the identifier: fields by name, and the places of bits without one.
+pub(crate) fn identifier(generator: &mut SchemaGenerator) -> Schema {
+    json_schema!({
+        "type": "object",
+        "properties": {
+            "ones": bits("Bits that must be 1, from the most to the least significant: `6..1`; none if absent."),
+            "zeros": bits("Bits that must be 0, from the most to the least significant: `25`; none if absent."),
+        },
+        "additionalProperties": generator.subschema_for::<Field>(),
+    })
+}
+
+fn bits(description: &str) -> Schema {
+    let mut place = json_schema!({ "description": description, "type": "string" });
+    values::PLACE.demand(place.ensure_object());
+    place
 }
 
 impl JsonSchema for Names {
@@ -60,17 +82,6 @@ impl JsonSchema for Names {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (name, list) = (generator.subschema_for::<String>(), generator.subschema_for::<Vec<String>>());
         json_schema!({ "anyOf": [name, list] })
-    }
-}
-
-impl JsonSchema for IdentifierEntry {
-    fn schema_name() -> Cow<'static, str> {
-        "IdentifierEntry".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let (place, field) = (generator.subschema_for::<String>(), generator.subschema_for::<Field>());
-        json_schema!({ "description": "A named field, or the place of unnamed `ones` or `zeros`.", "anyOf": [field, place] })
     }
 }
 

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use canspec_codegen::number::Rational;
 use jsonschema::Validator;
 use serde_json::{Map, Value, json};
 
@@ -54,12 +55,16 @@ fn an_independent_validator_accepts_every_good_spec() -> Result {
 }
 
 #[test]
-fn the_validator_refuses_wrong_keys_and_kinds_at_their_places() -> Result {
+fn the_validator_refuses_wrong_keys_kinds_words_and_forms_at_their_places() -> Result {
     let validator = validator()?;
     for (rule, places) in [
         ("unknown_key", &["", "/messages/temperature/value"][..]),
         ("missing_key", &["", "/timing/pause"]),
         ("wrong_kind", &["/types/heater", "/messages/temperature/access"]),
+        ("name", &["/access/read/in/0"]),
+        ("unit", &["/messages/temperature/value"]),
+        ("number", &["/identifier/command/bits", "/messages/temperature/value"]),
+        ("range", &["/messages/temperature/fields/inside/range"]),
     ] {
         let spec = read(&folder("specs/rules").join(rule).join("bad.yaml"))?;
         let found: Vec<_> = validator.iter_errors(&spec).map(|error| error.instance_path().to_string()).collect();
@@ -67,6 +72,26 @@ fn the_validator_refuses_wrong_keys_and_kinds_at_their_places() -> Result {
             assert!(found.iter().any(|found| found == place), "{rule}: {found:?}");
         }
     }
+    Ok(())
+}
+
+#[test]
+fn the_validator_knows_the_form_of_a_number() -> Result {
+    let validator = jsonschema::draft7::new(&schema()?["definitions"]["Field"]["properties"]["scale"])?;
+    let mut texts = vec![String::new()];
+    let mut numbers = 0;
+    for _ in 0..5 {
+        texts = texts.iter().flat_map(|text| "10Fx./-".chars().map(move |next| format!("{text}{next}"))).collect();
+        for text in &texts {
+            // The form of a number does not tell that nothing can be divided by zero.
+            let is_number = Rational::parse(text).is_some();
+            let may_pass = text.contains("/0");
+            let passes = validator.is_valid(&json!(text));
+            assert!(passes == is_number || passes && may_pass, "{text}");
+            numbers += usize::from(is_number);
+        }
+    }
+    assert!(numbers > 250, "{numbers} numbers");
     Ok(())
 }
 

@@ -1,0 +1,116 @@
+//! What the values after a key may be, where their kind does not say it all: one of a few words, a number, a place.
+
+use serde_json::{Map, Value};
+
+use crate::interpret::NOTES;
+use crate::model::{Failure, Kind, Unit};
+use crate::rules::RULES;
+use crate::words::{ANSWERS, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
+
+/// The form of a text; what YAML reads as a number needs none.
+#[derive(Clone, Copy)]
+pub struct Form {
+    /// The text as a regular expression, in which `N` stands for a number.
+    pattern: &'static str,
+    /// What an editor says of another text.
+    message: &'static str,
+}
+
+const NUMBER: Form = Form { pattern: "N", message: "Write a number: `12`, `-40`, `0x1F`, `41.5` or `1/1024`." };
+const RANGE: Form = Form { pattern: r"N\.\.N", message: "Write the limits as `41.5..58.5`." };
+/// From the most to the least significant.
+pub const PLACE: Form = Form { pattern: r"N(\.\.N)?", message: "Write `7..4` or one number." };
+
+/// Keys after which a text has a form, by the struct that has them.
+const FORMS: [(&str, &str, Form); 17] = [
+    ("Access", "refusal", NUMBER),
+    ("Access", "reply", NUMBER),
+    ("Access", "report", NUMBER),
+    ("Access", "request", NUMBER),
+    ("Field", "bits", PLACE),
+    ("Field", "bytes", Form { message: "Write `0..3` or one number.", ..PLACE }),
+    ("Field", "const", NUMBER),
+    ("Field", "continues", NUMBER),
+    ("Field", "normal", NUMBER),
+    ("Field", "offset", NUMBER),
+    ("Field", "range", RANGE),
+    ("Field", "reply", NUMBER),
+    ("Field", "scale", NUMBER),
+    ("Field", "send", NUMBER),
+    ("Message", "length", NUMBER),
+    ("Message", "match", NUMBER),
+    ("StatusBit", "bit", NUMBER),
+];
+
+/// Returns the keys after which one of a few words stands, by the struct that has them.
+fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 14] {
+    let kinds = Kind::ALL.map(Kind::name).to_vec();
+    let answers = ANSWERS.map(|(word, _)| word).to_vec();
+    [
+        ("Access", "answers", answers.clone()),
+        ("Access", "in", kinds.clone()),
+        ("Allowance", "rule", RULES.iter().map(|rule| rule.name).collect()),
+        ("Erratum", "kind", ERRATUM_KINDS.to_vec()),
+        ("Example", "fails", Failure::ALL.map(|(_, word)| word).to_vec()),
+        ("Example", "notes", NOTES.to_vec()),
+        ("Example", "origin", ORIGINS.to_vec()),
+        ("Field", "as", NUMBER_FORMATS.to_vec()),
+        ("Field", "in", kinds),
+        ("Field", "outside", OUTSIDE.to_vec()),
+        ("Field", "unit", Unit::ALL.map(|unit| unit.symbol).to_vec()),
+        ("Message", "answers", answers),
+        ("Message", "in", vec![Kind::Request.name(), Kind::Reply.name()]),
+        ("StatusBit", "severity", SEVERITIES.map(|(word, _)| word).to_vec()),
+    ]
+}
+
+/// Adds all that to the schema.
+pub fn restrict(schema: &mut Value) {
+    for (item, key, form) in FORMS {
+        if let Some(value) = value_of(schema, item, key) {
+            form.demand(value);
+        }
+    }
+    for (item, key, words) in choices() {
+        if let Some(value) = value_of(schema, item, key) {
+            value.remove("type");
+            value.insert("enum".to_owned(), words.into());
+        }
+    }
+}
+
+impl Form {
+    /// Demands the form of a text.
+    pub fn demand(self, value: &mut Map<String, Value>) {
+        let number = r"-?(0x[0-9A-Fa-f]+|[0-9]+(\.[0-9]+)?)(/(0x[0-9A-Fa-f]+|[0-9]+))?";
+        value.insert("pattern".to_owned(), format!("^{}$", self.pattern.replace('N', number)).into());
+        value.insert("patternErrorMessage".to_owned(), self.message.into());
+    }
+}
+
+/// Returns the schema of what stands after a key, in a list or a map that of each entry.
+fn value_of<'s>(schema: &'s mut Value, item: &str, key: &str) -> Option<&'s mut Map<String, Value>> {
+    let value = schema.pointer_mut(&format!("/definitions/{item}/properties/{key}"))?;
+    let entries = ["items", "additionalProperties"].into_iter().find(|inner| value.get(inner).is_some());
+    match entries {
+        Some(inner) => value.get_mut(inner),
+        None => Some(value),
+    }?
+    .as_object_mut()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_that_is_restricted_exists() -> serde_json::Result<()> {
+        let mut schema = serde_json::from_str(&crate::schema::schema())?;
+        let forms = FORMS.map(|(item, key, _)| (item, key));
+        let choices = choices().map(|(item, key, _)| (item, key));
+        for (item, key) in forms.into_iter().chain(choices) {
+            assert!(value_of(&mut schema, item, key).is_some(), "{item}.{key}");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,23 @@
+//! The words of the language among which a key chooses.
+
+use crate::model::{Severity, Who};
+
+/// What may stand after `as`.
+pub const NUMBER_FORMATS: [&str; 4] = ["unsigned", "signed", "float", "text"];
+
+/// What may stand after `outside`.
+pub const OUTSIDE: [&str; 1] = ["refused"];
+
+/// How grave a status bit may be.
+pub const SEVERITIES: [(&str, Severity); 3] =
+    [("state", Severity::State), ("alarm", Severity::Alarm), ("fault", Severity::Fault)];
+
+/// Who may answer.
+pub const ANSWERS: [(&str, Who); 4] =
+    [("one", Who::One), ("each", Who::Each), ("coordinator", Who::Coordinator), ("nobody", Who::Nobody)];
+
+/// Where an example may come from, other than from the document.
+pub const ORIGINS: [&str; 1] = ["ours"];
+
+/// What may be wrong with a document.
+pub const ERRATUM_KINDS: [&str; 6] = ["vendor", "translation", "ocr", "unclear", "gap", "note"];
