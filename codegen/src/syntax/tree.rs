@@ -45,6 +45,32 @@ impl Node {
         self.find(path).map(|found| found.value)
     }
 
+    /// Returns a text; nothing for anything else.
+    pub fn text(&self) -> Option<&str> {
+        match &self.content {
+            Content::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Returns the entries of a map; nothing for anything else.
+    pub fn entries(&self) -> Option<&IndexMap<String, Entry>> {
+        match &self.content {
+            Content::Map(entries) => Some(entries),
+            _ => None,
+        }
+    }
+
+    /// Returns the value of a key of a map.
+    pub fn child_at(&self, key: &str) -> Option<&Node> {
+        Some(&self.entries()?.get(key)?.value)
+    }
+
+    /// Returns the text that a map has as the value of a key.
+    pub fn text_at(&self, key: &str) -> Option<&str> {
+        self.child_at(key)?.text()
+    }
+
     /// Returns the bytes of a key; for what has no key its own, for what does not exist those of the nearest parent.
     pub fn key_span(&self, path: &Path) -> Range<usize> {
         let found = self.find_nearest(path);

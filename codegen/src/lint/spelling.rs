@@ -1,0 +1,108 @@
+#![doc = include_str!("../rules/spelling.md")]
+
+mod words;
+
+use super::table::{Name, Table};
+use crate::diagnostic::Diagnostic;
+use crate::syntax::tree::{Node, Path};
+use words::{Vocabulary, words};
+
+/// Longest name that is looked at, in bytes.
+const LONGEST: usize = 48;
+
+/// Shortest name that is looked at, in bytes.
+const SHORTEST: usize = 4;
+
+/// Shortest word in which a letter may be missing, wrong or too many; shorter ones are too like each other.
+const LONG_WORD: usize = 5;
+
+/// Most strange names that are looked at, so that a file of many thousands takes no longer.
+const MOST: usize = 500;
+
+pub fn lint(tree: &Node, tables: &[Table]) -> Vec<Diagnostic> {
+    let vocabulary = Vocabulary::new(tree, tables);
+    let protocol = tree.text_at("protocol").map(|text| Name {
+        text,
+        at: Path::default().key("protocol").at_value(),
+        title: tree.text_at("title"),
+    });
+    let definitions = || tables.iter().filter(|table| table.is_definition());
+    let names = protocol.into_iter().chain(definitions().flat_map(Table::names));
+    let strange = names.filter(|name| is_strange(&vocabulary, name.text)).take(MOST);
+    let mistyped = strange.filter_map(|name| Some(mistyped(&name, &meant(&vocabulary, &name)?)));
+    let short = definitions().flat_map(Table::names).filter(|name| name.text.len() <= LONGEST);
+    let misnumbered = short.filter_map(|name| misnumbered(&name));
+    mistyped.chain(misnumbered).collect()
+}
+
+fn mistyped(name: &Name, meant: &str) -> Diagnostic {
+    let text = format!("`{}`: is `{meant}` meant?", name.text);
+    let help = format!("write `{meant}`; if `{}` is right, its `title` can say so", name.text);
+    let label = "the spec has no such word elsewhere";
+    Diagnostic::warning("spelling", name.at.clone(), text).label(label).help(help)
+}
+
+/// Tells whether a name has a word that the spec has nowhere else.
+fn is_strange(vocabulary: &Vocabulary, name: &str) -> bool {
+    (SHORTEST..=LONGEST).contains(&name.len()) && strange_words(vocabulary, name).next().is_some()
+}
+
+fn strange_words<'a>(vocabulary: &'a Vocabulary, name: &'a str) -> impl Iterator<Item = &'a str> {
+    words(name).filter(move |word| !vocabulary.has_elsewhere(word, name))
+}
+
+/// Returns the name from which a name differs by one slip of the hand, which made a strange word of known ones.
+fn meant(vocabulary: &Vocabulary, name: &Name) -> Option<String> {
+    if let Some(known) = swapped(name.text).find(|other| is_meant(vocabulary, name.text, other)) {
+        return Some(known);
+    }
+    let mut strange = strange_words(vocabulary, name.text);
+    let word = strange.next().filter(|word| word.len() >= LONG_WORD && strange.next().is_none())?;
+    let other = vocabulary.nearest(word, name.title.unwrap_or_default())?;
+    Some(name.text.replacen(word, &other, 1))
+}
+
+/// Returns a name with any two neighbours in the other order.
+fn swapped(name: &str) -> impl Iterator<Item = String> {
+    let is_part = |letter: u8| letter.is_ascii_alphabetic() || letter == b'_';
+    let pairs = name.as_bytes().windows(2).enumerate();
+    let places = pairs.filter(move |(_, pair)| pair[0] != pair[1] && pair.iter().all(|letter| is_part(*letter)));
+    places.map(|(at, pair)| {
+        let neighbours = [char::from(pair[1]), char::from(pair[0])];
+        format!("{}{}{}", &name[..at], String::from_iter(neighbours), &name[at + 2..])
+    })
+}
+
+/// Tells whether a swap made a strange word of known ones; a single word must be long or in other names, as short ones are too like
+/// each other.
+fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
+    let before: Vec<_> = words(name).collect();
+    let after: Vec<_> = words(other).collect();
+    let mut lost = before.iter().filter(|word| !after.contains(word));
+    let mut found = after.iter().filter(|word| !before.contains(word));
+    let is_regrouped = found.clone().count() > 1;
+    let is_certain = |word: &str| is_regrouped || word.len() >= LONG_WORD || vocabulary.has_in_names(word);
+    lost.any(|word| !vocabulary.has_elsewhere(word, name))
+        && found.all(|word| vocabulary.has_often(word, name) && is_certain(word))
+}
+
+/// Notices a number in a name that is not in its title, where the title has the words of the name and other numbers.
+fn misnumbered(name: &Name) -> Option<Diagnostic> {
+    let title = name.title?;
+    let others: Vec<_> = numbers(title).collect();
+    let number = numbers(name.text).find(|number| !others.contains(number))?;
+    let mut own_words = words(name.text).peekable();
+    own_words.peek().filter(|_| !others.is_empty())?;
+    if !own_words.all(|word| words(title).any(|other| word.eq_ignore_ascii_case(other))) {
+        return None;
+    }
+    let text = format!("`{}` has the number {number}, but its title has {}", name.text, others.join(", "));
+    let help = format!("its title is `{title}`: correct the one that is wrong");
+    Some(Diagnostic::warning("spelling", name.at.clone(), text).help(help))
+}
+
+/// Returns the numbers in a text, without leading zeros.
+fn numbers(text: &str) -> impl Iterator<Item = &str> {
+    let digits = text.split(|letter: char| !letter.is_ascii_digit()).filter(|digits| !digits.is_empty());
+    digits.map(|digits| digits.trim_start_matches('0')).map(|digits| if digits.is_empty() { "0" } else { digits })
+}
