@@ -12,7 +12,7 @@ mod signal;
 
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
-pub use example::{Example, Failure, Meaning, ValueExample};
+pub use example::{Example, Failure, Meaning, Misfit, ValueExample};
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use message::{Access, Kind, Message, MessageAccess, Shape, Who};
 pub use set::{Continuation, Set};

@@ -1,29 +1,8 @@
 //! Physical values as texts, both ways: what a spec writes after `means`, what a packed value reads like.
 
-use crate::model::{Encoding, Enumeration, Piece, Signal, StatusWord, Unit, raw_limits};
+use crate::model::{Encoding, Enumeration, Misfit, Piece, Signal, StatusWord, Unit, raw_limits};
 use crate::multiples;
 use crate::number::Rational;
-
-/// Why a text is no value of a signal.
-#[derive(Debug)]
-pub struct Misfit {
-    /// What is wrong, in one sentence.
-    pub why: String,
-    /// What to do about it.
-    pub help: Option<String>,
-}
-
-impl From<String> for Misfit {
-    fn from(why: String) -> Self {
-        Self { why, help: None }
-    }
-}
-
-impl Misfit {
-    fn with_help(why: String, help: impl Into<String>) -> Self {
-        Self { why, help: Some(help.into()) }
-    }
-}
 
 /// Returns the raw bits of a physical value as a spec writes it, with its unit if `unit` says so.
 ///

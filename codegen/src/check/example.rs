@@ -1,18 +1,17 @@
 #![doc = include_str!("../rules/example.md")]
 #![doc = include_str!("../rules/expected_failure.md")]
 
-mod contradiction;
+mod evidence;
+mod limit;
+mod repair;
+mod unread;
 
-use std::collections::HashSet;
-
-use contradiction::Contradiction;
-
+use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
 };
-use crate::model::{Example, Failure, Kind, Meaning, Message, Protocol, Signal, ValueExample};
-use crate::syntax::tree::Path;
+use crate::model::{Example, Failure, Kind, Meaning, Message, Misfit, Protocol, Signal, ValueExample};
 
 /// How many examples hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,16 +26,19 @@ pub struct Counts {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
     let mut counts = Counts::default();
-    let contradictions = contradiction::find(protocol);
-    for (field, contradiction) in &contradictions {
-        diagnostics.push(contradiction::report(protocol, *field, contradiction));
+    let mut explained = evidence::blame(protocol, diagnostics);
+    for (message, frames) in unread::find(protocol) {
+        diagnostics.push(unread::report(&protocol.messages[message], &frames));
+        explained.extend(frames);
     }
-    let explained: HashSet<&Path> = contradictions.values().flat_map(Contradiction::places).collect();
-    let is_explained = |at: &At| matches!(at, At::Value(path) if explained.contains(path));
+    let is_explained = |diagnostic: &Diagnostic| {
+        let others = diagnostic.others.iter().map(|(at, _)| at);
+        others.chain([&diagnostic.at]).any(|at| matches!(at, At::Value(path) if explained.contains(path)))
+    };
     for example in &protocol.examples {
         let checked = Checker { protocol, example };
         match (checked.run(), example.fails, &example.data) {
-            (Err(diagnostic), _, _) if is_explained(&diagnostic.at) => {}
+            (Err(diagnostic), _, _) if is_explained(&diagnostic) => {}
             (Err(diagnostic), _, _) => diagnostics.push(*diagnostic),
             (Ok(()), Some(_), _) => counts.expected_failures += 1,
             (Ok(()), None, Some(_)) => counts.frames += 1,
@@ -47,6 +49,21 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
         check_value(protocol, example, diagnostics);
     }
     counts
+}
+
+/// Tests that what is said of each signal is a value of it, unless the signal has an error of its own.
+pub fn check_texts(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for example in &protocol.examples {
+        let Some(message) = example.message.map(|index| &protocol.messages[index]) else { continue };
+        for meaning in &example.means {
+            let field = &message.signals[meaning.signal].doc.path;
+            if let Err(misfit) = &meaning.raw
+                && !diagnostics.has_errors_in(field)
+            {
+                diagnostics.push(no_value(meaning, misfit).other(field.at_key(), "the field"));
+            }
+        }
+    }
 }
 
 /// A check of one example; the diagnostic is boxed because it is large.
@@ -61,7 +78,7 @@ impl<'a> Checker<'a> {
     fn run(&self) -> Checked {
         let outcome = decode(self.protocol, self.example.model, &self.frame());
         match (self.example.fails, outcome) {
-            (Some(failure), outcome) => self.fails(failure, outcome),
+            (Some(failure), outcome) => self.fits().and_then(|()| self.fails(failure, outcome)),
             (None, Err(problem)) => Err(self.unreadable(&problem)),
             (None, Ok(decoded)) => self.holds(&decoded),
         }
@@ -84,6 +101,7 @@ impl<'a> Checker<'a> {
     fn holds(&self, decoded: &Decoded) -> Checked {
         self.is_message(decoded)?;
         self.is_addressed(decoded)?;
+        self.fits()?;
         if self.example.data.is_none() {
             return Ok(());
         }
@@ -106,7 +124,17 @@ impl<'a> Checker<'a> {
     fn is_addressed(&self, decoded: &Decoded) -> Checked {
         let expected = |rule: &str| self.example.notes.iter().any(|note| note == rule);
         let note = decoded.notes.iter().find(|note| note.rule == "addressing" && !expected(note.rule));
-        note.map_or(Ok(()), |note| Err(self.unexpected(note)))
+        note.map_or(Ok(()), |note| Err(self.unexpected(note, decoded)))
+    }
+
+    /// Tests that what is said of each signal is a value of it.
+    fn fits(&self) -> Checked {
+        let Some(message) = self.example.message.map(|index| &self.protocol.messages[index]) else { return Ok(()) };
+        let misfit = self.example.means.iter().find_map(|meaning| Some((meaning, meaning.raw.as_ref().err()?)));
+        misfit.map_or(Ok(()), |(meaning, misfit)| {
+            let field = message.signals[meaning.signal].doc.path.at_key();
+            Err(Box::new(no_value(meaning, misfit).other(field, "the field")))
+        })
     }
 
     /// Compares value by value.
@@ -114,15 +142,18 @@ impl<'a> Checker<'a> {
         let message = &self.protocol.messages[decoded.message];
         if let Some((meaning, signal)) = self.first_difference(decoded, message) {
             let reading = decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
-            let text = reading.map_or_else(
-                || format!("a {} has no signal `{}`", decoded.kind.name(), signal.name),
-                |reading| {
-                    let read = shown(self.protocol, signal, &reading.value, reading.bits);
-                    format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text)
-                },
-            );
-            let diagnostic = Diagnostic::error("example", meaning.path.at_value(), text);
-            return Err(Box::new(diagnostic.other(signal.doc.path.at_key(), "the field")));
+            let field = (signal.doc.path.at_key(), "the field");
+            let Some(reading) = reading else {
+                let text = format!("a {} has no signal `{}`", decoded.kind.name(), signal.name);
+                return Err(contradicted(meaning.path.at_value(), text, field));
+            };
+            let read = shown(self.protocol, signal, &reading.value, reading.bits);
+            if self.is_slip_in_frame(signal, meaning, &read) {
+                let text = format!("this frame says {read} for `{}`, one digit from {}", signal.name, meaning.text);
+                return Err(contradicted(self.frame_at(), text, (meaning.path.at_value(), "what it means")));
+            }
+            let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
+            return Err(contradicted(meaning.path.at_value(), text, field));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {
@@ -130,10 +161,19 @@ impl<'a> Checker<'a> {
             Some(reading) => {
                 let signal = &message.signals[reading.signal];
                 let read = shown(self.protocol, signal, &reading.value, reading.bits);
-                let text = format!("`means` says nothing of `{}`, which is {read}", signal.name);
+                let text =
+                    format!("the example does not say what `{}` means, which is {read} in this frame", signal.name);
                 Err(wrong(self.example.doc.path.key("means").at_key(), text))
             }
         }
+    }
+
+    /// Tells whether one digit of the frame is wrong rather than one of the text.
+    fn is_slip_in_frame(&self, signal: &Signal, meaning: &Meaning, read: &str) -> bool {
+        let Ok(raw) = meaning.raw else { return false };
+        let mut data = [0; 8];
+        data.iter_mut().zip(self.frame().data).for_each(|(byte, given)| *byte = given);
+        evidence::digits_apart(signal, data, raw) == 1 && strsim::osa_distance(&meaning.text, read) > 1
     }
 
     fn meaning(&self, signal: usize) -> Option<&Meaning> {
@@ -144,7 +184,7 @@ impl<'a> Checker<'a> {
     fn first_difference<'m>(&self, decoded: &Decoded, message: &'m Message) -> Option<(&'a Meaning, &'m Signal)> {
         let differs = |meaning: &&Meaning| {
             let reading = decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
-            reading.is_none_or(|reading| Some(reading.bits) != meaning.raw)
+            reading.is_none_or(|reading| Ok(reading.bits) != meaning.raw)
         };
         let meaning = self.example.means.iter().find(differs)?;
         Some((meaning, &message.signals[meaning.signal]))
@@ -153,24 +193,49 @@ impl<'a> Checker<'a> {
     fn has_notes(&self, decoded: &Decoded) -> Checked {
         let unexpected = decoded.notes.iter().find(|note| !self.example.notes.iter().any(|rule| rule == note.rule));
         if let Some(note) = unexpected {
-            return Err(self.unexpected(note));
+            let diagnostic = self.unexpected(note, decoded);
+            let reserved = (note.rule == "reserved_bit").then(|| u64::from_be_bytes(decoded.reserved));
+            return Err(match reserved {
+                Some(reserved) => Box::new(diagnostic.label(bits(reserved))),
+                None => diagnostic,
+            });
         }
         let missing = |rule: &String| !decoded.notes.iter().any(|note| note.rule == rule);
         self.example.notes.iter().position(missing).map_or(Ok(()), |index| Err(self.missing(index, decoded)))
     }
 
-    fn unexpected(&self, note: &Note) -> Box<Diagnostic> {
+    fn unexpected(&self, note: &Note, decoded: &Decoded) -> Box<Diagnostic> {
+        if let Some(diagnostic) = self.limit(note.rule, decoded, self.frame_at()) {
+            return Box::new(diagnostic);
+        }
         let text = format!("this frame has the note `{}`: {}", note.rule, note.text);
-        let help = format!("if the document shows it so, add `{}` to its `notes`", note.rule);
+        let help = match note.rule {
+            "reserved_bit" => "add the field that has these bits; \
+                 if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
+                .to_owned(),
+            rule => format!("if the document shows it so, add `{rule}` to its `notes`"),
+        };
         Box::new(Diagnostic::error("example", self.frame_at(), text).help(help))
     }
 
     fn missing(&self, index: usize, decoded: &Decoded) -> Box<Diagnostic> {
-        let text = format!("this frame has no note `{}`", self.example.notes[index]);
-        let notes: Vec<_> = decoded.notes.iter().map(|note| format!("`{}`", note.rule)).collect();
-        let help = if notes.is_empty() { "it has none".to_owned() } else { format!("it has {}", notes.join(", ")) };
+        let rule = &self.example.notes[index];
         let at = self.example.doc.path.key("notes").index(index).at_value();
+        if let Some(diagnostic) = self.limit(rule, decoded, at.clone()) {
+            return Box::new(diagnostic);
+        }
+        let text = format!("this frame has no note `{rule}`");
+        let notes: Vec<_> = decoded.notes.iter().map(|note| format!("`{}`", note.rule)).collect();
+        let help = match notes.as_slice() {
+            [] => "take it out: the frame has no note".to_owned(),
+            _ => format!("take it out: the frame has only {}", notes.join(", ")),
+        };
         Box::new(Diagnostic::error("example", at, text).help(help))
+    }
+
+    /// Blames the range for a note that is there or missing against what the example says.
+    fn limit(&self, rule: &str, decoded: &Decoded, at: At) -> Option<Diagnostic> {
+        if rule == "out_of_range" { limit::report(self.protocol, self.example, decoded, at) } else { None }
     }
 
     fn encodes_back(&self, decoded: &Decoded) -> Checked {
@@ -250,13 +315,27 @@ fn wrong(at: At, text: String) -> Box<Diagnostic> {
     Box::new(Diagnostic::error("example", at, text))
 }
 
+fn contradicted(at: At, text: String, (other, what): (At, &str)) -> Box<Diagnostic> {
+    Box::new(Diagnostic::error("example", at, text).other(other, what))
+}
+
+/// Says that a text is no value of its signal.
+fn no_value(meaning: &Meaning, misfit: &Misfit) -> Diagnostic {
+    let Misfit { why, help } = misfit.clone();
+    Diagnostic { help, ..Diagnostic::error("value", meaning.path.at_value(), why) }
+}
+
 /// Runs an example of a type: bytes alone, and what they mean.
 fn check_value(protocol: &Protocol, example: &ValueExample, diagnostics: &mut Diagnostics) {
     let bits = example.signal.place.get(&example.data);
-    if example.meaning.raw.is_some_and(|raw| raw != bits) {
-        let value = physical(protocol, &example.signal, bits);
-        let read = shown(protocol, &example.signal, &value, bits);
-        let text = format!("these bytes say {read}, not {}", example.meaning.text);
-        diagnostics.push(Diagnostic::error("example", example.meaning.path.at_value(), text));
+    match &example.meaning.raw {
+        Err(misfit) => diagnostics.push(no_value(&example.meaning, misfit)),
+        Ok(raw) if *raw != bits => {
+            let value = physical(protocol, &example.signal, bits);
+            let read = shown(protocol, &example.signal, &value, bits);
+            let text = format!("these bytes say {read}, not {}", example.meaning.text);
+            diagnostics.push(Diagnostic::error("example", example.meaning.path.at_value(), text));
+        }
+        Ok(_) => {}
     }
 }

@@ -41,10 +41,32 @@ pub struct Meaning {
     pub signal: usize,
     /// As written in the spec.
     pub text: String,
-    /// The raw bits, if the value lies on the signal's grid.
-    pub raw: Option<u64>,
+    /// The raw bits, or why the text is no value of the signal.
+    pub raw: Result<u64, Misfit>,
     /// Place in the spec.
     pub path: Path,
+}
+
+/// Why a text is no value of a signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Misfit {
+    /// What is wrong, in one sentence.
+    pub why: String,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl From<String> for Misfit {
+    fn from(why: String) -> Self {
+        Self { why, help: None }
+    }
+}
+
+impl Misfit {
+    pub(crate) fn with_help(why: String, help: impl Into<String>) -> Self {
+        Self { why, help: Some(help.into()) }
+    }
 }
 
 /// How a printed frame fails.

@@ -1,0 +1,230 @@
+//! Whom to blame where an example and a field disagree.
+//!
+//! An example says everything twice, by its bytes and by its meaning, so that one slip of its writer leaves the two a digit apart. What
+//! lies further apart, or what several examples deny, is rather a mistake in the field.
+
+use std::collections::HashSet;
+
+use indexmap::IndexMap;
+
+use super::repair::{self, Repair};
+use super::shown;
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::interpret::{Frame, Reading, decode};
+use crate::model::{Encoding, Meaning, Protocol, Signal, StatusBit};
+use crate::syntax::tree::{Content, Path};
+
+/// Most examples that are shown beside a field.
+const SHOWN: usize = 3;
+
+/// What one example says of a field.
+pub struct Evidence<'a> {
+    /// By its meaning.
+    pub meaning: &'a Meaning,
+    /// By its bytes.
+    pub data: [u8; 8],
+    /// Its bits that no field holds.
+    reserved: [u8; 8],
+    /// What the field makes of these bytes.
+    bits: u64,
+    read: String,
+}
+
+impl Evidence<'_> {
+    fn agrees(&self) -> bool {
+        self.meaning.raw == Ok(self.bits)
+    }
+
+    /// Tells whether the two sides are a digit of the frame apart, where set bits that no field holds count as well.
+    fn is_slip(&self, signal: &Signal) -> bool {
+        let Ok(raw) = self.meaning.raw else { return false };
+        digits_apart(signal, self.data, raw) + nibbles(self.reserved).filter(|nibble| *nibble != 0).count() <= 1
+    }
+}
+
+/// Counts the digits of a frame that another value of a signal changes.
+pub fn digits_apart(signal: &Signal, data: [u8; 8], raw: u64) -> usize {
+    let mut said = data;
+    signal.place.put(&mut said, raw);
+    nibbles(said).zip(nibbles(data)).filter(|(one, other)| one != other).count()
+}
+
+/// An example names a bit that the word does not have, and its frame sets one that has no name.
+fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
+    let names: Vec<_> = denial.meaning.text.trim_matches(['[', ']']).split(", ").collect();
+    let known = |name: &str| bits.iter().find(|bit| bit.name == name);
+    let mut unknown = names.iter().filter(|name| known(name).is_none());
+    let (name, None) = (unknown.next()?, unknown.next()) else { return None };
+    let said = names.iter().filter_map(|name| known(name)).fold(0, |mask, bit| mask | 1 << bit.bit);
+    let surplus = denial.bits ^ said;
+    let number = surplus.trailing_zeros();
+    if !surplus.is_power_of_two() || bits.iter().any(|bit| u32::from(bit.bit) == number) {
+        return None;
+    }
+    let below = bits.iter().rfind(|bit| u32::from(bit.bit) < number).or(bits.first())?;
+    let text = format!("bit {number} has no name here, but an example has it as `{name}`");
+    let help = format!("add `{name}: {{bit: {number}}}`, or correct the example");
+    let diagnostic = Diagnostic::error("example", below.doc.path.at_key(), text).help(help);
+    Some(diagnostic.other(denial.meaning.path.at_key(), format!("by the status word this frame says {}", denial.read)))
+}
+
+fn nibbles(data: [u8; 8]) -> impl Iterator<Item = u8> {
+    data.into_iter().flat_map(|byte| [byte >> 4, byte & 0xF])
+}
+
+/// Blames the fields that are rather wrong than their examples; returns the places of what these say, which is thereby explained.
+pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path> {
+    let mut explained = HashSet::new();
+    for ((message, index), evidence) in &collect(protocol) {
+        let message = &protocol.messages[*message];
+        let field = Field { protocol, message: &message.name, signal: &message.signals[*index], evidence };
+        if let Some(diagnostic) = field.blamed(diagnostics) {
+            diagnostics.push_first(diagnostic);
+            explained.extend(field.denials().map(|denial| denial.meaning.path.clone()));
+        }
+    }
+    explained
+}
+
+/// Collects what the examples that must hold say of each field, by message and signal.
+fn collect(protocol: &Protocol) -> IndexMap<(usize, usize), Vec<Evidence<'_>>> {
+    let mut fields: IndexMap<_, Vec<_>> = IndexMap::new();
+    for example in protocol.examples.iter().filter(|example| example.fails.is_none() && example.data.is_some()) {
+        let frame = Frame::of(protocol, example);
+        let Ok(decoded) = decode(protocol, example.model, &frame) else { continue };
+        let mut data = [0; 8];
+        data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
+        for meaning in example.means.iter().filter(|_| example.message == Some(decoded.message)) {
+            let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == meaning.signal) else {
+                continue;
+            };
+            let signal = &protocol.messages[decoded.message].signals[meaning.signal];
+            let Reading { bits, value, .. } = reading;
+            let read = shown(protocol, signal, value, *bits);
+            fields.entry((decoded.message, meaning.signal)).or_default().push(Evidence {
+                meaning,
+                data,
+                reserved: decoded.reserved,
+                bits: *bits,
+                read,
+            });
+        }
+    }
+    fields
+}
+
+/// A field and what the examples say of it.
+struct Field<'a> {
+    protocol: &'a Protocol,
+    message: &'a str,
+    signal: &'a Signal,
+    evidence: &'a [Evidence<'a>],
+}
+
+impl<'a> Field<'a> {
+    fn denials(&self) -> impl Iterator<Item = &'a Evidence<'a>> + use<'a> {
+        self.evidence.iter().filter(|evidence| !evidence.agrees())
+    }
+
+    fn blamed(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+        let first = self.denials().next()?;
+        match self.signal.encoding {
+            Encoding::Status(word) => {
+                let bits = &self.protocol.status_words[word].bits;
+                self.moved_bit(first, bits).or_else(|| missing_bit(first, bits))
+            }
+            _ => self
+                .repaired(diagnostics)
+                .or_else(|| self.misnumbered(first, diagnostics))
+                .or_else(|| self.contradicted()),
+        }
+    }
+
+    /// A bit that an example names is set at another place of the frame, where no bit has a name.
+    fn moved_bit(&self, denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
+        let said = denial.meaning.raw.as_ref().ok()?;
+        let (missing, surplus) = (said & !denial.bits, denial.bits & !said);
+        let is_moved = missing.is_power_of_two() && surplus.is_power_of_two();
+        let has_name = |bit: u32| bits.iter().any(|known| u32::from(known.bit) == bit);
+        if !is_moved || has_name(surplus.trailing_zeros()) || self.is_borne_out(|bits| bits & missing != 0) {
+            return None;
+        }
+        let bit = bits.iter().find(|bit| 1 << bit.bit == missing)?;
+        let text = format!(
+            "`{}` is bit {} here, but an example has it as bit {}",
+            bit.name,
+            bit.bit,
+            surplus.trailing_zeros()
+        );
+        let at = bit.doc.path.key("bit").at_value();
+        Some(
+            Diagnostic::error("example", at, text)
+                .help("correct the bit, or else the example")
+                .other(denial.meaning.path.at_key(), format!("by the status word this frame says {}", denial.read)),
+        )
+    }
+
+    /// A name that an example says is a number without a name in the frame.
+    fn misnumbered(&self, denial: &Evidence, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+        let raw = *denial.meaning.raw.as_ref().ok()?;
+        let at = self.written("values", diagnostics)?;
+        let Content::Map(values) = &diagnostics.tree()?.get(&at)?.content else { return None };
+        let name = Content::Text(denial.meaning.text.clone());
+        let (number, _) = values.iter().find(|(_, entry)| entry.value.content == name)?;
+        let read = Content::Text(denial.read.clone());
+        if values.values().any(|entry| entry.value.content == read) || self.is_borne_out(|bits| bits == raw) {
+            return None;
+        }
+        let text = format!("`{}` is {number} here, but an example has it as {}", denial.meaning.text, denial.bits);
+        let diagnostic = Diagnostic::error("example", At::Key(at.key(number)), text);
+        let shown = format!("by these names this frame says {}", denial.read);
+        Some(diagnostic.help("correct the number, or else the example").other(denial.meaning.path.at_value(), shown))
+    }
+
+    /// No example holds, and each would after one change of the field.
+    fn repaired(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+        let denials: Vec<_> = self.denials().collect();
+        if self.is_borne_out(|bits| bits != 0) || denials.len() == 1 && denials[0].is_slip(self.signal) {
+            return None;
+        }
+        let Repair { at, text, .. } =
+            repair::find(self.protocol, self.signal, &denials, |key| self.written(key, diagnostics), diagnostics)?;
+        let help = format!("with `{text}` each of them holds; correct it, or else the examples");
+        Some(self.denied(At::Value(at)).help(help))
+    }
+
+    /// No example holds, and there are several.
+    fn contradicted(&self) -> Option<Diagnostic> {
+        let is_misfit = |denial: &Evidence| denial.meaning.raw.is_err();
+        if self.is_borne_out(|bits| bits != 0) || self.denials().count() == 1 || self.denials().any(is_misfit) {
+            return None;
+        }
+        let help = "correct its place, its scale or its kind of number, or else the examples";
+        Some(self.denied(self.signal.doc.path.at_key()).help(help))
+    }
+
+    fn denied(&self, at: At) -> Diagnostic {
+        let contradict = match self.denials().count() {
+            1 => "1 contradicts".to_owned(),
+            count => format!("{count} contradict"),
+        };
+        let text = format!("no example bears out `{}.{}`, and {contradict} it", self.message, self.signal.name);
+        self.denials().take(SHOWN).fold(Diagnostic::error("example", at, text), |diagnostic, denial| {
+            diagnostic.other(denial.meaning.path.at_value(), format!("by the field this frame says {}", denial.read))
+        })
+    }
+
+    /// Tells whether an example agrees with bits of such a kind.
+    fn is_borne_out(&self, counts: impl Fn(u64) -> bool) -> bool {
+        self.evidence.iter().any(|evidence| evidence.agrees() && counts(evidence.bits))
+    }
+
+    /// Finds where the field, or else one of its types, has a key.
+    fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
+        let types = Path::default().key("types");
+        let own = std::iter::once(self.signal.doc.path.clone());
+        let mut sources = own.chain(self.signal.types.iter().map(|name| types.key(name)));
+        let has = |path: &Path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some());
+        sources.find_map(|source| Some(source.key(key)).filter(has))
+    }
+}

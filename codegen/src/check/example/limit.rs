@@ -1,0 +1,57 @@
+//! A range that leaves out what an example shows inside it, or holds what one shows outside.
+//!
+//! The bytes and the meaning of such an example agree, so rather the range is wrong.
+
+use super::shown;
+use crate::diagnostic::{At, Diagnostic};
+use crate::interpret::{Decoded, Reading, Value};
+use crate::model::{Example, Protocol, Range, Signal};
+use crate::syntax::tree::Path;
+
+/// The range of the field whose value lies outside it, or nearest to one of its ends.
+struct Limit<'a> {
+    signal: &'a Signal,
+    range: Range,
+    at: Path,
+    value: String,
+    /// How far outside the value lies, in parts of the range; below 0 inside.
+    beyond: f64,
+}
+
+/// Says that an example shows a value outside a range, and does not say so, or the other way round; `place` is that of the example.
+pub fn report(protocol: &Protocol, example: &Example, decoded: &Decoded, place: At) -> Option<Diagnostic> {
+    let readings = decoded.signals.iter().filter_map(|reading| limit(protocol, example, decoded.message, reading));
+    let limit = readings.max_by(|one, other| one.beyond.total_cmp(&other.beyond))?;
+    let Limit { signal, range, at, value, beyond } = limit;
+    let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
+    let range = format!("the range {}..{}{unit} of `{}`", range.minimum, range.maximum, signal.name);
+    let (text, said, help) = if beyond > 0.0 {
+        let help =
+            "correct the range; if the document shows a value outside it, add `out_of_range` to the example's `notes`";
+        (format!("{range} leaves out {value}, which an example shows"), "this frame has the note `out_of_range`", help)
+    } else {
+        let help = "correct the range, or take `out_of_range` out of the example's `notes`";
+        (
+            format!("{range} holds {value}, which an example shows outside it"),
+            "this frame has no note `out_of_range`",
+            help,
+        )
+    };
+    Some(Diagnostic::error("example", at.at_value(), text).help(help).other(place, said))
+}
+
+fn limit<'a>(protocol: &'a Protocol, example: &Example, message: usize, reading: &Reading) -> Option<Limit<'a>> {
+    let signal = &protocol.messages[message].signals[reading.signal];
+    let range = signal.range_for(example.model)?;
+    let of_model = signal.model_ranges.iter().find(|own| Some(own.model) == example.model);
+    let number = match reading.value {
+        #[expect(clippy::cast_precision_loss, reason = "only compared with the ends")]
+        Value::Integer(value) => value as f64,
+        Value::Number(value) => value,
+        _ => return None,
+    };
+    let (minimum, maximum) = (range.minimum.to_f64(), range.maximum.to_f64());
+    let beyond = (minimum - number).max(number - maximum) / (maximum - minimum);
+    let at = of_model.map_or(&signal.range_path, |own| &own.path).clone();
+    Some(Limit { signal, range, at, value: shown(protocol, signal, &reading.value, reading.bits), beyond })
+}

@@ -1,0 +1,102 @@
+//! One change of a field with which its examples hold.
+
+use canspec_runtime::{ByteOrder, Place};
+
+use super::evidence::Evidence;
+use crate::diagnostic::Diagnostics;
+use crate::model::{Encoding, Protocol, Signal, Unit};
+use crate::number::Rational;
+use crate::syntax::tree::{Content, Path};
+use crate::texts::raw_of_text;
+
+/// A change of one key.
+pub struct Repair {
+    /// Place of the value to change.
+    pub at: Path,
+    /// The key with its new value.
+    pub text: String,
+    signal: Signal,
+}
+
+/// Farthest that a place can be off, in bytes or bits.
+const FARTHEST: i8 = 7;
+
+/// Lists how far the first and the last end of a place can be off: one end by one, or both by the same.
+fn shifts() -> impl Iterator<Item = (i8, i8)> {
+    let ends = [(0, 1), (0, -1), (-1, 0), (1, 0)];
+    ends.into_iter().chain((1..=FARTHEST).flat_map(|shift| [(shift, shift), (-shift, -shift)]))
+}
+
+/// Finds the first change with which all of the examples hold.
+pub fn find(
+    protocol: &Protocol,
+    signal: &Signal,
+    examples: &[&Evidence],
+    written: impl Fn(&str) -> Option<Path>,
+    diagnostics: &Diagnostics,
+) -> Option<Repair> {
+    let text = |path: &Path| match &diagnostics.tree()?.get(path)?.content {
+        Content::Text(text) => Some(text.clone()),
+        _ => None,
+    };
+    let places = ["bytes", "bits"].into_iter().find_map(|key| {
+        let at = written(key)?;
+        Some(moved(signal, key, &text(&at)?, &at))
+    });
+    let unit = written("unit").and_then(|at| with_unit(signal, examples, at));
+    let scale = written("scale").and_then(|at| with_scale(signal, examples, &text(&at)?, at));
+    let holds = |repair: &Repair| {
+        examples.iter().all(|example| {
+            let raw = raw_of_text(&protocol.enumerations, &repair.signal, &example.meaning.text, true);
+            raw == Ok(repair.signal.place.get(&example.data))
+        })
+    };
+    places.into_iter().flatten().chain(unit).chain(scale).find(holds)
+}
+
+/// Moves one end of the place, or both, by a byte or a bit.
+fn moved(signal: &Signal, key: &str, text: &str, at: &Path) -> Vec<Repair> {
+    let ends = text.split_once("..").unwrap_or((text, text));
+    let (Ok(first), Ok(last)) = (ends.0.parse::<i8>(), ends.1.parse::<i8>()) else { return Vec::new() };
+    let shifted = shifts().filter_map(|(of_first, of_last)| {
+        let (first, last) = (first + of_first, last + of_last);
+        let place = if key == "bytes" { bytes(first, last)? } else { bits(signal.place, of_first, of_last)? };
+        let ends = if first == last { first.to_string() } else { format!("{first}..{last}") };
+        Some(Repair { at: at.clone(), text: format!("{key}: {ends}"), signal: Signal { place, ..signal.clone() } })
+    });
+    shifted.collect()
+}
+
+fn bytes(first: i8, last: i8) -> Option<Place> {
+    let byte = |end: i8| u8::try_from(end).ok().filter(|end| *end < 8);
+    Some(Place::bytes(byte(first)?, byte(last)?))
+}
+
+/// Moves the two ends of bits within the word around them.
+fn bits(place: Place, of_first: i8, of_last: i8) -> Option<Place> {
+    let word = if place.order() == ByteOrder::Big { Place::bytes(0, 7) } else { Place::bytes(7, 0) };
+    let bits = place.bits_of_payload();
+    let low = bits.shift().checked_add_signed(of_last)?;
+    let high = (bits.shift() + bits.width() - 1).checked_add_signed(of_first)?;
+    (low <= high && high < 64).then(|| word.bits(high, low))
+}
+
+/// Takes the unit that the examples have.
+fn with_unit(signal: &Signal, examples: &[&Evidence], at: Path) -> Option<Repair> {
+    let (_, symbol) = examples.first().filter(|_| examples.len() > 1)?.meaning.text.split_once(' ')?;
+    let unit = Unit::find(symbol)?;
+    Some(Repair { at, text: format!("unit: {symbol}"), signal: Signal { unit: Some(unit), ..signal.clone() } })
+}
+
+/// Takes the scale that the first example has, if it is one that is easily mistaken for the other.
+fn with_scale(signal: &Signal, examples: &[&Evidence], text: &str, at: Path) -> Option<Repair> {
+    let Encoding::Number { signed, offset, .. } = signal.encoding else { return None };
+    let example = examples.iter().find(|example| signal.place.get(&example.data) != 0)?;
+    let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
+    let raw = i128::from(signal.place.get(&example.data));
+    let scale = number.minus(offset)?.over(Rational::integer(raw))?;
+    let right = scale.fraction();
+    let encoding = Encoding::Number { signed, scale, offset };
+    let is_near = examples.len() > 1 || strsim::osa_distance(&right, text) == 1;
+    is_near.then(|| Repair { at, text: format!("scale: {right}"), signal: Signal { encoding, ..signal.clone() } })
+}

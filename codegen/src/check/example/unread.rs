@@ -1,0 +1,39 @@
+//! Messages that no example can be read as: where several frames are taken for none or for another, rather `match` is wrong.
+
+use indexmap::IndexMap;
+
+use crate::diagnostic::{At, Diagnostic};
+use crate::interpret::{Frame, decode};
+use crate::model::{Example, Message, Protocol};
+use crate::syntax::tree::Path;
+
+/// Most examples that are shown beside a message.
+const SHOWN: usize = 3;
+
+/// Finds the messages of which at least two examples speak and none can be read, with the places of these frames.
+pub fn find(protocol: &Protocol) -> IndexMap<usize, Vec<Path>> {
+    let mut unread: IndexMap<_, Vec<_>> = IndexMap::new();
+    let mut read = Vec::new();
+    for example in protocol.examples.iter().filter(|example| example.fails.is_none()) {
+        let Some(message) = example.message else { continue };
+        match decode(protocol, example.model, &Frame::of(protocol, example)) {
+            Ok(decoded) if decoded.message == message => read.push(message),
+            _ => unread.entry(message).or_default().push(place(example)),
+        }
+    }
+    unread.retain(|message, frames| frames.len() > 1 && !read.contains(message));
+    unread
+}
+
+/// Says that no example is read as the message.
+pub fn report(message: &Message, frames: &[Path]) -> Diagnostic {
+    let text = format!("none of the {} examples of `{}` is read as such", frames.len(), message.name);
+    let help = "correct `match` or what else chooses the message, or else the examples";
+    let diagnostic = Diagnostic::error("example", At::Key(message.doc.path.key("match")), text).help(help);
+    let others = frames.iter().take(SHOWN);
+    others.fold(diagnostic, |diagnostic, frame| diagnostic.other(frame.at_value(), "this frame, for instance"))
+}
+
+fn place(example: &Example) -> Path {
+    example.doc.path.key(example.kind.name())
+}
