@@ -16,9 +16,18 @@ size:
 bench:
     cd generated/benches && cargo test --release --quiet && cargo bench && cargo run --release --quiet
 
+# Look for inputs that break `front_end` or `frames`, guided by coverage, for so many seconds.
+fuzz target seconds="600":
+    cargo run --quiet --package canspec-tests --bin seeds -- target/fuzz
+    cd tests && cargo fuzz run --sanitizer none {{target}} ../target/fuzz/{{target}} -- -max_total_time={{seconds}}
+
 # The comparison with other people's programs.
 peers:
     .ci/peers
+
+# Completion, complaints and explanations of the YAML language server.
+editor:
+    .ci/editor
 
 # A table of mistakes, planted one after the other in a copy of the sources, and of the tests that find them; words choose among them.
 mutants *words:

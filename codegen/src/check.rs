@@ -66,6 +66,7 @@ pub fn check(protocol: &Protocol, percent: Option<u8>, diagnostics: &mut Diagnos
         no_example::check(protocol, percent, diagnostics);
     }
     if diagnostics.has_errors() {
+        example::check_texts(protocol, diagnostics);
         return Counts::default();
     }
     reply::check(protocol, diagnostics);

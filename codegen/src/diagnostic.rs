@@ -3,6 +3,7 @@
 #[cfg(feature = "render")]
 mod render;
 
+use std::collections::HashSet;
 use std::error::Error;
 use std::fmt;
 use std::ops::Range;
@@ -123,12 +124,14 @@ pub struct Diagnostics {
     source: Box<Source>,
     tree: Option<Box<Node>>,
     items: Vec<Diagnostic>,
+    /// Places of errors, and all that they stand in.
+    wrong: HashSet<Path>,
 }
 
 impl Diagnostics {
     /// Starts without a diagnostic.
     pub fn new(source: Source) -> Self {
-        Self { source: Box::new(source), tree: None, items: Vec::new() }
+        Self { source: Box::new(source), tree: None, items: Vec::new(), wrong: HashSet::new() }
     }
 
     /// Sets the tree in which paths are looked up.
@@ -148,6 +151,9 @@ impl Diagnostics {
     /// are left out.
     pub fn push(&mut self, item: Diagnostic) {
         if self.count(item.severity) < MOST && !self.items.contains(&item) {
+            if let (Severity::Error, At::Key(path) | At::Value(path)) = (item.severity, &item.at) {
+                self.wrong.extend(path.ancestors().cloned());
+            }
             self.items.push(item);
         }
     }
@@ -190,6 +196,11 @@ impl Diagnostics {
         self.errors() > 0
     }
 
+    /// Tells whether there is an error at a place of the spec or below it.
+    pub fn has_errors_in(&self, path: &Path) -> bool {
+        self.wrong.contains(path)
+    }
+
     /// Counts the errors.
     pub fn errors(&self) -> usize {
         self.count(Severity::Error)
@@ -215,6 +226,13 @@ impl Diagnostics {
             At::Key(path) => self.tree().map(|tree| tree.key_span(path)),
             At::Value(path) => self.tree().map(|tree| tree.value_span(path)),
         }
+    }
+
+    /// Returns the place of the first of these keys that an item has, or else that of its own key.
+    pub fn written(&self, item: &Path, keys: &[&str]) -> At {
+        let paths = keys.iter().map(|key| item.key(*key));
+        let has = |path: &Path| self.tree().is_some_and(|tree| tree.get(path).is_some());
+        paths.into_iter().find(has).map_or_else(|| item.at_key(), |path| path.at_value())
     }
 
     /// Writes one line for each diagnostic: `FILE:LINE:COLUMN: SEVERITY[RULE]: MESSAGE`.

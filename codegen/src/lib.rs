@@ -1,6 +1,6 @@
 //! Compiles a CAN device protocol, written once in YAML, into Rust codecs.
 //!
-//! [`compile`] runs the stages in order: source, syntax, resolve, check. Each reports all its errors before the next one starts.
+//! [`compile`] runs the stages in order: source, syntax, lint, resolve, check. Each reports all its errors before the next one starts.
 //! The [`model::Protocol`] it returns serves the interpreter ([`interpret`]) and the emitters ([`emit`]).
 
 mod builder;
@@ -9,6 +9,7 @@ pub mod diagnostic;
 pub mod emit;
 pub mod files;
 pub mod interpret;
+mod lint;
 pub mod model;
 pub mod multiples;
 pub mod number;
@@ -18,8 +19,10 @@ pub mod rules;
 pub mod schema;
 pub mod source;
 mod summary;
+mod suspect;
 pub mod syntax;
 mod texts;
+mod words;
 
 pub use builder::{Builder, Generated, generate};
 use diagnostic::Diagnostics;
@@ -49,6 +52,9 @@ pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(&name).to_owned();
     let (spec, mut diagnostics) = syntax::parse(source);
     let usable = spec.filter(|_| !diagnostics.has_errors());
+    if usable.is_some() {
+        lint::lint(&mut diagnostics);
+    }
     let resolved = usable.as_ref().and_then(|spec| resolve::resolve(spec, &file, &mut diagnostics));
     let counts = match &resolved {
         Some(protocol) if !diagnostics.has_errors() => check::check(protocol, percent, &mut diagnostics),

@@ -13,6 +13,10 @@ mod signals;
 mod texts;
 mod types;
 
+use std::collections::{HashMap, HashSet};
+
+use indexmap::IndexSet;
+
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{self, Protocol};
 use crate::rules::RULES;
@@ -41,9 +45,15 @@ struct Tables {
     status_words: Vec<model::StatusWord>,
     /// Remarks of words, which are no signals themselves.
     words: Vec<model::Doc>,
+    /// Names of fields that were given up because of an error, by message; what examples say of them is not judged.
+    given_up: HashMap<String, IndexSet<String>>,
+    /// The same of the header.
+    given_up_header: Vec<String>,
     /// Types that a field names.
-    used_types: Vec<String>,
+    used_types: HashSet<String>,
     models: Vec<model::DeviceModel>,
+    /// Fields of the message at hand so far.
+    fields: usize,
 }
 
 impl Resolver<'_> {
@@ -103,11 +113,6 @@ impl Resolver<'_> {
             let names = RULES.iter().map(|rule| rule.name);
             self.lookup(&root.index(index).key("rule"), "rule", &allowance.rule, names);
         }
-    }
-
-    /// Reports an error.
-    fn error(&mut self, rule: &'static str, at: At, message: String) {
-        self.diagnostics.push(Diagnostic::error(rule, at, message));
     }
 
     /// Reports an error and what to do about it.

@@ -5,7 +5,7 @@ mod gate;
 mod reader;
 pub mod tree;
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::source::Source;
 
 /// Reads a spec, and reports all that is wrong with its syntax at once; there is a spec only if nothing is.
@@ -22,8 +22,29 @@ fn read_tree(tree: &tree::Node, problems: &mut Vec<Diagnostic>) -> Option<ast::S
         Ok(spec) if problems.is_empty() => Some(spec),
         Ok(_) => None,
         Err(found) => {
-            problems.extend(found);
+            for item in found {
+                add(item, tree, problems);
+            }
             None
+        }
+    }
+}
+
+/// Adds what the reader found. Where the gate refused the value of an unknown key as a plain word, the key is the mistake;
+/// where it refused something else, that explains the key.
+fn add(item: Diagnostic, tree: &tree::Node, problems: &mut Vec<Diagnostic>) {
+    let refused = match &item.at {
+        At::Key(path) if item.rule == "unknown_key" => tree.get(path),
+        _ => None,
+    };
+    match refused.filter(|value| value.content == tree::Content::Refused) {
+        None => problems.push(item),
+        Some(value) => {
+            let at = At::Span(value.span.clone());
+            let word = problems.iter().position(|known| known.rule == "plain_word" && known.at == at);
+            if let Some(word) = word {
+                problems[word] = item;
+            }
         }
     }
 }

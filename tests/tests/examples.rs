@@ -36,7 +36,7 @@ fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -
             read.iter().find(|(name, _)| *name == signal.name).unwrap_or_else(|| panic!("{at}: {}", signal.name));
         let width = signal.place.width();
         let mask = u64::MAX >> (64 - width);
-        assert_eq!(Some(raw & mask), meaning.raw, "{at}: {} means {}", signal.name, meaning.text);
+        assert_eq!(Ok(raw & mask), meaning.raw, "{at}: {} means {}", signal.name, meaning.text);
         assert!(matches!(signal.encoding, Encoding::Number { signed: true, .. }) || raw & !mask == 0, "{at}");
     }
     if example.kind != Kind::Request || example.notes.is_empty() {

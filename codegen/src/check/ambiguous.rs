@@ -2,25 +2,39 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, Kind, Message, Protocol, Shape, Who};
+use crate::syntax::tree::Path;
 
 /// Inclusive raw ranges.
 pub type Ranges = Vec<(u32, u32)>;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let frames: Vec<_> =
-        protocol.messages.iter().flat_map(|message| message.shapes.iter().map(move |shape| (message, shape))).collect();
-    let mut reported: Vec<(&str, &str)> = Vec::new();
+    let all = protocol.messages.iter().flat_map(|message| message.shapes.iter().map(move |shape| (message, shape)));
+    let frames: Vec<_> = all.filter(|frame| !is_of_wrong_set(protocol, *frame, diagnostics)).collect();
+    let mut reported: Vec<(Path, Path)> = Vec::new();
     for (index, one) in frames.iter().enumerate() {
         let Some(other) = frames[..index].iter().find(|other| both_fit(protocol, *one, **other)) else { continue };
-        let pair = (one.0.name.as_str(), other.0.name.as_str());
+        let pair = places(protocol, *one, *other);
         if !reported.contains(&pair) {
+            report(protocol, *one, *other, &pair, diagnostics);
             reported.push(pair);
-            report(protocol, *one, *other, diagnostics);
         }
     }
 }
 
-fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape), diagnostics: &mut Diagnostics) {
+/// Tests whether a frame belongs to a set that has an error of its own, which can be why it is ambiguous.
+fn is_of_wrong_set(protocol: &Protocol, (message, shape): (&Message, &Shape), diagnostics: &Diagnostics) -> bool {
+    let set = message.accesses[shape.access].set.map(|set| &protocol.messages[set]);
+    let set = set.or(message.set.as_ref().map(|_| message));
+    set.is_some_and(|set| diagnostics.has_errors_in(&set.doc.path))
+}
+
+fn report(
+    protocol: &Protocol,
+    one: (&Message, &Shape),
+    other: (&Message, &Shape),
+    (place, second): &(Path, Path),
+    diagnostics: &mut Diagnostics,
+) {
     let name = |(message, shape): (&Message, &Shape)| {
         let access = &message.accesses[shape.access];
         let set = access.set.map_or_else(String::new, |set| format!(" in `{}`", protocol.messages[set].name));
@@ -29,11 +43,23 @@ fn report(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape
     };
     let text = format!("a frame can be {} and {}", name(other), name(one));
     let help = "give one of the two another constant, addressing modes of its own, or `models` of its own";
-    let mut diagnostic = Diagnostic::error("ambiguous", one.0.doc.path.at_key(), text).help(help);
-    if one.0.name != other.0.name {
-        diagnostic = diagnostic.other(other.0.doc.path.at_key(), "the other message");
-    }
-    diagnostics.push(diagnostic);
+    let (at, second) = if place == second {
+        let access = |shape: &Shape| place.key("access").index(shape.access).at_value();
+        (access(one.1), access(other.1))
+    } else {
+        (place.at_key(), second.at_key())
+    };
+    diagnostics.push(Diagnostic::error("ambiguous", at, text).help(help).other(second, "the other one"));
+}
+
+/// Returns the places of the sets that two frames are part of; where they are part of one, or of none, those of their messages.
+fn places(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> (Path, Path) {
+    let whole = |(message, shape): (&Message, &Shape)| {
+        let set = message.accesses[shape.access].set;
+        set.map_or(message, |set| &protocol.messages[set]).doc.path.clone()
+    };
+    let (first, second) = (whole(one), whole(other));
+    if first == second { (one.0.doc.path.clone(), other.0.doc.path.clone()) } else { (first, second) }
 }
 
 fn both_fit(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> bool {

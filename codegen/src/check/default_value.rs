@@ -29,6 +29,7 @@ fn check_for(model: Option<usize>, message: &Message, signal: &Signal, diagnosti
         );
         let own = signal.model_defaults.iter().find(|own| Some(own.model) == model);
         let at = own.map_or(&signal.default_path, |own| &own.path).at_value();
-        diagnostics.push_first(Diagnostic::error("default_value", at, text));
+        let help = "correct the default or the range";
+        diagnostics.push_first(Diagnostic::error("default_value", at, text).help(help));
     }
 }

@@ -23,11 +23,7 @@ fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let nearly = fields.filter(|field| tells(&patterns, field.mask()));
     let lacking = |field: &&IdentifierField| patterns.iter().filter(|known| !known.has(field.mask())).count();
     let Some(field) = nearly.min_by_key(lacking) else {
-        let help = "give the controller's address type `outside: refused`, \
-                    or one field a constant in `request` and another in the replies";
-        let at = Path::default().key("addressing").at_key();
-        diagnostics.push(Diagnostic::error("direction", at, text).help(help));
-        return;
+        return report_alike(protocol, &patterns, diagnostics);
     };
     for known in patterns.iter().filter(|known| !known.has(field.mask())) {
         let text = format!("{text}: `{}` of `{}` has no constant in `{}`", known.key, known.mode.name, field.name);
@@ -35,6 +31,31 @@ fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let at = known.mode.doc.path.key(known.key).at_key();
         diagnostics.push(Diagnostic::error("direction", at, text).help(help));
     }
+}
+
+/// Shows where requests and replies have one constant, or else asks for something that tells them apart.
+fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagnostics) {
+    let (requests, replies): (Vec<_>, Vec<_>) = patterns.iter().partition(|known| known.key == "request");
+    let mut pairs = requests.iter().flat_map(|one| replies.iter().map(move |other| (*one, *other)));
+    let common = pairs.find_map(|(one, other)| {
+        let has = |field: &&IdentifierField| one.has(field.mask()) && other.has(field.mask());
+        let mut fields = protocol.identifier.fields.iter().filter(has);
+        let is_same = |field: &IdentifierField| (one.pattern.value ^ other.pattern.value) & field.mask() == 0;
+        let first = fields.next().filter(|field| is_same(field) && fields.all(is_same))?;
+        Some((one, other, first))
+    });
+    let Some((request, reply, field)) = common else {
+        let text = "nothing in the identifier tells a request from a reply";
+        let help = "give one field a constant in `request` and another one in the replies; or, where the controller has \
+                    addresses that no module has, give their type `outside: refused`";
+        let at = Path::default().key("addressing").at_key();
+        return diagnostics.push(Diagnostic::error("direction", at, text).help(help));
+    };
+    let (name, value) = (&field.name, field.get(request.pattern.value));
+    let text = format!("a request and a reply look alike: both have {value} in `{name}`");
+    let place = |known: &Known| known.mode.doc.path.key(known.key).key(name).at_value();
+    let diagnostic = Diagnostic::error("direction", place(reply), text).other(place(request), "the request");
+    diagnostics.push(diagnostic.help("give the reply another constant here"));
 }
 
 /// A pattern of an addressing mode and the key it stands under.

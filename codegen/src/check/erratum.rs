@@ -8,7 +8,10 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for erratum in &protocol.errata {
         if !docs.iter().any(|doc| doc.errata.contains(&erratum.name)) {
             let text = format!("nothing refers to the erratum `{}`", erratum.name);
-            let help = format!("add `erratum: {}` to what it is about", erratum.name);
+            let help = format!(
+                "add `erratum: {}` to the item that departs from the document, or take the erratum out",
+                erratum.name
+            );
             diagnostics.push(Diagnostic::warning("erratum", erratum.path.at_key(), text).help(help));
         }
     }
@@ -17,7 +20,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             if !protocol.errata.iter().any(|erratum| erratum.name == *name) {
                 let text = format!("there is no erratum `{name}`");
                 let at = doc.path.key("erratum").at_value();
-                diagnostics.push(Diagnostic::error("erratum", at, text).help("add it to `errata`"));
+                diagnostics
+                    .push(Diagnostic::error("erratum", at, text).help("correct the name, or add it to `errata`"));
             }
         }
     }

@@ -19,14 +19,15 @@ const SINGLE: u32 = 22;
 const EXACT: u32 = 24;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let help = "write another scale, or none, and say the step in the note";
+    let help = "write the step that the document prints, or a smaller place; or leave `scale` and `offset` out, \
+                and say the step in `title`";
     each_scaled(protocol, diagnostics, help, |signal, signed, scale, offset| {
         if scale == Rational::ZERO {
             return Some("a scale of 0 makes every value 0".to_owned());
         }
         let width = signal.place.width();
         (!has_exact_steps(width, signed, scale, offset))
-            .then(|| format!("{width} bits times {scale} reach 2^50, beyond which a double misses steps"))
+            .then(|| format!("{width} bits in steps of {scale} reach 2^50, beyond which an `f64` misses steps"))
     });
 }
 

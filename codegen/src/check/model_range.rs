@@ -12,7 +12,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     continue;
                 }
                 let text = format!(
-                    "the range {}..{} of {} exceeds the general {}..{} of `{}.{}`",
+                    "the range {}..{} of `{}` exceeds the general {}..{} of `{}.{}`",
                     own.value.minimum,
                     own.value.maximum,
                     protocol.models[own.model].name,
@@ -22,7 +22,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     signal.name
                 );
                 let help = "widen the general range, or take it out and give each model its own";
-                diagnostics.push_first(Diagnostic::error("model_range", own.path.at_value(), text).help(help));
+                let diagnostic = Diagnostic::error("model_range", own.path.at_value(), text).help(help);
+                diagnostics.push_first(diagnostic.other(signal.range_path.at_value(), "the general range"));
             }
         }
     }

@@ -8,11 +8,12 @@ pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
     let without: Vec<_> =
         protocol.messages.iter().enumerate().filter(|(index, _)| !has_example(protocol, *index)).collect();
     for (_, message) in &without {
-        diagnostics.push(nothing_shows(message));
+        diagnostics.push(nothing_shows(protocol, message));
     }
     let (all, shown) = (protocol.messages.len(), protocol.messages.len() - without.len());
     if shown * 100 < all * usize::from(percent) {
-        let text = format!("an example is there for {shown} of {all} messages, fewer than {percent} %");
+        let have = if shown == 1 { "has" } else { "have" };
+        let text = format!("{shown} of {all} messages {have} an example, {percent} % are asked for");
         let help = "add frames of the document to `examples` of a message, or your own with `origin: ours`";
         diagnostics.push(Diagnostic::error("no_example", At::File, text).help(help));
     }
@@ -22,7 +23,16 @@ fn has_example(protocol: &Protocol, message: usize) -> bool {
     protocol.examples.iter().any(|example| example.message == Some(message) && example.fails.is_none())
 }
 
-fn nothing_shows(message: &Message) -> Diagnostic {
-    let text = format!("the message `{}` has no example", message.name);
-    Diagnostic::warning("no_example", message.doc.path.at_key(), text).help("add a frame of it to `examples`")
+fn nothing_shows(protocol: &Protocol, message: &Message) -> Diagnostic {
+    let failing = protocol.examples.iter().find(|example| {
+        example.message.is_some_and(|index| protocol.messages[index].name == message.name) && example.fails.is_some()
+    });
+    let which = if failing.is_some() { " that holds" } else { "" };
+    let text = format!("the message `{}` has no example{which}", message.name);
+    let warning = Diagnostic::warning("no_example", message.doc.path.at_key(), text);
+    let warning = warning.help("add a frame of it to `examples`");
+    match failing {
+        Some(example) => warning.other(example.doc.path.key("fails").at_value(), "one that must fail does not count"),
+        None => warning,
+    }
 }

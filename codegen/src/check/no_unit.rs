@@ -2,15 +2,21 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Encoding, Protocol, Signal};
+use crate::number::Rational;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         for signal in message.signals.iter().filter(|signal| is_nameless(signal)) {
-            let text = format!("`{}.{}` has a scale, but neither a unit nor a title", message.name, signal.name);
-            let help = "write its `unit`; for another than the language has, say it in the `title`";
+            let what = if has_scale(signal) { "a scale" } else { "an offset" };
+            let text = format!("`{}.{}` has {what}, but neither a unit nor a title", message.name, signal.name);
+            let help = "write its `unit`; if the language does not have that unit, say it in the `title`";
             diagnostics.push(Diagnostic::warning("no_unit", signal.doc.path.at_key(), text).help(help));
         }
     }
+}
+
+fn has_scale(signal: &Signal) -> bool {
+    matches!(signal.encoding, Encoding::Number { scale, .. } if scale != Rational::ONE)
 }
 
 fn is_nameless(signal: &Signal) -> bool {

@@ -12,7 +12,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             if !is_silent || !access.kinds.contains(&Kind::Reply) {
                 continue;
             }
-            let text = format!("`{}` has a reply by `{}`, but nobody sends it", message.name, access.name);
+            let text =
+                format!("`{}` has a reply by `{}`, but `answers` says that nobody answers", message.name, access.name);
             let help = "say who answers, or use an access without `reply`";
             diagnostics
                 .push_first(Diagnostic::error("nobody_replies", at(protocol, message, travelling), text).help(help));

@@ -1,7 +1,8 @@
 #![doc = include_str!("../rules/outside_frame.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::Protocol;
+use crate::syntax::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -9,16 +10,32 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let used = 8 - signal.place.mask().iter().rev().take_while(|byte| **byte == 0).count();
             if used > message.length.into() {
                 let text = format!(
-                    "`{}.{}` reaches byte {}, but the message has {} data bytes",
+                    "`{}.{}` reaches byte {}, but the message has {}",
                     message.name,
                     signal.name,
                     used - 1,
-                    message.length
+                    bytes(message.length)
                 );
                 let help = "correct the place, or the `length` of the message";
-                let at = signal.doc.path.key("bytes").at_value();
-                diagnostics.push(Diagnostic::error("outside_frame", at, text).help(help));
+                let at = place(&signal.doc.path, diagnostics);
+                diagnostics.push_first(Diagnostic::error("outside_frame", at, text).help(help));
             }
         }
     }
+}
+
+/// Names the bytes of a frame, counted as `bytes` does.
+fn bytes(length: u8) -> String {
+    match length {
+        0 => "no data bytes".to_owned(),
+        1 => "byte 0 only".to_owned(),
+        _ => format!("bytes 0 to {}", length - 1),
+    }
+}
+
+/// Returns the place that counts bytes: that of a field, or of the word in which it counts bits.
+fn place(field: &Path, diagnostics: &Diagnostics) -> At {
+    let written = |path: &Path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some());
+    let known = field.ancestors().map(|outer| outer.key("bytes")).find(written);
+    known.map_or_else(|| field.at_key(), |path| path.at_value())
 }

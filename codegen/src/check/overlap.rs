@@ -1,27 +1,41 @@
 #![doc = include_str!("../rules/overlap.md")]
 
+use std::collections::HashSet;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Doc, Message, Protocol, SelectorPlace, Shape, Signal};
+use crate::model::{Doc, Encoding, Message, Protocol, SelectorPlace, Shape, Signal};
+use crate::suspect::{Claim, suspect};
 
 /// A leaf of a frame: its name, its remarks, its bits with byte 0 highest.
 type Leaf<'a> = (&'a str, &'a Doc, u64);
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
-        let mut reported = Vec::new();
+        let mut reported = HashSet::new();
         for shape in &message.shapes {
-            let leaves = leaves(protocol, message, shape);
-            for (index, one) in leaves.iter().enumerate() {
-                for other in leaves[..index].iter().filter(|other| one.2 & other.2 != 0) {
-                    if !reported.contains(&(one.0, other.0)) {
-                        reported.push((one.0, other.0));
-                        report(message, one, other, diagnostics);
-                    }
-                }
-            }
+            check_leaves(message, &leaves(protocol, message, shape), &mut reported, diagnostics);
         }
         for signal in &message.signals {
-            check_parts(message, signal, diagnostics);
+            let Encoding::Packed { parts, .. } = &signal.encoding else { continue };
+            let parts: Vec<_> = parts.iter().map(leaf).collect();
+            check_leaves(message, &parts, &mut HashSet::new(), diagnostics);
+        }
+    }
+}
+
+/// Reports each pair of leaves that share bits, once.
+fn check_leaves<'a>(
+    message: &Message,
+    leaves: &[Leaf<'a>],
+    reported: &mut HashSet<(&'a str, &'a str)>,
+    diagnostics: &mut Diagnostics,
+) {
+    let claims: Vec<_> = leaves.iter().map(|leaf| Claim::of_mask(leaf.2)).collect();
+    for (later, one) in leaves.iter().enumerate() {
+        for (earlier, other) in leaves[..later].iter().enumerate() {
+            if one.2 & other.2 != 0 && reported.insert((one.0, other.0)) {
+                report(message, [other, one], suspect(&claims, earlier, later) == later, diagnostics);
+            }
         }
     }
 }
@@ -44,24 +58,18 @@ fn leaf(signal: &Signal) -> Leaf<'_> {
     (&signal.name, &signal.doc, u64::from_be_bytes(signal.place.mask()))
 }
 
-fn check_parts(message: &Message, signal: &Signal, diagnostics: &mut Diagnostics) {
-    let crate::model::Encoding::Packed { parts, .. } = &signal.encoding else { return };
-    for (index, one) in parts.iter().enumerate() {
-        for other in parts[..index].iter().filter(|other| leaf(one).2 & leaf(other).2 != 0) {
-            report(message, &leaf(one), &leaf(other), diagnostics);
-        }
-    }
-}
-
-fn report(message: &Message, one: &Leaf, other: &Leaf, diagnostics: &mut Diagnostics) {
-    let text = format!("`{}` and `{}` of `{}` share {}", other.0, one.0, message.name, bits(one.2 & other.2));
+/// Reports two leaves, of which rather the later one is wrong, or else the earlier one.
+fn report(message: &Message, [earlier, later]: [&Leaf; 2], is_later: bool, diagnostics: &mut Diagnostics) {
+    let text = format!("`{}` and `{}` of `{}` share {}", earlier.0, later.0, message.name, bits(earlier.2 & later.2));
     let help = "correct one of the two places, or remove one of the two";
-    let diagnostic = Diagnostic::error("overlap", one.1.path.at_key(), text).help(help);
-    diagnostics.push(diagnostic.other(other.1.path.at_key(), "the other one"));
+    let (wrong, right) = if is_later { (later, earlier) } else { (earlier, later) };
+    let at = |leaf: &Leaf| diagnostics.written(&leaf.1.path, &["bytes", "bits"]);
+    let diagnostic = Diagnostic::error("overlap", at(wrong), text).help(help).other(at(right), "the other one");
+    diagnostics.push(diagnostic);
 }
 
 /// Names bits of the frame: byte, and bits of the byte.
-fn bits(mask: u64) -> String {
+pub fn bits(mask: u64) -> String {
     let bytes = mask.to_be_bytes().into_iter().enumerate().filter(|(_, byte)| *byte != 0);
     bytes.map(|(index, byte)| bits_of_byte(index, byte)).collect::<Vec<_>>().join(" and ")
 }

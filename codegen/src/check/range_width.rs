@@ -1,32 +1,52 @@
 #![doc = include_str!("../rules/range_width.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::Protocol;
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::model::{Protocol, Range, Signal};
+use crate::number::Rational;
+use crate::syntax::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         for signal in &message.signals {
             let Some(holds) = signal.held() else { continue };
-            for (range, path) in signal.ranges() {
-                if range.minimum >= holds.minimum && range.maximum <= holds.maximum {
-                    continue;
-                }
-                let text = format!(
-                    "the range {}..{} of `{}.{}` exceeds the {}..{} of {}",
-                    range.minimum,
-                    range.maximum,
-                    message.name,
-                    signal.name,
-                    holds.minimum,
-                    holds.maximum,
-                    number_of_bits(signal.place.width())
-                );
-                let help =
-                    "correct the limits, the scale or the place; numbers below 0 need `as: signed` or an `offset`";
-                diagnostics.push_first(Diagnostic::error("range_width", path.at_value(), text).help(help));
+            let exceeds = |range: &Range| range.minimum < holds.minimum || range.maximum > holds.maximum;
+            let exceeding: Vec<_> = signal.ranges().filter(|(range, _)| exceeds(range)).collect();
+            let place = diagnostics.written(&signal.doc.path, &["bytes", "bits"]);
+            let field = format!("`{}.{}` has {}", message.name, signal.name, held(signal, holds));
+            if let Some(diagnostic) = report(signal, place, &field, &exceeding) {
+                diagnostics.push_first(diagnostic.help(help(exceeding[0].0, holds)));
             }
         }
     }
+}
+
+/// Reports the limits of a field, or its place where several limits exceed it; where a limit is that of a type, the place of the field
+/// can as well be wrong.
+fn report(signal: &Signal, place: At, field: &str, exceeding: &[(Range, Path)]) -> Option<Diagnostic> {
+    let (range, path) = exceeding.first()?;
+    let (minimum, maximum) = (range.minimum, range.maximum);
+    if exceeding.len() > 1 {
+        let text = format!("{field}; {} ranges lie outside", exceeding.len());
+        let first = format!("{minimum}..{maximum}, the first of them");
+        return Some(Diagnostic::error("range_width", place, text).other(path.at_value(), first));
+    }
+    let text = format!("{field}; its range is {minimum}..{maximum}");
+    if path.ancestors().any(|outer| *outer == signal.doc.path) {
+        return Some(Diagnostic::error("range_width", path.at_value(), text));
+    }
+    Some(Diagnostic::error("range_width", place, text).other(path.at_value(), "its range"))
+}
+
+/// Says what the bits of a signal hold.
+fn held(signal: &Signal, holds: Range) -> String {
+    format!("{}, which hold {}..{}", number_of_bits(signal.place.width()), holds.minimum, holds.maximum)
+}
+
+fn help(range: Range, holds: Range) -> &'static str {
+    if range.minimum < Rational::ZERO && holds.minimum == Rational::ZERO {
+        return "numbers below 0 need `as: signed` or an `offset`; or correct the limits";
+    }
+    "correct the limits, the scale or the place"
 }
 
 fn number_of_bits(width: u8) -> String {

@@ -9,8 +9,12 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let is_own = signal.range_path.ancestors().any(|path| *path == message.doc.path);
             let is_idle = signal.range.is_some() && signal.specials.is_empty();
             if is_idle && is_own && !is_sent(message, index) {
-                let text = format!("`{}.{}` has a range, but no request carries it", message.name, signal.name);
-                let help = "take the range out, or allow it with a reason in `allow`";
+                let text = format!(
+                    "`{}.{}` has a range, which limits what is sent, but no request carries the field",
+                    message.name, signal.name
+                );
+                let help =
+                    "take the range out, since what is read is not limited, or allow it with a reason in `allow`";
                 diagnostics.push(Diagnostic::warning("read_only_range", signal.range_path.at_value(), text).help(help));
             }
         }

@@ -17,24 +17,37 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 /// Says what is wrong with a refusal, and what to do.
-fn complaint(protocol: &Protocol, message: &Message, refusal: &Shape) -> Option<(String, &'static str)> {
+fn complaint(protocol: &Protocol, message: &Message, refusal: &Shape) -> Option<(String, String)> {
     let name = &message.name;
     let frames = message.shapes.iter().filter(|shape| shape.access == refusal.access);
     let replies: Vec<_> = frames.clone().filter(|shape| shape.kind == Kind::Reply).collect();
     if replies.is_empty() || !frames.clone().any(|shape| shape.kind == Kind::Request) {
         let text =
             format!("a refusal of `{name}` stands in place of the reply to a request, but there is no such reply");
-        return Some((text, "add `request:` and `reply:` to the access, or take `refusal` out"));
+        return Some((text, "add `request:` and `reply:` to the access, or take `refusal` out".to_owned()));
     }
     if !replies.iter().all(|reply| is_apart(reply, refusal)) {
-        let help = "give a field one constant in `reply` and another one in `refusal`";
-        return Some((format!("nothing tells a refusal of `{name}` from its reply"), help));
+        let help = "give a field one constant in `reply` and another one in `refusal`".to_owned();
+        let constants = shown(protocol, refusal);
+        return Some((format!("nothing tells a refusal of `{name}` from its reply: both have {constants}"), help));
     }
     let is_known = protocol.messages.iter().flat_map(|other| &other.shapes).any(|shape| says_why(shape, refusal));
     (!is_known).then(|| {
-        let text = format!("a refusal of `{name}` is the reply of no message");
-        (text, "write a message whose reply has these constants and carries the reason")
+        let text =
+            format!("no message says why `{name}` is refused: none has a reply with {}", shown(protocol, refusal));
+        let help = format!(
+            "write a message for the reason, with an access whose `reply` has the constants of this `refusal`; \
+             in its own `match` it has none but those of `{name}`"
+        );
+        (text, help)
     })
+}
+
+/// Names the constants of a refusal.
+fn shown(protocol: &Protocol, refusal: &Shape) -> String {
+    let constants = refusal.constants.iter();
+    let texts = constants.map(|(selector, value)| format!("`{}` {value:#04X}", protocol.selectors[*selector].name));
+    texts.collect::<Vec<_>>().join(", ")
 }
 
 /// Tests whether one field has different constants in both.

@@ -10,12 +10,18 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         if example.position == 0 {
             latest = None;
         }
-        let Some(decoded) = decoded(protocol, example) else { continue };
+        let decoded = decoded(protocol, example);
+        if decoded.is_none() && example.kind == Kind::Request {
+            latest = None;
+        }
+        let Some(decoded) = decoded else { continue };
         match (example.kind, &latest) {
             (Kind::Request, _) => latest = Some((example, decoded)),
             (Kind::Reply, Some((request, asked))) => {
                 if let Some(why) = mismatch(protocol, asked, &decoded) {
-                    let diagnostic = Diagnostic::error("reply", example.doc.path.key("reply").at_value(), why);
+                    let help = "correct the frame, or put the request that it answers before it";
+                    let diagnostic =
+                        Diagnostic::error("reply", example.doc.path.key("reply").at_value(), why).help(help);
                     diagnostics.push(diagnostic.other(request.doc.path.key("request").at_value(), "the request"));
                 }
             }
@@ -24,12 +30,13 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Decodes an example that does not fail.
+/// Decodes an example that does not fail, and is what it says.
 fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
     if example.fails.is_some() {
         return None;
     }
-    decode(protocol, example.model, &Frame::of(protocol, example)).ok()
+    let decoded = decode(protocol, example.model, &Frame::of(protocol, example)).ok()?;
+    (decoded.kind == example.kind && Some(decoded.message) == example.message).then_some(decoded)
 }
 
 /// Says why a reply does not answer a request.
@@ -38,25 +45,57 @@ fn mismatch(protocol: &Protocol, asked: &Decoded, reply: &Decoded) -> Option<Str
     let request = &protocol.messages[asked.message];
     if whole(asked) != whole(reply) && !refuses(protocol, request, asked, reply) {
         let (found, other) = (shown(protocol, reply), shown(protocol, asked));
-        return Some(format!("a reply of {found} follows a request of {other}"));
+        let why = difference(protocol, request, asked, reply).unwrap_or_default();
+        return Some(format!("a reply of {found} follows a request of {other}{why}"));
     }
     let mode = &protocol.modes[asked.addressing?];
     let is_asked = |access: &&MessageAccess| access.access == asked.access && access.set == asked.set;
     let access = request.accesses.iter().find(is_asked)?;
     match access.answers[asked.addressing?] {
-        Some(Who::Nobody) | None => Some(format!("nobody answers `{}` by `{}`", message.name, mode.name)),
+        Some(Who::Nobody) | None => {
+            Some(format!("nobody answers `{}` in the addressing mode `{}`", message.name, mode.name))
+        }
         Some(who) => unbound(protocol, mode, who, asked, reply),
     }
 }
 
 /// Tests whether a reply shows that a request is refused.
 fn refuses(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Decoded) -> bool {
-    let shows = |(selector, value): &(usize, u64)| match protocol.selectors[*selector].place {
-        SelectorPlace::Identifier(field) => u64::from(reply.identifier[field]) == *value,
-        SelectorPlace::Payload(_) => reply.selectors.contains(&(*selector, *value)),
-    };
+    let shows = |(selector, value): &(usize, u64)| value_of(protocol, reply, *selector) == Some(*value);
     let is_of_access = |refusal: &&Shape| request.accesses[refusal.access].access == asked.access;
     request.refusals.iter().filter(is_of_access).any(|refusal| refusal.constants.iter().all(shows))
+}
+
+/// Returns what a frame shows in the place of a selector.
+fn value_of(protocol: &Protocol, frame: &Decoded, selector: usize) -> Option<u64> {
+    match protocol.selectors[selector].place {
+        SelectorPlace::Identifier(field) => Some(frame.identifier[field].into()),
+        SelectorPlace::Payload(_) => {
+            frame.selectors.iter().find(|(known, _)| *known == selector).map(|(_, value)| *value)
+        }
+    }
+}
+
+/// Says in which constants a reply departs from that of the answer or the refusal to which it comes nearest.
+fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Decoded) -> Option<String> {
+    let is_of_access = |shape: &&Shape| {
+        let access = &request.accesses[shape.access];
+        access.access == asked.access && access.set == asked.set && shape.kind == Kind::Reply
+    };
+    let shapes = request.shapes.iter().chain(&request.refusals).filter(is_of_access);
+    let of_set = asked.set.map_or(request, |set| &protocol.messages[set]).set.iter().map(|set| &set.replies);
+    let departures = shapes.map(|shape| &shape.constants).chain(of_set).map(|constants| {
+        let found = constants.iter().filter_map(|(selector, wanted)| {
+            let found = value_of(protocol, reply, *selector).filter(|found| found != wanted)?;
+            Some(format!(
+                "`{}` is {found:#04X} here, and {wanted:#04X} in an answer",
+                protocol.selectors[*selector].name
+            ))
+        });
+        found.collect::<Vec<_>>()
+    });
+    let nearest = departures.filter(|found| !found.is_empty()).min_by_key(Vec::len)?;
+    Some(format!(": {}", nearest.join(", ")))
 }
 
 /// Returns the message that a frame belongs to: its set, if it is one of a set.
@@ -64,11 +103,11 @@ fn whole(decoded: &Decoded) -> usize {
     decoded.set.unwrap_or(decoded.message)
 }
 
-/// Names the message of a frame, and its set if it is one of a set.
+/// Names the message of a frame, its access, and its set if it is one of a set.
 fn shown(protocol: &Protocol, decoded: &Decoded) -> String {
-    let name = &protocol.messages[decoded.message].name;
+    let (name, access) = (&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name);
     let set = decoded.set.map(|set| format!(" in `{}`", protocol.messages[set].name));
-    format!("`{name}`{}", set.unwrap_or_default())
+    format!("`{name}` by `{access}`{}", set.unwrap_or_default())
 }
 
 /// Says which address of the reply is not the request's.
@@ -80,7 +119,7 @@ fn unbound(protocol: &Protocol, mode: &Mode, who: Who, asked: &Decoded, reply: &
         let bound = numbers.iter().find(|(known, _)| *known == address.address_type);
         if let Some((_, wanted)) = bound.filter(|(_, wanted)| *wanted != number) {
             let name = &protocol.address_types[address.address_type].name;
-            return Some(format!("the reply's {name} is {number:#04X}, the request's is {wanted:#04X}"));
+            return Some(format!("the reply's `{name}` is {number:#04X}, the request's is {wanted:#04X}"));
         }
     }
     let fields = protocol.identifier.fields.iter().zip(&reply.identifier);

@@ -31,11 +31,11 @@ fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a
     let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
     for (rust, name, doc) in names {
         if is_word_of_rust(&rust) {
-            let text = format!("`{name}` is a word of Rust");
+            let text = format!("`{name}` is a keyword of Rust");
             diagnostics.push(Diagnostic::error("rust_name", doc.path.at_key(), text).help("choose another name"));
         }
         if let Some((_, other, earlier)) = seen.iter().find(|(known, _, _)| *known == rust) {
-            let text = format!("the names `{other}` and `{name}` are one {what} in Rust: `{rust}`");
+            let text = format!("`{other}` and `{name}` are one {what} in Rust: `{rust}`");
             let diagnostic = Diagnostic::error("rust_name", doc.path.at_key(), text).help("rename one of the two");
             diagnostics.push(diagnostic.other(earlier.path.at_key(), "the other name"));
         }

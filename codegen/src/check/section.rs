@@ -11,7 +11,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for (what, name, doc) in messages.chain(models).chain(timing).chain(procedures) {
         if doc.section.is_none() {
             let text = format!("the {what} `{name}` has no section");
-            let help = "write `section: \"2.4\"`, where the document says it";
+            let help =
+                "say where the document has it, for instance `section: \"2.4\"`, or allow it with a reason in `allow`";
             diagnostics.push(Diagnostic::warning("section", doc.path.at_key(), text).help(help));
         }
     }

@@ -1,7 +1,9 @@
 #![doc = include_str!("../rules/set.md")]
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{IdentifierField, Kind, Message, Protocol, Selector, SelectorPlace, Set, Shape};
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::model::{
+    Access, IdentifierField, Kind, Message, MessageAccess, Protocol, Selector, SelectorPlace, Set, Shape,
+};
 use crate::syntax::tree::Path;
 
 /// The most members that a set can have: one bit each in the machine's widest integer.
@@ -36,7 +38,13 @@ fn check_fields(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         check_sent(field, diagnostics);
     }
     for selector in selectors.filter(|selector| selector.continues == Some(0)) {
-        report_sent(&selector.name, &selector.doc.path, 0, diagnostics);
+        let text = format!(
+            "`{}` is sent as 0, as all of the header, so every frame would say that more follow",
+            selector.name
+        );
+        let help = "let a field of the identifier say it, or another value of `continues`";
+        let at = selector.doc.path.key("continues").at_value();
+        diagnostics.push(Diagnostic::error("set", at, text).help(help));
     }
 }
 
@@ -44,14 +52,20 @@ fn check_fields(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 fn check_sent(field: &IdentifierField, diagnostics: &mut Diagnostics) {
     let sent = field.constant.or(field.send).or(field.normal).unwrap_or(0);
     if field.continues == Some(sent) {
-        report_sent(&field.name, &field.doc.path, sent, diagnostics);
+        let text = format!("`{}` is sent as {sent}, so every frame would say that more follow", field.name);
+        let help = format!("give it another value to send, for instance `send: {}`", u32::from(sent == 0));
+        let at = field.doc.path.key("continues").at_value();
+        diagnostics.push(Diagnostic::error("set", at, text).help(help));
     }
 }
 
-fn report_sent(name: &str, path: &Path, sent: u32, diagnostics: &mut Diagnostics) {
-    let text = format!("`{name}` is sent as {sent}, so every frame would say that more follow");
-    let help = "give the field of the identifier another value to `send`";
-    diagnostics.push(Diagnostic::error("set", path.key("continues").at_value(), text).help(help));
+/// Tests whether something stands at a place of the spec.
+fn is_written(path: &Path, diagnostics: &Diagnostics) -> bool {
+    diagnostics.tree().is_some_and(|tree| tree.get(path).is_some())
+}
+
+fn wrong(at: At, text: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("set", at, text)
 }
 
 struct Checker<'a> {
@@ -63,20 +77,22 @@ struct Checker<'a> {
 
 impl Checker<'_> {
     fn check(&self, diagnostics: &mut Diagnostics) {
-        let mut report = |path: Path, text: String, help: &str| {
-            diagnostics.push(Diagnostic::error("set", path.at_value(), text).help(help));
-        };
-        if self.protocol.continuation().is_none() {
-            let text = format!("nothing says which frame of `{}` is the last", self.message.name);
-            report(self.key("members"), text, "give a field of the identifier or the header `continues`");
+        let Self { protocol, message, set, .. } = self;
+        let members = self.key("members");
+        if protocol.continuation().is_none() {
+            let text = format!("nothing says which frame of `{}` is the last", message.name);
+            let help = "give the field that says so its value for \"more frames follow\", \
+                        as in `more: {bits: 0, continues: 1}`";
+            diagnostics.push(wrong(members.at_value(), text).help(help));
         }
-        if self.set.members.len() > MOST {
-            let text = format!("`{}` has {} members, more than {MOST}", self.message.name, self.set.members.len());
-            report(self.key("members"), text, "make two sets of it");
+        if set.members.len() > MOST {
+            let text = format!("`{}` has {} members, more than {MOST}", message.name, set.members.len());
+            diagnostics.push(wrong(members.at_value(), text).help("make two sets of it"));
         }
-        self.check_access(&mut report);
-        for (position, member) in self.set.members.iter().enumerate() {
-            self.check_member(&self.protocol.messages[*member], self.key("members").index(position), &mut report);
+        self.check_access(diagnostics);
+        self.check_length(diagnostics);
+        for (position, member) in set.members.iter().enumerate() {
+            self.check_member(&protocol.messages[*member], &members.index(position), diagnostics);
         }
     }
 
@@ -84,66 +100,133 @@ impl Checker<'_> {
         self.message.doc.path.key(key)
     }
 
-    fn check_access(&self, report: &mut impl FnMut(Path, String, &str)) {
+    fn check_access(&self, diagnostics: &mut Diagnostics) {
         let [access] = self.message.accesses.as_slice() else {
             let text = format!("the set `{}` has more than one access", self.message.name);
-            return report(self.key("access"), text, "name the one by which it is asked for");
+            let help = "name the one by which it is asked for";
+            return diagnostics.push(wrong(self.key("access").at_value(), text).help(help));
         };
         let known = &self.protocol.accesses[access.access];
-        let name = &known.name;
-        let lacking = self.set.kinds.iter().find(|kind| !known.kinds.contains(kind));
-        if let Some(kind) = lacking {
-            let text = format!("`{name}` has no {}", kind.name());
-            report(self.key("in"), text, "name kinds of frames that the access of the set has");
-        } else if self.set.kinds.contains(&Kind::Report) || !self.set.kinds.contains(&Kind::Reply) {
-            let text = "a set of frames is a reply".to_owned();
-            report(
-                self.key("in"),
-                text,
-                "write `in: [reply]`, or `in: [request, reply]` if it is asked for in as many frames",
-            );
-        } else if !known.carries.contains(&Kind::Reply) || known.carries.contains(&Kind::Request) {
-            let text = format!("`{name}` does not carry values in the reply alone, as a set does");
-            report(self.key("access"), text, "name an access with `in: [reply]`");
-        } else if known.kinds.contains(&Kind::Report) {
-            report(
-                self.key("access"),
-                format!("`{name}` has reports, which are no set"),
-                "name an access without `report`",
-            );
+        if let Some(diagnostic) = self.wrong_kinds().filter(|_| known.kinds.contains(&Kind::Reply)) {
+            diagnostics.push(diagnostic);
+        } else if let Some(diagnostic) = self.misfit(known) {
+            diagnostics.push(diagnostic.other(known.doc.path.at_key(), "the access"));
         }
         if self.protocol.answering(access).is_none() {
-            let text = format!("the replies of `{}` do not show which node sends them", self.message.name);
-            let help = "use addressing modes whose replies hold the same one address that has no `send`";
-            report(self.key("access"), text, help);
+            diagnostics.push(self.nameless(access));
         }
     }
 
-    fn check_member(&self, member: &Message, at: Path, report: &mut impl FnMut(Path, String, &str)) {
+    /// Says why the kinds of frames are none of a set.
+    fn wrong_kinds(&self) -> Option<Diagnostic> {
+        let (set, kinds) = (&self.message.name, &self.set.kinds);
+        if !kinds.contains(&Kind::Report) && kinds.contains(&Kind::Reply) {
+            return None;
+        }
+        let names: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
+        let text = format!("the set `{set}` has `in: [{}]`, but the frames of a set are replies", names.join(", "));
+        let help = "write `in: [reply]`, or `in: [request, reply]` if it is asked for in as many frames";
+        Some(wrong(self.key("in").at_value(), text).help(help))
+    }
+
+    /// Says why an access is none of a set.
+    fn misfit(&self, access: &Access) -> Option<Diagnostic> {
+        let (set, name) = (&self.message.name, &access.name);
+        let at = self.key("access").index(0).at_value();
+        if let Some(kind) = self.set.kinds.iter().find(|kind| !access.kinds.contains(kind)) {
+            let text = format!("the set `{set}` has no {}: the access `{name}` has none", kind.name());
+            return Some(wrong(at, text).help("name an access with `request` and `reply`"));
+        }
+        if access.carries.contains(&Kind::Request) {
+            let text = format!("requests by the access `{name}` carry values, those of a set do not");
+            return Some(wrong(at, text).help(format!("name an access with `in: [reply]`, or add that to `{name}`")));
+        }
+        if !access.carries.contains(&Kind::Reply) {
+            let text = format!("replies by the access `{name}` carry no values, those of a set do");
+            return Some(wrong(at, text).help(format!("name an access with `in: [reply]`, or add that to `{name}`")));
+        }
+        access.kinds.contains(&Kind::Report).then(|| {
+            let text = format!("the access `{name}` has reports, but a set has only requests and replies");
+            wrong(at, text).help("name an access without `report`")
+        })
+    }
+
+    /// Says that replies do not show which node sends them; where one addressing mode is the reason, it is shown.
+    fn nameless(&self, access: &MessageAccess) -> Diagnostic {
+        let text = format!("the replies of the set `{}` do not show which node sends them", self.message.name);
+        let help = "let each pattern of the replies name the address of who answers, the same in all addressing modes";
+        let diagnostic = wrong(self.key("access").index(0).at_value(), text).help(help);
+        let answers = self.protocol.modes.iter().zip(&access.answers);
+        let silent = answers.filter_map(|(mode, who)| {
+            mode.reply((*who)?).filter(|pattern| pattern.addresses.is_empty())?;
+            Some(mode.doc.path.at_key())
+        });
+        silent.fold(diagnostic, |known, at| known.other(at, "its replies name no address"))
+    }
+
+    /// Tests that the set has as many data bytes as its members.
+    fn check_length(&self, diagnostics: &mut Diagnostics) {
+        let members =
+            self.set.members.iter().enumerate().map(|(position, member)| (position, &self.protocol.messages[*member]));
+        let mut other = members.filter(|(_, member)| member.length != self.message.length);
+        let Some((position, first)) = other.next() else { return };
+        let (set, length) = (&self.message.name, self.message.length);
+        let text = format!("the set `{set}` has {length} data bytes, its member `{}` has {}", first.name, first.length);
+        let help = "give the set and its members the same `length`";
+        let diagnostic = wrong(self.key("length").at_value(), text).help(help);
+        let at = |position: usize| self.key("members").index(position).at_value();
+        let diagnostic = diagnostic.other(at(position), "has another length");
+        diagnostics.push(other.fold(diagnostic, |known, (position, _)| known.other(at(position), "this one too")));
+    }
+
+    fn check_member(&self, member: &Message, at: &Path, diagnostics: &mut Diagnostics) {
         let name = &member.name;
         let shapes: Vec<_> = member.shapes.iter().filter(|shape| self.is_of_set(member, shape)).collect();
         let reply = shapes.iter().find(|shape| shape.kind == Kind::Reply);
         if reply.is_some_and(|reply| reply.signals.is_empty()) {
-            let text = format!("a reply of `{name}` carries nothing");
-            report(at.clone(), text, "give it fields that a reply has, or take it out of the set");
+            let text = format!("a reply of `{name}` has no field, so it carries nothing");
+            let help = "give it fields that a reply has, or take it out of the set";
+            let fields = member.signals.iter().map(|signal| signal.doc.path.at_key());
+            let diagnostic = wrong(at.at_value(), text).help(help);
+            diagnostics.push(fields.fold(diagnostic, |known, at| known.other(at, "this is in no reply")));
         }
         if shapes.iter().any(|shape| shape.kind == Kind::Request && !shape.signals.is_empty()) {
             let text = format!("a request of `{name}` in a set would carry values");
-            report(at.clone(), text, "take `request` out of the `in` of its fields");
+            diagnostics.push(wrong(at.at_value(), text).help("take `request` out of the `in` of its fields"));
         }
         if let Some(field) = shapes.iter().find_map(|shape| self.fixed(shape)) {
-            let text = format!("frames of `{name}` always have the same value in `{field}`, so it cannot end the set");
-            report(at.clone(), text, "take this constant out of `match`, of the access and of the addressing modes");
-        }
-        if member.length != self.message.length {
-            let (found, wanted) = (member.length, self.message.length);
-            let text = format!("`{name}` has {found} data bytes, the other frames of the set {wanted}");
-            report(at.clone(), text, "give the set and its members the same `length`");
+            let text = format!("`{field}` is constant in frames of `{name}`, so it cannot end the set");
+            let help =
+                format!("take the constant of `{field}` out of `match`, of the access and of the addressing modes");
+            let diagnostic = wrong(at.at_value(), text).help(help);
+            let places = self.constants(member, field).into_iter().filter(|path| is_written(path, diagnostics));
+            diagnostics.push(places.fold(diagnostic, |known, path| known.other(path.at_value(), "the constant")));
         }
         if !self.has_models(member) {
-            let text = format!("a device model that has the set does not have `{name}`");
-            report(at, text, "give the set the `models` that have all its members");
+            diagnostics.push(self.lacking(member, at));
         }
+    }
+
+    /// Says that a device model has the set, but not one of its members.
+    fn lacking(&self, member: &Message, at: &Path) -> Diagnostic {
+        let lacking = self.message.models.iter().find(|model| !member.is_of(**model));
+        let who = lacking.map_or_else(
+            || "any device model can have".to_owned(),
+            |model| format!("the model `{}` has", self.protocol.models[*model].name),
+        );
+        let text = format!("{who} the set `{}`, but not its member `{}`", self.message.name, member.name);
+        let diagnostic = wrong(at.at_value(), text).help("give the set the `models` that have all its members");
+        diagnostic.other(member.doc.path.key("models").at_key(), "the models of the member")
+    }
+
+    /// Returns the places where a constant of a field can stand for frames of the set.
+    fn constants(&self, member: &Message, field: &str) -> Vec<Path> {
+        let accesses = self.message.accesses.iter().map(|access| &self.protocol.accesses[access.access].doc.path);
+        let of_access = accesses.flat_map(|path| [path.key("request"), path.key("reply")]);
+        let of_messages = [&self.message.doc.path, &member.doc.path].map(|path| path.key("match"));
+        let of_modes = self.protocol.modes.iter().map(|mode| &mode.doc.path);
+        let of_modes = of_modes.flat_map(|path| ["request", "one", "each", "coordinator"].map(|key| path.key(key)));
+        of_access.chain(of_messages).chain(of_modes).map(|path| path.key(field)).collect()
     }
 
     fn is_of_set(&self, member: &Message, shape: &Shape) -> bool {

@@ -20,7 +20,12 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     range.minimum,
                     range.maximum
                 );
-                let help = "take it out of the range, or drop its name";
+                let what = if names.len() == 1 {
+                    "it out of the range, or its name"
+                } else {
+                    "them out of the range, or their names"
+                };
+                let help = format!("take {what} out of `values`");
                 diagnostics.push_first(Diagnostic::error("special_value", path.at_value(), text).help(help));
             }
         }
@@ -32,5 +37,5 @@ fn names_inside(signal: &Signal, range: Range) -> Vec<String> {
     let inside =
         |raw| signal.encoding.value_of(raw).is_some_and(|value| range.minimum <= value && value <= range.maximum);
     let specials = signal.specials.iter().filter(|special| inside(special.raw));
-    specials.map(|special| format!("`{}`", special.name)).collect()
+    specials.map(|special| format!("`{}` ({})", special.name, special.raw)).collect()
 }

@@ -24,16 +24,16 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 fn without_mode(message: &Message) -> Diagnostic {
-    let text = format!("no frame is ever `{}`: nobody may be addressed with it", message.name);
+    let text = format!("no frame is ever decoded as `{}`: no addressing mode is used with it", message.name);
     let help = "say in `answers` of its access in which addressing modes it is used, and who answers";
     Diagnostic::error("unreachable", message.doc.path.key("access").at_key(), text).help(help)
 }
 
 fn claimed(message: &Message, foreign: &Foreign) -> Diagnostic {
-    let text = format!("no frame is ever `{}`: all that it could have are foreign", message.name);
-    let help = "narrow the foreign identifiers, or correct the constants of the message";
+    let text = format!("no frame is ever decoded as `{}`: all frames that it could have are foreign", message.name);
+    let help = "correct the constants of the message, or let the foreign identifiers leave it some";
     let diagnostic = Diagnostic::error("unreachable", message.doc.path.at_key(), text).help(help);
-    diagnostic.other(foreign.doc.path.at_key(), "this is tested first")
+    diagnostic.other(foreign.doc.path.key("match").at_key(), "this claims them first")
 }
 
 /// Finds who claims all frames of a shape that an addressing pattern allows.

@@ -324,7 +324,7 @@ impl<'a> Decoder<'a> {
         notes.extend(signals.iter().filter_map(note));
         if reserved != [0; 8] {
             let bits = hex(&reserved[..self.frame.data.len()]);
-            notes.push(Note { rule: "reserved_bit", text: format!("bits are set that the document reserves: {bits}") });
+            notes.push(Note { rule: "reserved_bit", text: format!("bits are set that no field has: 0x{bits}") });
         }
         Decoded {
             message: index,

@@ -2,13 +2,11 @@
 
 use super::Resolver;
 use super::texts::remarks;
+use crate::diagnostic::Diagnostic;
 use crate::model::{Access, Kind, Mode, Timing, Who};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
-
-/// The words for who answers.
-const ANSWERS: [(&str, Who); 4] =
-    [("one", Who::One), ("each", Who::Each), ("coordinator", Who::Coordinator), ("nobody", Who::Nobody)];
+use crate::words::ANSWERS;
 
 impl Resolver<'_> {
     pub fn accesses(&mut self, modes: &[Mode], timing: &[Timing]) -> Vec<Access> {
@@ -26,20 +24,20 @@ impl Resolver<'_> {
         }
         let named = self.kinds(&path.key("in"), &access.kinds);
         let carries = if access.kinds.is_empty() { kinds.clone() } else { named };
-        self.check_carries(path, access, &kinds);
+        self.check_carries(path, name, access, &kinds);
         let answers = self.answers(&path.key("answers"), &access.answers, modes, &kinds);
         let every = self.every(path, access.every.as_deref(), timing);
         Access { name: name.to_owned(), doc: remarks!(access).doc(path, None), kinds, carries, answers, every }
     }
 
     /// Tests that the frames that carry the signals exist.
-    fn check_carries(&mut self, path: &Path, access: &ast::Access, kinds: &[Kind]) {
+    fn check_carries(&mut self, path: &Path, name: &str, access: &ast::Access, kinds: &[Kind]) {
         for (index, word) in access.kinds.iter().enumerate() {
             let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
             if kind.is_some_and(|kind| !kinds.contains(&kind)) {
                 let help = format!("add `{word}: {{}}` to the access, or take it out of `in`");
                 let at = path.key("in").index(index).at_value();
-                self.error_with_help("access", at, format!("this access has no {word}"), help);
+                self.error_with_help("access", at, format!("the access `{name}` has no {word}"), help);
             }
         }
     }
@@ -67,9 +65,10 @@ impl Resolver<'_> {
 
     fn check_answer(&mut self, at: &Path, mode: &Mode, (word, who): (&str, Who), kinds: &[Kind]) {
         if who != Who::Nobody && mode.reply(who).is_none() {
-            let message = format!("the addressing mode `{}` has no pattern `{word}`", mode.name);
-            let help = format!("add `{word}:` to `addressing.{}`", mode.name);
-            self.error_with_help("addressing", at.at_value(), message, help);
+            let message = format!("the addressing mode `{}` has no `{word}`", mode.name);
+            let help = format!("add `{word}:` to `addressing.{}`, or say here who else answers", mode.name);
+            let diagnostic = Diagnostic::error("addressing", at.at_value(), message).help(help);
+            self.diagnostics.push(diagnostic.other(mode.doc.path.at_key(), "the mode"));
         }
         if kinds.contains(&Kind::Request) && mode.request.is_none() {
             let message = format!("the addressing mode `{}` has no request", mode.name);
@@ -84,8 +83,10 @@ impl Resolver<'_> {
 
     /// Finds the time of a cyclic report.
     pub fn every(&mut self, path: &Path, name: Option<&str>, timing: &[Timing]) -> Option<usize> {
-        let names = timing.iter().map(|known| known.name.as_str());
-        self.lookup_or(&path.key("every"), "timing", name?, names, "add the time to `timing` and write its name")
+        let name = name?;
+        let names = self.spec.timing.keys().map(String::as_str);
+        self.lookup_or(&path.key("every"), "timing", name, names, "add the time to `timing` and write its name")?;
+        timing.iter().position(|known| known.name == name)
     }
 }
 

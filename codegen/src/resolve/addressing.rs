@@ -1,20 +1,20 @@
 //! Addressing modes, address types, and how an identifier shows its direction.
 
 use super::Resolver;
-use super::keys::Role;
+use super::keys::{Role, written};
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Address, AddressPattern, AddressType, Direction, FieldTest, Identifier, IdentifierField, Mode};
 use crate::number::Rational;
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
+use crate::words::OUTSIDE;
 
 impl Resolver<'_> {
     /// Reads the types that addressing patterns name.
     pub fn address_types(&mut self) -> Vec<AddressType> {
         let spec = self.spec;
-        let used = |name: &str| patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
-        let types = spec.types.iter().filter(|(name, _)| used(name));
+        let types = spec.types.iter().filter(|(name, _)| is_address_type(spec, name));
         types.filter_map(|(name, field)| self.address_type(name, field)).collect()
     }
 
@@ -32,7 +32,12 @@ impl Resolver<'_> {
             Some("-1") => -1,
             Some(other) => {
                 let message = format!("an address cannot be scaled by `{other}`");
-                self.error_with_help("addressing", path.key("scale").at_value(), message, "write `-1` or nothing");
+                self.error_with_help(
+                    "addressing",
+                    path.key("scale").at_value(),
+                    message,
+                    "write `scale: -1`, or leave `scale` out",
+                );
                 return None;
             }
         };
@@ -49,29 +54,37 @@ impl Resolver<'_> {
     /// Reads a range of whole numbers.
     fn whole_range(&mut self, path: &Path, text: &str) -> Option<(i64, i64)> {
         let range = self.range(path, text)?;
-        let whole = |end: Rational| i32::try_from(end.to_integer()?).ok().map(i64::from);
-        let ends = whole(range.minimum).zip(whole(range.maximum));
-        if ends.is_none() {
-            let message = format!("the addresses `{text}` are not whole numbers of at most 31 bits");
-            self.error("addressing", path.at_value(), message);
-        }
-        ends
+        let mut whole = |end: Rational| {
+            let number = end.to_integer().and_then(|number| i32::try_from(number).ok()).map(i64::from);
+            if number.is_none() {
+                let message = format!("the addresses `{text}` end in {end}, which no identifier can hold");
+                let help = "write whole numbers that fit the field, as in `range: 0..0x3B`";
+                self.error_with_help("addressing", path.at_value(), message, help);
+            }
+            number
+        };
+        whole(range.minimum).zip(whole(range.maximum))
     }
 
     fn strict(&mut self, path: &Path, outside: Option<&str>) -> bool {
-        outside.is_some_and(|word| self.lookup(&path.key("outside"), "rule", word, ["refused"].into_iter()).is_some())
+        outside.is_some_and(|word| self.lookup(&path.key("outside"), "rule", word, OUTSIDE.into_iter()).is_some())
     }
 
     /// Tests that the field holds all addresses that can be sent.
     fn check_address_width(&mut self, at: &Path, address_type: &AddressType, field: &IdentifierField) {
-        let numbers = [address_type.first, address_type.last].into_iter().chain(address_type.send);
-        let outside = numbers.map(|number| address_type.raw(number)).find(|raw| *raw < 0 || *raw >> field.width != 0);
-        if let Some(raw) = outside {
-            let (name, bits) = (&address_type.name, field.width);
-            let message =
-                format!("an address of `{name}` is {raw} in the identifier, but `{}` has {bits} bits", field.name);
-            let diagnostic = Diagnostic::error("addressing", at.at_value(), message);
-            self.diagnostics.push(diagnostic.other(address_type.doc.path.key("range").at_value(), "the addresses"));
+        let ends = [address_type.first, address_type.last].map(|number| (number, "range"));
+        let numbers = ends.into_iter().chain(address_type.send.map(|number| (number, "send")));
+        let mut raw = numbers.map(|(number, key)| (address_type.raw(number), key));
+        if let Some((raw, key)) = raw.find(|(raw, _)| *raw < 0 || *raw >> field.width != 0) {
+            let AddressType { name, doc, .. } = address_type;
+            let (bits, last) = (field.width, field.mask() >> field.shift);
+            let message = format!(
+                "an address of `{name}` is {raw} in the identifier, but `{}` has {bits} bits: 0 to {last}",
+                field.name
+            );
+            let help = format!("correct the addresses, or give `{}` more bits", field.name);
+            let diagnostic = Diagnostic::error("addressing", doc.path.key(key).at_value(), message).help(help);
+            self.diagnostics.push_first(diagnostic.other(at.at_value(), format!("here `{}` holds them", field.name)));
         }
     }
 
@@ -143,15 +156,23 @@ impl Resolver<'_> {
             return;
         }
         let name = &types[target].name;
-        let text = format!("`{mode}` asks one `{name}`, but its `one` does not say which `{name}` answers");
-        let help = format!("name `{name}` in `one` for the field that holds the sender, or any reply will do");
+        let text = format!("`{mode}` asks one `{name}`, but the reply does not show which `{name}` sends it");
+        let help = format!(
+            "name `{name}` here for the field that holds the sender; \
+             as it is, the reply of every `{name}` is taken for the answer"
+        );
         self.diagnostics.push(Diagnostic::warning("addressing", path.key("one").at_key(), text).help(help));
     }
 
     /// Finds an address type; nothing is said of one that was refused before.
     fn lookup_address_type(&mut self, at: &Path, name: &str, types: &[AddressType]) -> Option<usize> {
-        let names = self.spec.types.keys().map(String::as_str);
-        self.lookup_or(at, "address type", name, names, "write its number")?;
+        let spec = self.spec;
+        if !spec.types.contains_key(name) {
+            let offered =
+                spec.types.iter().filter(|(name, field)| is_address_type(spec, name) || could_be_address(field));
+            let offered: Vec<_> = offered.map(|(name, _)| name.as_str()).collect();
+            self.report_name(at.at_value(), "address type", name, &offered, Some("write a number for a constant"));
+        }
         types.iter().position(|known| known.name == name)
     }
 
@@ -176,8 +197,10 @@ impl Resolver<'_> {
         if free.len() > 1 {
             let names: Vec<_> = free.iter().map(|index| format!("`{}`", types[*index].name)).collect();
             let message = format!("this request leaves {} addresses open: {}", free.len(), names.join(" and "));
-            let help = "give all but one address type a `send` value";
-            self.error_with_help("addressing", path.at_key(), message, help);
+            let help = "give all but one of these types a `send`, the address with which all requests are sent";
+            let diagnostic = Diagnostic::error("addressing", path.at_key(), message).help(help);
+            let open = free.iter().map(|index| types[*index].doc.path.at_key());
+            self.diagnostics.push(open.fold(diagnostic, |known, at| known.other(at, "has no `send`")));
         }
         free.first().copied()
     }
@@ -190,6 +213,16 @@ pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Patter
         let keys = keys.into_iter().chain([("coordinator", &mode.coordinator)]);
         keys.filter_map(|(key, pattern)| Some((key, pattern.as_ref()?)))
     })
+}
+
+/// Tells whether an addressing pattern names a type.
+pub fn is_address_type(spec: &ast::Spec, name: &str) -> bool {
+    patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name))
+}
+
+/// Tells whether a type has what an address type has, and nothing else.
+fn could_be_address(field: &ast::Field) -> bool {
+    field.range.is_some() && written(field).all(|key| Role::ADDRESS.reads(key))
 }
 
 /// Returns the raw ranges of the strict types that some pattern puts into this field.

@@ -7,12 +7,10 @@ use crate::model::{DeviceModel, Document, Erratum, Procedure, Quantity, Timing, 
 use crate::number::Rational;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
+use crate::words::ERRATUM_KINDS;
 
 /// The version of the spec language.
 const VERSION: &str = "1";
-
-/// What may be wrong with a document.
-const ERRATUM_KINDS: [&str; 6] = ["vendor", "translation", "ocr", "unclear", "gap", "note"];
 
 impl Resolver<'_> {
     pub fn version(&mut self) {
@@ -26,7 +24,7 @@ impl Resolver<'_> {
 
     pub fn protocol_name(&mut self) -> String {
         let name = self.spec.protocol.clone();
-        self.check_name(&Path::default().key("protocol"), &name);
+        self.check_name_at(Path::default().key("protocol").at_value(), &name);
         name
     }
 

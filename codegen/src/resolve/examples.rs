@@ -1,14 +1,18 @@
 //! The document's frames and what they mean.
 
 use canspec_runtime::Place;
+use indexmap::IndexSet;
 
 use super::Resolver;
 use super::signals::first_byte;
-use super::texts::remarks;
+use super::texts::{remarks, suggestion};
+use crate::diagnostic::Diagnostic;
 use crate::interpret::NOTES;
-use crate::model::{Doc, Encoding, Example, Failure, Identifier, Kind, Meaning, Message, Signal, ValueExample};
+use crate::model::{Doc, Encoding, Example, Failure, Identifier, Kind, Meaning, Message, Misfit, Signal, ValueExample};
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;
+use crate::texts::raw_of_text;
+use crate::words::ORIGINS;
 
 /// A frame as an example prints it.
 struct Printed {
@@ -57,7 +61,8 @@ impl Resolver<'_> {
         let Some(name) = &example.message else { return Some(outer) };
         let at = path.key("message");
         let Some(set) = &messages[outer].set else {
-            self.error("misplaced_key", at.at_key(), "the message of this example is the one it stands in".to_owned());
+            let text = "`message` means nothing here: the example is of the message in which it stands".to_owned();
+            self.error_with_help("misplaced_key", at.at_key(), text, "take it out");
             return Some(outer);
         };
         let names = set.members.iter().map(|member| messages[*member].name.as_str());
@@ -109,7 +114,7 @@ impl Resolver<'_> {
     }
 
     fn is_ours(&mut self, path: &Path, origin: Option<&str>) -> bool {
-        origin.is_some_and(|word| self.lookup(&path.key("origin"), "origin", word, ["ours"].into_iter()).is_some())
+        origin.is_some_and(|word| self.lookup(&path.key("origin"), "origin", word, ORIGINS.into_iter()).is_some())
     }
 
     /// Reads the rules of notes that decoding must report.
@@ -131,7 +136,8 @@ impl Resolver<'_> {
         let mut given = Kind::ALL.into_iter().zip(texts).filter_map(|(kind, text)| Some((kind, text.as_deref()?)));
         let (first, second) = (given.next(), given.next());
         if first.is_none() || second.is_some() {
-            let help = "write one of `request`, `reply` and `report`, as `029A3FF0#0100000000000000`";
+            let help =
+                "write one of `request`, `reply` and `report`, for instance `request: ID#DATA` in hexadecimal digits";
             let found = if first.is_none() { "no frame" } else { "more than one frame" };
             self.error_with_help("example", path.at_key(), format!("this example shows {found}"), help);
             return None;
@@ -166,9 +172,10 @@ impl Resolver<'_> {
     /// An example of the other identifier width can only be one that fails.
     fn check_identifier_width(&mut self, example: &Example, identifier: &Identifier) {
         if example.extended != identifier.extended && example.fails.is_none() {
-            let digits = if identifier.extended { 8 } else { 3 };
-            let message = format!("identifiers of this protocol have {digits} digits");
-            self.error("example", example.doc.path.key(example.kind.name()).at_value(), message);
+            let (found, digits) = if identifier.extended { (3, 8) } else { (8, 3) };
+            let message = format!("this identifier has {found} digits, those of this protocol have {digits}");
+            let help = "8 digits are an identifier of 29 bits, 3 digits one of 11; correct the frame or `identifier`";
+            self.error_with_help("example", example.doc.path.key(example.kind.name()).at_value(), message, help);
         }
     }
 
@@ -179,8 +186,13 @@ impl Resolver<'_> {
                 let entries = signals.iter();
                 entries.filter_map(|(name, means)| self.named_meaning(&path.key(name), name, means, message)).collect()
             }
+            Some(_) if self.given_up(message).is_some_and(|names| !names.is_empty()) => Vec::new(),
             Some(means) => {
                 let [signal] = message.signals.as_slice() else {
+                    if message.signals.is_empty() {
+                        self.nothing_to_mean(path, message);
+                        return Vec::new();
+                    }
                     let text = format!("`{}` has {} signals", message.name, message.signals.len());
                     let help = "write a value for each signal: `means: {voltage: 500 V, ...}`";
                     self.error_with_help("example", path.at_key(), text, help);
@@ -192,34 +204,63 @@ impl Resolver<'_> {
     }
 
     fn named_meaning(&mut self, path: &Path, name: &str, means: &Means, message: &Message) -> Option<Meaning> {
-        let names = message.signals.iter().map(|signal| signal.name.as_str());
-        let index = self.lookup_key(path, "signal", name, names)?;
+        if self.given_up(message).is_some_and(|names| names.contains(name)) {
+            return None;
+        }
+        let position = message.signals.iter().position(|signal| signal.name == name);
+        let index = position.or_else(|| self.no_signal(path, name, message))?;
         self.meaning(path, index, &message.signals[index], means)
+    }
+
+    /// Reports a message without fields of which an example says a value.
+    fn nothing_to_mean(&mut self, path: &Path, message: &Message) {
+        let text = format!("`{}` has no field, but an example says what it means", message.name);
+        let diagnostic = Diagnostic::error("example", message.doc.path.at_key(), text);
+        let diagnostic = diagnostic.help("add its `value` or its `fields`, or take `means` out of the example");
+        self.diagnostics.push_first(diagnostic.other(path.at_key(), "what it means"));
+    }
+
+    /// Reports a name that no field has.
+    fn no_signal(&mut self, path: &Path, name: &str, message: &Message) -> Option<usize> {
+        let known = message.signals.iter().map(|signal| &signal.name);
+        let names: Vec<_> = known.chain(self.given_up(message).into_iter().flatten()).cloned().collect();
+        self.lookup_key(path, "signal", name, names.iter().map(String::as_str))
+    }
+
+    /// Returns the names of a message's fields that have an error of their own.
+    fn given_up(&self, message: &Message) -> Option<&IndexSet<String>> {
+        self.tables.given_up.get(&message.name)
     }
 
     fn meaning(&mut self, path: &Path, index: usize, signal: &Signal, means: &Means) -> Option<Meaning> {
         let (text, raw) = match means {
-            Means::Value(text) => (text.clone(), self.raw_text(path, signal, text, true)),
-            Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)),
+            Means::Value(text) => (text.clone(), raw_of_text(&self.tables.enumerations, signal, text, true)),
+            Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?),
             Means::Signals(_) => {
-                self.error("example", path.at_key(), format!("`{}` is one value, not a map", signal.name));
+                let text = format!("`{}` is one value, not a map", signal.name);
+                self.error_with_help("example", path.at_key(), text, "write its value alone");
                 return None;
             }
         };
         Some(Meaning { signal: index, text, raw, path: path.clone() })
     }
 
-    fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<u64> {
+    fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
         let Encoding::Status(index) = signal.encoding else {
-            self.error("example", path.at_value(), format!("`{}` is no status word", signal.name));
+            let text = format!("`{}` is no status word, so it has no list of bits", signal.name);
+            self.error_with_help("example", path.at_value(), text, "write its value without brackets");
             return None;
         };
-        let bits = self.tables.status_words[index].bits.clone();
-        let known = || bits.iter().map(|bit| bit.name.as_str());
-        names.iter().enumerate().try_fold(0, |raw, (position, name)| {
-            let found = self.lookup(&path.index(position), "status bit", name, known())?;
-            Some(raw | 1 << bits[found].bit)
-        })
+        let bits = &self.tables.status_words[index].bits;
+        let known: Vec<_> = bits.iter().map(|bit| bit.name.as_str()).collect();
+        Some(names.iter().try_fold(0, |raw, name| {
+            let bit = bits.iter().find(|bit| bit.name == *name);
+            let missing = || {
+                let why = format!("`{}` has no status bit `{name}`", signal.name);
+                Misfit::with_help(why, suggestion("status bit", name, &known))
+            };
+            Ok(raw | 1 << bit.ok_or_else(missing)?.bit)
+        }))
     }
 
     /// Resolves the examples of types: bytes alone, and what they mean.
@@ -258,7 +299,7 @@ impl Resolver<'_> {
         let remarks = remarks_of_value(example);
         let doc = remarks.doc(path, Some(outer));
         let signal = self.signal(name, &merged, Place::bytes(0, last), outer.clone(), "")?;
-        let raw = self.raw_text(&path.key("means"), &signal, &example.means, true);
+        let raw = raw_of_text(&self.tables.enumerations, &signal, &example.means, true);
         debug_assert_eq!(first_byte(signal.place), 0);
         let meaning = Meaning { signal: 0, text: example.means.clone(), raw, path: path.key("means") };
         Some(ValueExample { doc, signal, data, meaning })

@@ -3,8 +3,9 @@
 use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{At, Diagnostic};
 use crate::model::{Identifier, IdentifierField};
+use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{Field, IdentifierEntry};
 use crate::syntax::tree::Path;
 
@@ -17,7 +18,18 @@ const STANDARD: u8 = 11;
 struct Run {
     high: u8,
     low: u8,
-    path: Path,
+    place: Path,
+}
+
+impl Run {
+    fn claim(&self) -> Claim {
+        Claim { first: self.low, last: self.high }
+    }
+
+    /// Its width is no power of two.
+    fn is_odd(&self) -> bool {
+        !(self.high - self.low + 1).is_power_of_two()
+    }
 }
 
 impl Resolver<'_> {
@@ -30,7 +42,7 @@ impl Resolver<'_> {
             entries.map(|(name, entry)| self.entry(&root.key(name), name, entry, &mut identifier)).collect();
         let runs: Vec<_> = runs.into_iter().collect::<Option<_>>()?;
         identifier.fields.sort_by_key(|field| std::cmp::Reverse(field.shift));
-        identifier.extended = self.check_layout(&root, runs);
+        identifier.extended = self.check_layout(&root, &runs);
         Some(identifier)
     }
 
@@ -42,7 +54,7 @@ impl Resolver<'_> {
                 let (high, low) = self.bits(path, text, EXTENDED)?;
                 identifier.mask |= bits_mask(high, low);
                 identifier.value |= if ones? { bits_mask(high, low) } else { 0 };
-                Some(Run { high, low, path: path.clone() })
+                Some(Run { high, low, place: path.clone() })
             }
             IdentifierEntry::Field(field) => {
                 let (field, run) = self.identifier_field(path, name, field)?;
@@ -82,43 +94,81 @@ impl Resolver<'_> {
         let continues = number("continues", &merged.field.continues);
         let doc = remarks!(field).doc(path, None);
         let enumeration = self.enumeration(&merged, &format!("{name}_code"), width, &doc);
-        let run = Run { high, low, path: path.clone() };
+        let run = Run { high, low, place: path.key("bits") };
         let name = name.to_owned();
         Some((IdentifierField { name, doc, shift: low, width, constant, send, normal, continues, enumeration }, run))
     }
 
     /// Tests that the entries leave no gap and share no bit; tells whether the identifier is the widest one.
-    fn check_layout(&mut self, root: &Path, mut runs: Vec<Run>) -> bool {
-        runs.sort_by_key(|run| run.low);
-        let mut next = 0;
-        for (index, run) in runs.iter().enumerate() {
-            if run.low != next {
-                self.report_layout(run, index.checked_sub(1).map(|below| &runs[below]), next);
-                return run.high >= STANDARD;
-            }
-            next = run.high + 1;
+    fn check_layout(&mut self, root: &Path, runs: &[Run]) -> bool {
+        let top = runs.iter().map(|run| run.high).max().unwrap_or_default();
+        let width = if top < STANDARD { STANDARD } else { EXTENDED };
+        if !self.check_shared(runs, width) {
+            self.check_gaps(root, runs, width);
         }
-        if next != STANDARD && next != EXTENDED {
-            let message = format!("the identifier's fields take {next} bits");
-            self.error_with_help("identifier_layout", root.at_key(), message, "an identifier has 11 or 29 bits");
-        }
-        next == EXTENDED
+        width == EXTENDED
     }
 
-    /// Reports a run that does not start at bit `next`, where the one below it ends.
-    fn report_layout(&mut self, run: &Run, below: Option<&Run>, next: u8) {
-        let gap = run.low > next;
-        let (high, low) = if gap { (run.low - 1, next) } else { (run.high.min(next - 1), run.low) };
-        let bits = if high == low { format!("bit {low} is") } else { format!("bits {high}..{low} are") };
-        let what = if gap { "in no field" } else { "in two fields" };
-        let message = format!("{bits} {what} of the identifier");
-        let diagnostic = Diagnostic::error("identifier_layout", run.path.key("bits").at_value(), message);
-        let diagnostic = diagnostic.help("give every bit to one field, to `ones` or to `zeros`");
-        self.diagnostics.push(match below {
-            Some(below) => diagnostic.other(below.path.key("bits").at_value(), "the bits below"),
+    /// Reports the first bits that two entries share; tells whether there are any.
+    fn check_shared(&mut self, runs: &[Run], width: u8) -> bool {
+        let shares = |one: &Run, other: &Run| one.low <= other.high && other.low <= one.high;
+        let earlier = |later: usize| runs[..later].iter().position(|run| shares(run, &runs[later]));
+        let Some((earlier, later)) = (0..runs.len()).find_map(|later| Some((earlier(later)?, later))) else {
+            return false;
+        };
+        // What is above the identifier ends the bits that the first entry can have been meant for.
+        let above = Claim { first: width, last: width };
+        let claims: Vec<_> = std::iter::once(above).chain(runs.iter().map(Run::claim)).collect();
+        let wrong = suspect(&claims, earlier + 1, later + 1) - 1;
+        let right = if wrong == later { earlier } else { later };
+        let (one, other) = (&runs[wrong], &runs[right]);
+        let message =
+            format!("{} in two fields of the identifier", named_bits(one.high.min(other.high), one.low.max(other.low)));
+        self.report_layout(one.place.at_value(), message, Some((other, "the other field")));
+        true
+    }
+
+    /// Reports the first bits that no entry takes, from the least significant on.
+    fn check_gaps(&mut self, root: &Path, runs: &[Run], width: u8) {
+        let mut runs: Vec<_> = runs.iter().collect();
+        runs.sort_by_key(|run| run.low);
+        let mut below: Option<&Run> = None;
+        for run in runs {
+            let next = below.map_or(0, |below| below.high + 1);
+            if run.low != next {
+                let message = format!("{} in no field of the identifier", named_bits(run.low - 1, next));
+                return match below {
+                    Some(below) if below.is_odd() && !run.is_odd() => {
+                        self.report_layout(below.place.at_value(), message, Some((run, "the bits above")));
+                    }
+                    _ => {
+                        let below = below.map(|below| (below, "the bits below"));
+                        self.report_layout(run.place.at_value(), message, below);
+                    }
+                };
+            }
+            below = Some(run);
+        }
+        let at = below.map_or(root.at_key(), |top| top.place.at_value());
+        let next = below.map_or(0, |top| top.high + 1);
+        if next != width {
+            let message = format!("the identifier's fields take {next} bits, and an identifier has 11 or 29");
+            self.report_layout(at, message, None);
+        }
+    }
+
+    fn report_layout(&mut self, at: At, message: String, other: Option<(&Run, &str)>) {
+        let help = "give every bit to one field, to `ones` or to `zeros`";
+        let diagnostic = Diagnostic::error("identifier_layout", at, message).help(help);
+        self.diagnostics.push(match other {
+            Some((run, text)) => diagnostic.other(run.place.at_value(), text),
             None => diagnostic,
         });
     }
+}
+
+fn named_bits(high: u8, low: u8) -> String {
+    if high == low { format!("bit {low} is") } else { format!("bits {high}..{low} are") }
 }
 
 /// Returns the bits from `high` down to `low`.

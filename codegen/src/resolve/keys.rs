@@ -2,6 +2,7 @@
 
 use super::Resolver;
 use super::types::Merged;
+use crate::diagnostic::Diagnostic;
 use crate::model::Encoding;
 use crate::syntax::ast::Field;
 use crate::syntax::tree::Path;
@@ -23,6 +24,11 @@ impl Role {
     pub const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in", "reply"] };
     pub const CONSTANT: Self = Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
     pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
+
+    /// Tells whether the role reads a key.
+    pub fn reads(self, key: &str) -> bool {
+        self.keys.contains(&key)
+    }
 
     /// Returns the role of a signal.
     pub fn of_signal(encoding: &Encoding) -> Self {
@@ -59,12 +65,18 @@ impl Role {
     }
 }
 
+/// Keys that say which values a field has.
+const OF_VALUES: [&str; 10] = ["bytes", "bits", "as", "scale", "offset", "unit", "values", "fields", "format", "const"];
+
 impl Resolver<'_> {
     /// Refuses the keys of a field, and of its types, that its role does not read.
     pub fn check_keys(&mut self, merged: &Merged, role: Role) {
-        for key in written(&merged.field).filter(|key| !role.keys.contains(key)) {
+        for key in written(&merged.field).filter(|key| !role.reads(key)) {
             let path = merged.path(self.diagnostics, key);
-            self.misplaced(&path, key, role);
+            match merged.type_at(&path) {
+                Some(name) => self.misplaced_by_type(&merged.sources[0], name, &path, key, role),
+                None => self.misplaced(&path, key, role),
+            }
         }
         let field = &merged.sources[0];
         if !merged.field.examples.is_empty() && !field.ancestors().any(|outer| *outer == Path::default().key("types")) {
@@ -88,6 +100,26 @@ impl Resolver<'_> {
         }
     }
 
+    /// Tells whether no key has an error that says which values a field has.
+    pub fn is_sound(&self, merged: &Merged) -> bool {
+        let keys = written(&merged.field).filter(|key| OF_VALUES.contains(key));
+        keys.map(|key| merged.path(self.diagnostics, key)).all(|path| !self.diagnostics.has_errors_in(&path))
+    }
+
+    /// Refuses a type of which a field cannot read a key.
+    fn misplaced_by_type(&mut self, field: &Path, name: &str, path: &Path, key: &str, role: Role) {
+        let what = role.name;
+        let (text, help) = if super::addressing::is_address_type(self.spec, name) {
+            let text = format!("`{name}` is an address type, and the field that names it is {what}");
+            (text, "name another type, or leave `type` out".to_owned())
+        } else {
+            let text = format!("`{key}` of the type `{name}` means nothing for the field that names it, {what}");
+            (text, format!("take `type`, or what makes the field {what}, out of it, or take `{key}` out of the type"))
+        };
+        let diagnostic = Diagnostic::error("misplaced_key", field.key("type").at_value(), text).help(help);
+        self.diagnostics.push_first(diagnostic.other(path.at_key(), "the key of the type"));
+    }
+
     fn misplaced(&mut self, path: &Path, key: &str, role: Role) {
         let message = format!("`{key}` means nothing for {}", role.name);
         let help = format!("take it out; {} reads `{}`", role.name, role.keys.join("`, `"));
@@ -96,7 +128,7 @@ impl Resolver<'_> {
 }
 
 /// Returns the keys that a field writes, without `examples` and what every field may say.
-fn written(field: &Field) -> impl Iterator<Item = &'static str> + use<> {
+pub fn written(field: &Field) -> impl Iterator<Item = &'static str> + use<> {
     let keys = [
         ("bytes", field.bytes.is_some()),
         ("bits", field.bits.is_some()),

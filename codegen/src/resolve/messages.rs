@@ -66,6 +66,7 @@ impl Resolver<'_> {
         let replies = self.reply_constants(&leaves.replies, surroundings.identifier);
         let choice = Choice { matched, replies, fixed };
         let set = self.set(path, message);
+        self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
         let split = set.as_ref().map_or(&[][..], |set| &set.kinds);
         let mut shapes = Vec::new();
         for (index, access) in accesses.iter().enumerate() {
@@ -98,7 +99,8 @@ impl Resolver<'_> {
         let lacking = messages.iter().zip(spec.messages.values()).filter(|(_, written)| written.access.is_empty());
         for (message, _) in lacking.filter(|(message, _)| message.set.is_some() || message.accesses.is_empty()) {
             let text = format!("`{}` has no access, so it has no frames", message.name);
-            let help = "name at least one access: `access: [read]`";
+            let known = spec.access.keys().next().map_or("read", String::as_str);
+            let help = format!("name at least one access, for instance `access: [{known}]`");
             self.error_with_help("access", message.doc.path.key("access").at_key(), text, help);
         }
     }
@@ -110,7 +112,8 @@ impl Resolver<'_> {
             let at = path.index(index);
             let Some(model) = self.device_model(&at, name) else { continue };
             if models.contains(&model) {
-                self.error("name", at.at_value(), format!("the model `{name}` is named twice"));
+                let text = format!("the model `{name}` is named twice");
+                self.error_with_help("name", at.at_value(), text, "take one of the two out");
             } else {
                 models.push(model);
             }
@@ -134,11 +137,14 @@ impl Resolver<'_> {
     /// Resolves `fields` or `value`.
     fn contents(&mut self, path: &Path, name: &str, message: &ast::Message, doc: &Doc) -> Leaves {
         match &message.value {
-            Some(_) if !message.fields.is_empty() => {
+            Some(value) if !message.fields.is_empty() => {
                 let text = format!("`{name}` has both `fields` and `value`");
                 let help = "`value` is the short form of one field called `value`; write one of the two";
                 self.error_with_help("type", path.key("value").at_key(), text, help);
-                Leaves::default()
+                let fields = self.message_leaves(&path.key("fields"), &message.fields, doc, name);
+                let value = self.value_leaf(&path.key("value"), value, doc, name);
+                let written = [fields, value].into_iter().flat_map(Leaves::names);
+                Leaves { given_up: written.collect(), ..Leaves::default() }
             }
             Some(value) => self.value_leaf(&path.key("value"), value, doc, name),
             None => self.message_leaves(&path.key("fields"), &message.fields, doc, name),
@@ -163,7 +169,8 @@ impl Resolver<'_> {
             let Some(access) = self.lookup(&path.key("access").index(index), "access", name, names) else { continue };
             if accesses.iter().any(|earlier| earlier.access == access) {
                 let text = format!("the access `{name}` is named twice");
-                self.error("access", path.key("access").index(index).at_value(), text);
+                let at = path.key("access").index(index).at_value();
+                self.error_with_help("access", at, text, "take one of the two out");
                 continue;
             }
             let known = &surroundings.accesses[access];
@@ -256,9 +263,10 @@ impl Resolver<'_> {
                 let name = &self.tables.selectors[*selector].name;
                 let kind = kind.name();
                 let message =
-                    format!("in a {kind} by `{access}`, `{name}` would have to be both {other:#X} and {value:#X}");
+                    format!("in a {kind} by `{access}`, `{name}` would have to be both {other:#04X} and {value:#04X}");
                 let pattern = Path::default().key("access").key(access).key(kind).key(name);
-                let diagnostic = Diagnostic::error("match", path.key("match").key(name).at_value(), message);
+                let help = format!("take `{name}` out of `match` or out of the access, or correct one of the two");
+                let diagnostic = Diagnostic::error("match", path.key("match").key(name).at_value(), message).help(help);
                 self.diagnostics.push(diagnostic.other(pattern.at_value(), "the access"));
             }
         }

@@ -15,7 +15,8 @@ impl Resolver<'_> {
         let path = Path::default().key("header");
         let spec = self.spec;
         let leaves = self.signals(&path, &spec.header, None, &Doc::default(), "header");
-        for signal in leaves {
+        self.tables.given_up_header = leaves.given_up;
+        for signal in leaves.signals {
             let (normal, continues) = self.header_values(&signal).unwrap_or_default();
             let index = self.add_selector(signal, normal);
             self.tables.selectors[index].continues = continues;
@@ -68,8 +69,8 @@ impl Resolver<'_> {
         if let Some(index) = self.tables.selectors.iter().position(|known| known.name == name) {
             return Some(index);
         }
-        let header = self.tables.selectors.iter().map(|known| known.name.clone()).collect::<Vec<_>>();
-        let names: Vec<_> = identifier.fields.iter().map(|field| field.name.clone()).chain(header).collect();
+        let header = self.tables.selectors.iter().map(|known| &known.name).chain(&self.tables.given_up_header);
+        let names: Vec<_> = identifier.fields.iter().map(|field| &field.name).chain(header).cloned().collect();
         let index = self.lookup_key(path, "identifier or header field", name, names.iter().map(String::as_str))?;
         let field = identifier.fields.get(index)?;
         self.tables.selectors.push(Selector {

@@ -13,8 +13,7 @@ impl Resolver<'_> {
     pub fn set(&mut self, path: &Path, message: &ast::Message) -> Option<Set> {
         if message.members.is_empty() {
             if !message.kinds.is_empty() {
-                let help =
-                    "take it out, or list `members`; which frames carry fields stands in the access or in a field";
+                let help = "take it out, or list `members`; to say which frames carry the fields, write `in` in the access or in a field";
                 let text = "`in` means nothing for a message without `members`".to_owned();
                 self.error_with_help("misplaced_key", path.key("in").at_key(), text, help);
             }
@@ -22,8 +21,9 @@ impl Resolver<'_> {
         }
         let other = if message.value.is_some() { "value" } else { "fields" };
         if message.value.is_some() || !message.fields.is_empty() {
-            let text = format!("a set of frames has `{other}` of its own");
-            let help = "a frame of a set carries one of its members; put the fields into a message, and name it";
+            let text = format!("a message with `members` has `{other}` of its own");
+            let help =
+                "a frame of a set carries one of its members; put the fields into a message, and name it in `members`";
             self.error_with_help("set", path.key(other).at_key(), text, help);
         }
         let named = self.kinds(&path.key("in"), &message.kinds);
@@ -54,11 +54,15 @@ impl Resolver<'_> {
         let mut members = Vec::new();
         for (index, name) in written.iter().enumerate() {
             let at = set.doc.path.key("members").index(index);
-            let Some(member) = self.lookup(&at, "message", name, spec.messages.keys().map(String::as_str)) else {
+            let Some(member) = spec.messages.get_index_of(name) else {
+                let offered = messages.iter().filter(|message| message.set.is_none());
+                let offered: Vec<_> = offered.map(|message| message.name.as_str()).collect();
+                self.report_name(at.at_value(), "message", name, &offered, None);
                 continue;
             };
             if members.contains(&member) {
-                self.error("set", at.at_value(), format!("the member `{name}` is named twice"));
+                let text = format!("the member `{name}` is named twice");
+                self.error_with_help("set", at.at_value(), text, "take one of the two out");
             } else if messages[member].set.is_some() {
                 let help = "name its members instead";
                 self.error_with_help("set", at.at_value(), format!("`{name}` is a set of frames itself"), help);
@@ -108,7 +112,8 @@ impl Resolver<'_> {
         let Some((selector, value)) = constants.iter().find(differs) else { return };
         let other = constants.iter().find(|(known, other)| known == selector && other != value);
         let (name, other) = (&self.tables.selectors[*selector].name, other.map_or(0, |(_, other)| *other));
-        let text = format!("in a frame of `{}`, `{name}` would have to be both {value:#X} and {other:#X}", set.name);
+        let text =
+            format!("in a frame of `{}`, `{name}` would have to be both {value:#04X} and {other:#04X}", set.name);
         let position =
             self.spec.messages.get(&set.name).and_then(|set| set.members.iter().position(|name| name == member));
         let at = set.doc.path.key("members").index(position.unwrap_or(0));

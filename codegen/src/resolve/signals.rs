@@ -6,12 +6,16 @@ use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
 use super::types::Merged;
-use crate::diagnostic::Diagnostic;
-use crate::model::{Doc, Encoding, Kind, OfModel, Piece, Signal, TypeOfModel};
+use crate::diagnostic::{At, Diagnostic};
+use crate::model::{DeviceModel, Doc, Encoding, Kind, Misfit, OfModel, Piece, Signal, TypeOfModel};
 use crate::number::Rational;
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
-use crate::texts::{Misfit, raw_of_text};
+use crate::texts::raw_of_text;
+use crate::words::NUMBER_FORMATS;
+
+/// Most fields of a message, with those of its words, of its packed values and of their types.
+const FIELD_LIMIT: usize = 256;
 
 /// What the fields of a message come to.
 #[derive(Default)]
@@ -21,6 +25,16 @@ pub struct Leaves {
     pub constants: Vec<(Signal, u64)>,
     /// What a reply shows because of the fields, each with its place in the spec.
     pub replies: Vec<(Path, ast::Pattern)>,
+    /// Names of fields with an error of their own.
+    pub given_up: Vec<String>,
+}
+
+impl Leaves {
+    /// Returns the names of all fields, whatever became of them.
+    pub fn names(self) -> impl Iterator<Item = String> {
+        let constants = self.constants.into_iter().map(|(signal, _)| signal);
+        self.signals.into_iter().chain(constants).map(|signal| signal.name).chain(self.given_up)
+    }
 }
 
 /// What a field stands in.
@@ -31,6 +45,8 @@ struct Outer<'a> {
     doc: &'a Doc,
     /// Name of the message, for types without a name of their own.
     owner: &'a str,
+    /// Where the fields around it are written, from the outermost on.
+    around: &'a [Path],
 }
 
 impl Resolver<'_> {
@@ -42,21 +58,26 @@ impl Resolver<'_> {
         word: Option<Place>,
         doc: &Doc,
         owner: &str,
-    ) -> Vec<Signal> {
+    ) -> Leaves {
+        self.free_of_constants(path, fields, Outer { word, doc, owner, around: &[] })
+    }
+
+    fn free_of_constants(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer) -> Leaves {
         let mut leaves = Leaves::default();
-        self.leaves(path, fields, Outer { word, doc, owner }, &mut leaves);
+        self.leaves(path, fields, outer, &mut leaves);
         for (constant, _) in &leaves.constants {
             let message = format!("`{}` cannot be constant here", constant.name);
             let help = "write constants of the header in `match` or in the access; parts of a text have none";
             self.error_with_help("type", constant.doc.path.key("const").at_key(), message, help);
         }
-        leaves.signals
+        leaves
     }
 
     /// Resolves the fields of a message; signals come by first byte, then as written.
     pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
-        self.leaves(path, fields, Outer { word: None, doc, owner }, &mut leaves);
+        self.tables.fields = 0;
+        self.leaves(path, fields, Outer { word: None, doc, owner, around: &[] }, &mut leaves);
         leaves.signals.sort_by_key(|signal| first_byte(signal.place));
         leaves
     }
@@ -70,43 +91,86 @@ impl Resolver<'_> {
     /// Resolves the only field of a message.
     pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
-        self.leaf(path, "value", field, Outer { word: None, doc, owner }, &mut leaves);
+        self.tables.fields = 0;
+        self.leaf(path, "value", field, Outer { word: None, doc, owner, around: &[] }, &mut leaves);
         leaves.signals.sort_by_key(|signal| first_byte(signal.place));
         leaves
     }
 
-    fn leaf(&mut self, path: &Path, name: &str, field: &Field, outer: Outer, leaves: &mut Leaves) -> Option<()> {
+    fn leaf(&mut self, path: &Path, name: &str, field: &Field, outer: Outer, leaves: &mut Leaves) {
+        if self.count_field(path, outer.owner).is_none() {
+            return give_up(name, field, leaves);
+        }
         self.check_name(path, name);
-        let merged = self.merged(path, field)?;
+        let Some(merged) = self.merged(path, field) else { return give_up(name, field, leaves) };
+        if self.read_leaf(path, name, &merged, outer, leaves).is_none() {
+            give_up(name, &merged.field, leaves);
+        }
+    }
+
+    /// Resolves a field, a word or a packed value; nothing where it has to be given up.
+    fn read_leaf(&mut self, path: &Path, name: &str, merged: &Merged, outer: Outer, leaves: &mut Leaves) -> Option<()> {
+        let field = &merged.field;
+        let fields = merged.path(self.diagnostics, "fields");
+        self.check_not_around(path, name, &fields, outer.around)?;
+        let around = [outer.around, std::slice::from_ref(&fields)].concat();
+        let outer = Outer { around: &around, ..outer };
         let doc = remarks!(field).doc(path, Some(outer.doc));
         let doc = Doc { title: merged.field.title.clone(), ..doc };
         leaves.replies.push((merged.path(self.diagnostics, "reply"), merged.field.reply.clone()));
         if merged.field.format.is_some() {
-            self.check_keys(&merged, Role::PACKED);
-            leaves.signals.push(self.packed(name, &merged, doc, outer)?);
+            self.check_keys(merged, Role::PACKED);
+            leaves.signals.push(self.packed(name, merged, doc, outer)?);
             return Some(());
         }
-        let place = self.place(path, name, &merged, outer.word)?;
+        let place = self.place(path, name, merged, outer.word)?;
         if !merged.field.fields.is_empty() {
-            self.check_keys(&merged, Role::WORD);
+            self.check_keys(merged, Role::WORD);
             self.tables.words.push(doc.clone());
             let inside = Outer { word: Some(place), doc: &doc, ..outer };
-            let fields = merged.path(self.diagnostics, "fields");
             self.leaves(&fields, &merged.field.fields.clone(), inside, leaves);
             return Some(());
         }
-        let signal = self.signal(name, &merged, place, doc, outer.owner)?;
+        let signal = self.signal(name, merged, place, doc, outer.owner)?;
+        let is_sound = self.is_sound(merged);
         let constant = merged.field.constant.is_some();
-        self.check_keys(&merged, if constant { Role::CONSTANT } else { Role::of_signal(&signal.encoding) });
+        self.check_keys(merged, if constant { Role::CONSTANT } else { Role::of_signal(&signal.encoding) });
         match &merged.field.constant {
-            None => leaves.signals.push(signal),
+            None => {
+                leaves.signals.push(signal);
+                let names_another = self.diagnostics.has_errors_in(&path.key("type"));
+                (is_sound && !names_another).then_some(())
+            }
             Some(text) => {
                 let at = merged.path(self.diagnostics, "const");
                 let value = self.integer(&at, text, 0, place.max())?;
                 leaves.constants.push((signal, value));
+                self.is_sound(merged).then_some(())
             }
         }
-        Some(())
+    }
+
+    /// Counts a field of a message; there is no more to be said of one past the limit.
+    fn count_field(&mut self, path: &Path, owner: &str) -> Option<()> {
+        self.tables.fields += 1;
+        if self.tables.fields == FIELD_LIMIT + 1 {
+            let text = format!("`{owner}` comes to more than {FIELD_LIMIT} fields");
+            let help = "a frame has 64 bits; take out fields, or types that bring fields with them";
+            self.error_with_help("type", path.at_key(), text, help);
+        }
+        (self.tables.fields <= FIELD_LIMIT).then_some(())
+    }
+
+    /// Tests that the field is not among those that its type brings with it.
+    fn check_not_around(&mut self, path: &Path, name: &str, fields: &Path, around: &[Path]) -> Option<()> {
+        if !around.contains(fields) {
+            return Some(());
+        }
+        let text = format!("`{name}` has a type that brings `{name}` with it");
+        let problem = Diagnostic::error("type", path.key("type").at_value(), text);
+        let help = "name another type, or write out the fields that you mean";
+        self.diagnostics.push(problem.other(fields.at_key(), "the fields of the type").help(help));
+        None
     }
 
     /// Reads `bytes` or `bits`.
@@ -168,7 +232,8 @@ impl Resolver<'_> {
             model_defaults: Vec::new(),
             kinds,
         };
-        if let Some(text) = &field.default {
+        let is_judged = field.values.is_empty() || !self.diagnostics.has_errors_in(&values);
+        if let Some(text) = field.default.as_ref().filter(|_| is_judged) {
             signal.default = self.default(&default_path, &signal, text);
         }
         self.add_what_models_change(merged, &mut signal);
@@ -217,45 +282,42 @@ impl Resolver<'_> {
     /// Warns of a key that keeps device models from changing it in one of the field's types.
     fn warn_of_hidden(&mut self, merged: &Merged, key: &str, has: impl Fn(&TypeOfModel) -> bool + Copy) {
         for name in &merged.types {
-            let models = self.hidden(merged, name, key, has).join(", ");
+            let models = self.hidden(merged, name, key, has);
             if !models.is_empty() {
-                let text = format!("this {key} hides that of {models} for `{name}`");
                 let at = merged.path(self.diagnostics, key).at_value();
-                let help =
-                    format!("put the general {key} into the type `{name}`, or take a type that no model changes");
-                self.diagnostics.push(Diagnostic::warning("model_range", at, text).help(help));
+                let warning = hidden_by(at, key, name, &models);
+                self.diagnostics.push(warning);
             }
         }
     }
 
-    /// Names the device models that change a key of a type without an effect on the field.
-    fn hidden(&self, merged: &Merged, name: &str, key: &str, has: impl Fn(&TypeOfModel) -> bool + Copy) -> Vec<&str> {
+    /// Finds the device models that change a key of a type without an effect on the field.
+    fn hidden(
+        &self,
+        merged: &Merged,
+        name: &str,
+        key: &str,
+        has: impl Fn(&TypeOfModel) -> bool + Copy,
+    ) -> Vec<&DeviceModel> {
         let models = self.tables.models.iter().enumerate();
         let changing = models.filter(|(_, model)| model.types.iter().any(|known| known.name == name && has(known)));
         let hidden = changing.filter(|(index, _)| self.changed(merged, *index, key, has).is_none());
-        hidden.map(|(_, model)| model.name.as_str()).collect()
+        hidden.map(|(_, model)| model).collect()
     }
 
     fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {
-        let bits = self.raw_text(path, signal, text, false)?;
+        let bits = match raw_of_text(&self.tables.enumerations, signal, text, false) {
+            Ok(bits) => bits,
+            Err(Misfit { why, help }) => {
+                let misfit = Diagnostic { help, ..Diagnostic::error("value", path.at_value(), why) };
+                self.diagnostics.push_first(misfit);
+                return None;
+            }
+        };
         let signed = matches!(signal.encoding, Encoding::Number { signed: true, .. });
         let width = signal.place.width();
         let negative = signed && bits >> (width - 1) == 1;
         Some(i128::from(bits) - if negative { 1 << width } else { 0 })
-    }
-
-    /// Reads a physical value as written in a spec; `None` where it is not on the signal's grid, which is reported.
-    pub fn raw_text(&mut self, path: &Path, signal: &Signal, text: &str, unit: bool) -> Option<u64> {
-        match raw_of_text(&self.tables.enumerations, signal, text, unit) {
-            Ok(bits) => Some(bits),
-            Err(Misfit { why, help }) => {
-                let misfit = Diagnostic { help, ..Diagnostic::error("value", path.at_value(), why) };
-                let is_example = path.ancestors().all(|outer| *outer != signal.doc.path);
-                let field = signal.doc.path.at_key();
-                self.diagnostics.push_first(if is_example { misfit.other(field, "the field") } else { misfit });
-                None
-            }
-        }
     }
 
     fn encoding(&mut self, name: &str, merged: &Merged, place: Place, doc: &Doc, owner: &str) -> Option<Encoding> {
@@ -270,9 +332,8 @@ impl Resolver<'_> {
             Some("float") => return self.float(name, merged, place),
             Some("text") => return self.text(name, merged, place),
             Some(other) => {
-                let formats = ["unsigned", "signed", "float", "text"].into_iter();
                 let at = merged.path(self.diagnostics, "as");
-                self.lookup(&at, "number format", other, formats);
+                self.lookup(&at, "number format", other, NUMBER_FORMATS.into_iter());
                 return None;
             }
         };
@@ -292,12 +353,13 @@ impl Resolver<'_> {
     fn float(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
         let at = merged.sources[0].key("as").at_value();
         if place.width() != 32 {
-            self.error("type", at, format!("a float has 32 bits, the place of `{name}` has {}", place.width()));
+            let text = format!("a float has 32 bits, the place of `{name}` has {}", place.width());
+            self.error_with_help("type", at, text, "give the field four bytes, or take `as: float` out");
             return None;
         }
         if merged.field.scale.is_some() || merged.field.offset.is_some() {
             let message = format!("`{name}` is a float, which is neither scaled nor offset");
-            self.error_with_help("type", at, message, "remove `scale` and `offset`");
+            self.error_with_help("type", at, message, "take `scale` and `offset` out, or `as: float`");
             return None;
         }
         Some(Encoding::Float)
@@ -306,7 +368,8 @@ impl Resolver<'_> {
     fn text(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
         if !place.width().is_multiple_of(8) {
             let message = format!("a text has whole bytes, the place of `{name}` has {} bits", place.width());
-            self.error("type", merged.sources[0].key("as").at_value(), message);
+            let help = "give the field whole bytes, or take `as: text` out";
+            self.error_with_help("type", merged.sources[0].key("as").at_value(), message, help);
             return None;
         }
         Some(Encoding::Text)
@@ -315,7 +378,8 @@ impl Resolver<'_> {
     /// Makes one text signal of several parts.
     fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
         let fields = merged.path(self.diagnostics, "fields");
-        let parts = self.signals(&fields, &merged.field.fields.clone(), outer.word, &doc, outer.owner);
+        let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), Outer { doc: &doc, ..outer });
+        let parts = Some(leaves.signals).filter(|_| leaves.given_up.is_empty())?;
         let format = merged.field.format.clone()?;
         let at = merged.path(self.diagnostics, "format");
         let pieces = self.pieces(&at, &format, &parts)?;
@@ -375,7 +439,10 @@ impl Resolver<'_> {
             let shows = |piece: &&Piece| matches!(piece, Piece::Part { part, .. } if *part == index);
             let times = pieces.iter().filter(shows).count();
             if times != 1 {
-                let message = format!("the format shows the part `{}` {times} times", part.name);
+                let message = match times {
+                    0 => format!("the format does not show the part `{}`", part.name),
+                    _ => format!("the format shows the part `{}` {times} times", part.name),
+                };
                 let help = "show every part once, or the text cannot be read back";
                 self.error_with_help("format", path.at_value(), message, help);
             }
@@ -389,12 +456,46 @@ impl Resolver<'_> {
         let filled = mask != 0 && mask.count_ones() + before + after == 64 && before % 8 == 0 && after % 8 == 0;
         if !filled {
             let help = "let the parts follow each other, from the first to the last bit of a run of bytes";
-            let message = "the parts do not fill whole bytes without a gap".to_owned();
-            self.error_with_help("format", path.at_value(), message, help);
+            self.diagnostics.push(unfilled(path, parts).help(help));
             return None;
         }
         let byte = |bits: u32| u8::try_from(bits / 8).unwrap_or(0);
         Some(Place::bytes(byte(before), 7 - byte(after)))
+    }
+}
+
+/// Warns of a key of a field that takes the effect from what device models say of a type.
+fn hidden_by(at: At, key: &str, name: &str, models: &[&DeviceModel]) -> Diagnostic {
+    let names: Vec<_> = models.iter().map(|model| format!("`{}`", model.name)).collect();
+    let text = format!("this {key} leaves the {key} of {} for the type `{name}` without effect", names.join(", "));
+    let help = format!("put the general {key} into the type `{name}`, or take a type that no model changes");
+    let places = models.iter().map(|model| model.doc.path.key("types").key(name).key(key).at_value());
+    places.fold(Diagnostic::warning("model_range", at, text).help(help), |known, at| known.other(at, "no effect here"))
+}
+
+/// Says that parts do not fill whole bytes: between which two there is a gap, or else that their ends do not fit.
+fn unfilled(path: &Path, parts: &[Signal]) -> Diagnostic {
+    let mask = |part: &Signal| u64::from_be_bytes(part.place.mask());
+    let mut parts: Vec<_> = parts.iter().collect();
+    parts.sort_by_key(|part| mask(part).leading_zeros());
+    let has_gap = |pair: &&[&Signal]| mask(pair[0]).trailing_zeros() + mask(pair[1]).leading_zeros() > 64;
+    match parts.windows(2).find(has_gap) {
+        Some(pair) => {
+            let text =
+                format!("between the parts `{}` and `{}` are bits that are in neither", pair[0].name, pair[1].name);
+            let places = pair.iter().map(|part| part.doc.path.at_key());
+            let diagnostic = Diagnostic::error("format", path.at_value(), text);
+            places.fold(diagnostic, |known, at| known.other(at, "beside the gap"))
+        }
+        None => Diagnostic::error("format", path.at_value(), "the parts do not begin and end with whole bytes"),
+    }
+}
+
+/// Lets examples name a field, or those inside it, although there is no such signal.
+fn give_up(name: &str, field: &Field, leaves: &mut Leaves) {
+    leaves.given_up.push(name.to_owned());
+    for (name, field) in &field.fields {
+        give_up(name, field, leaves);
     }
 }
 

@@ -68,8 +68,11 @@ impl Resolver<'_> {
         let whole = number.to_integer().filter(|whole| (first.into()..=last.into()).contains(whole));
         let fitting = whole.and_then(|whole| N::try_from(whole).ok());
         if fitting.is_none() {
-            let message = format!("`{text}` is not a whole number from {first} to {last}");
-            self.error("number", path.at_value(), message);
+            let is_whole = number.to_integer().is_some();
+            let what =
+                if is_whole { format!("lies outside {first}..{last}") } else { "is not a whole number".to_owned() };
+            let help = format!("write a whole number from {first} to {last}");
+            self.error_with_help("number", path.at_value(), format!("`{text}` {what}"), help);
         }
         fitting
     }
@@ -77,7 +80,7 @@ impl Resolver<'_> {
     /// Reads `minimum..maximum`.
     pub fn range(&mut self, path: &Path, text: &str) -> Option<Range> {
         let Some((minimum, maximum)) = text.split_once("..") else {
-            let help = "write the limits as `41.5..58.5`";
+            let help = "write both ends with `..` between them, as in `0..100`";
             self.error_with_help("range", path.at_value(), format!("`{text}` is not a range"), help);
             return None;
         };
@@ -199,16 +202,22 @@ impl Resolver<'_> {
     ) -> Option<usize> {
         let found = names.clone().position(|known| known == name);
         if found.is_none() {
-            let message = format!("there is no {what} `{name}`");
-            let help = suggestion(what, name, names);
-            let help = match otherwise {
-                None => help,
-                Some(otherwise) if help.ends_with('?') => format!("{help} otherwise {otherwise}"),
-                Some(otherwise) => format!("{help}; otherwise {otherwise}"),
-            };
-            self.error_with_help("name", at, message, help);
+            let offered: Vec<_> = names.collect();
+            self.report_name(at, what, name, &offered, otherwise);
         }
         found
+    }
+
+    /// Reports a name that does not exist, with those that could be meant.
+    pub fn report_name(&mut self, at: At, what: &str, name: &str, offered: &[&str], otherwise: Option<&str>) {
+        let help = suggestion(what, name, offered);
+        let help = match otherwise {
+            None => help,
+            Some(otherwise) if offered.is_empty() => format!("{help}; {otherwise}"),
+            Some(otherwise) if help.ends_with('?') => format!("{help} otherwise {otherwise}"),
+            Some(otherwise) => format!("{help}; otherwise {otherwise}"),
+        };
+        self.error_with_help("name", at, format!("there is no {what} `{name}`"), help);
     }
 
     /// Reads a list of `request`, `reply` and `report`.
@@ -223,13 +232,34 @@ impl Resolver<'_> {
 
     /// Tests that a name can be used as it is in Rust, in logs and on the command line.
     pub fn check_name(&mut self, path: &Path, name: &str) {
+        self.check_name_at(path.at_key(), name);
+    }
+
+    /// Tests a name that stands at a place of its own.
+    pub fn check_name_at(&mut self, at: At, name: &str) {
         let first = name.starts_with(|letter: char| letter.is_ascii_lowercase());
         let rest = name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_');
         if !(first && rest) || name.ends_with('_') || name.contains("__") {
             let help = "names are lower-case letters, digits and single `_` between them, and start with a letter";
-            self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
+            self.report_form(at, name, help);
         }
     }
+
+    /// Reports a name of another form than `form` says, with one like it that could be meant.
+    pub fn report_form(&mut self, at: At, name: &str, form: &str) {
+        let help = match respelled(name) {
+            Some(respelled) => format!("write `{respelled}`: {form}"),
+            None => form.to_owned(),
+        };
+        self.error_with_help("identifier_name", at, format!("`{name}` is not a name"), help);
+    }
+}
+
+/// Writes a name in lower-case letters, digits and single `_`, if there is anything to write so.
+fn respelled(name: &str) -> Option<String> {
+    let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let respelled = words.collect::<Vec<_>>().join("_").to_ascii_lowercase();
+    (name.is_ascii() && respelled.starts_with(|letter: char| letter.is_ascii_lowercase())).then_some(respelled)
 }
 
 /// Names the units of the language.
@@ -243,20 +273,21 @@ fn scaled_unit(symbol: &str, field: &Field) -> Option<String> {
     let (unit, factor) = multiples::prefixed(symbol).filter(|_| field.format_of_number.as_deref() != Some("float"))?;
     let step = field.scale.as_deref().map_or(Some(Rational::ONE), Rational::parse)?;
     let scale = step.times(factor)?;
-    let scale = match (scale.numerator(), scale.denominator()) {
-        (1, denominator @ 2..) => format!("1/{denominator}"),
-        _ => scale.to_string(),
-    };
+    let scale = scale.fraction();
     Some(format!("write `unit: {}, scale: {scale}`", unit.symbol))
 }
 
 /// Names the nearest of the known names, or all of them.
-fn suggestion<'n>(what: &str, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> String {
-    let near = names.clone().map(|known| (strsim::jaro_winkler(known, name), known));
+pub fn suggestion(what: &str, name: &str, names: &[&str]) -> String {
+    let near = names.iter().map(|known| (strsim::jaro_winkler(known, name), known));
     let best = near.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
     if let Some((_, best)) = best {
         return format!("did you mean `{best}`?");
     }
-    let known: Vec<_> = names.map(|known| format!("`{known}`")).collect();
-    if known.is_empty() { format!("there is no {what} yet") } else { format!("there is {}", known.join(", ")) }
+    let known: Vec<_> = names.iter().map(|known| format!("`{known}`")).collect();
+    match known.as_slice() {
+        [] => format!("there is no {what} yet"),
+        [only] => format!("there is only {only}"),
+        _ => format!("there are {}", known.join(", ")),
+    }
 }

@@ -3,9 +3,17 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Doc, Enumeration, NamedValue, Severity, StatusBit, StatusWord, raw_limits};
+use crate::model::{Doc, Enumeration, NamedValue, StatusBit, StatusWord, raw_limits};
+use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
+use crate::words::SEVERITIES;
+
+/// Bits of the widest word.
+const WIDEST: u8 = 64;
+
+/// Most types of which each takes keys from the next.
+const CHAIN_LIMIT: usize = 64;
 
 /// A field together with the keys of its types.
 pub struct Merged {
@@ -25,6 +33,15 @@ impl Merged {
             .map(|source| source.key(key))
             .find(|path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some()));
         written.unwrap_or_else(|| self.sources[0].clone())
+    }
+}
+
+impl Merged {
+    /// Returns the type in which a key is written; nothing where the field itself writes it.
+    pub fn type_at(&self, key: &Path) -> Option<&String> {
+        let outer = key.split().map(|(outer, _)| outer);
+        let types = self.types.iter().zip(&self.sources[1..]);
+        types.into_iter().find(|(_, source)| Some(*source) == outer).map(|(name, _)| name)
     }
 }
 
@@ -49,12 +66,9 @@ impl Resolver<'_> {
         let spec = self.spec;
         for (name, field) in &spec.types {
             self.check_document_name(&root.key(name), name);
-            let is_address =
-                super::addressing::patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name));
-            if is_address || self.tables.used_types.contains(name) {
-                continue;
-            }
-            if field.examples.is_empty() {
+            let is_address = super::addressing::is_address_type(spec, name);
+            let is_used = is_address || self.tables.used_types.contains(name) || !field.examples.is_empty();
+            if !is_used && !self.diagnostics.has_errors() {
                 let diagnostic = Diagnostic::warning(
                     "unused_type",
                     root.key(name).at_key(),
@@ -85,10 +99,19 @@ impl Resolver<'_> {
         let spec = self.spec;
         for name in names.iter().rev() {
             let at = path.key("type");
-            let index = self.lookup(&at, "type", name, spec.types.keys().map(String::as_str))?;
-            let (name, other) = spec.types.get_index(index)?;
-            if outer.contains(&name.as_str()) {
-                self.error("type", at.at_value(), format!("the type `{name}` takes keys from itself"));
+            let Some((_, name, other)) = spec.types.get_full(name) else {
+                let fields = spec.types.keys().filter(|name| !super::addressing::is_address_type(spec, name));
+                let offered: Vec<_> = fields.map(String::as_str).collect();
+                self.report_name(at.at_value(), "type", name, &offered, Some("define it in `types`"));
+                return None;
+            };
+            if let Some(first) = outer.iter().position(|known| known == name) {
+                self.report_ring(&outer[first..]);
+                return None;
+            }
+            if outer.len() == CHAIN_LIMIT {
+                let text = format!("more than {CHAIN_LIMIT} types take keys from one another, down to `{name}`");
+                self.error_with_help("type", at.at_value(), text, "write the keys into fewer types");
                 return None;
             }
             if merged.types.contains(name) {
@@ -97,13 +120,33 @@ impl Resolver<'_> {
             let source = Path::default().key("types").key(name);
             merged.sources.push(source.clone());
             merged.types.push(name.clone());
-            self.tables.used_types.push(name.clone());
+            self.tables.used_types.insert(name.clone());
             let field = &mut merged.field;
             take!(field, other, bytes bits format_of_number scale offset unit range format constant send normal continues default outside title;
                 values fields status kinds reply);
             self.merge_types(&source, &other.types.0, merged, &[outer, &[name.as_str()]].concat())?;
         }
         Some(())
+    }
+
+    /// Reports types of which each names the next and the last the first, once.
+    fn report_ring(&mut self, names: &[&str]) {
+        let places = names.iter().map(|name| Path::default().key("types").key(*name).key("type"));
+        let places: Vec<_> = places.collect();
+        if places.iter().any(|place| self.diagnostics.has_errors_in(place)) {
+            return;
+        }
+        let listed: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+        let text = match listed.as_slice() {
+            [own] => format!("the type {own} names itself"),
+            [one, other] => format!("the types {one} and {other} name each other"),
+            _ => format!("each of the types {} names the next, and the last the first", listed.join(", ")),
+        };
+        let mut places = places.into_iter();
+        let Some(first) = places.next() else { return };
+        let diagnostic = Diagnostic::error("type", first.at_value(), text).help("take one of these `type` keys out");
+        let diagnostic = places.fold(diagnostic, |known, place| known.other(place.at_value(), "and this one"));
+        self.diagnostics.push(diagnostic);
     }
 
     /// Returns the type whose key it is, or else the name that the field itself suggests.
@@ -159,6 +202,7 @@ impl Resolver<'_> {
                     format!("`{name}` is the name of two raw values")
                 };
                 let diagnostic = Diagnostic::error("named_value", at.at_key(), message);
+                let diagnostic = diagnostic.help("correct one of the two, or take it out");
                 self.diagnostics.push(diagnostic.other(Path::at_key(&places[index]), "the other one"));
                 continue;
             }
@@ -172,8 +216,18 @@ impl Resolver<'_> {
         let whole = crate::number::Rational::parse(text).and_then(crate::number::Rational::to_integer);
         let fitting = whole.filter(|whole| (first..=last).contains(whole));
         if fitting.is_none() {
-            let message = format!("the raw value `{text}` is not a whole number from {first} to {last}");
-            self.error("value_width", path.at_key(), message);
+            let (message, help) = match whole {
+                None => (format!("the raw value `{text}` is not a whole number"), "write the number in the frame"),
+                Some(whole) => {
+                    let help = if whole < 0 && first == 0 {
+                        "numbers below 0 need `as: signed`"
+                    } else {
+                        "correct the number, or give the field more bits"
+                    };
+                    (format!("the raw value `{text}` does not fit the field, which holds {first} to {last}"), help)
+                }
+            };
+            self.error_with_help("value_width", path.at_key(), message, help);
         }
         fitting
     }
@@ -181,8 +235,11 @@ impl Resolver<'_> {
     fn check_value_name(&mut self, path: &Path, name: &str) {
         let plain = name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_');
         if !plain || !name.starts_with(|letter: char| letter.is_ascii_lowercase()) {
-            let help = "names are lower-case letters, digits and `_`, and start with a letter";
-            self.error_with_help("identifier_name", path.at_value(), format!("`{name}` is not a name"), help);
+            self.report_form(
+                path.at_value(),
+                name,
+                "names are lower-case letters, digits and `_`, and start with a letter",
+            );
         }
     }
 
@@ -197,13 +254,31 @@ impl Resolver<'_> {
         }
         let doc = self.type_doc(&name, &source, doc);
         let path = merged.path(self.diagnostics, "status");
+        let widest = if self.holds_bits(merged, width) { width } else { WIDEST };
         let entries = merged.field.status.iter();
         let mut bits: Vec<_> =
-            entries.filter_map(|(name, bit)| self.status_bit(&path.key(name), name, bit, width, &doc)).collect();
-        bits.sort_by_key(|bit| bit.bit);
+            entries.filter_map(|(name, bit)| self.status_bit(&path.key(name), name, bit, widest, &doc)).collect();
         self.check_status_bits(&bits);
+        bits.sort_by_key(|bit| bit.bit);
         self.tables.status_words.push(StatusWord { name, doc, width, bits });
         self.tables.status_words.len() - 1
+    }
+
+    /// Tests that not several bits lie beyond the end of the word, where rather the place of the word is wrong.
+    fn holds_bits(&mut self, merged: &Merged, width: u8) -> bool {
+        let is_beyond = |bit: &ast::StatusBit| bit.bit.parse::<u8>().is_ok_and(|bit| (width..WIDEST).contains(&bit));
+        let path = merged.path(self.diagnostics, "status");
+        let beyond = merged.field.status.iter().filter(|(_, bit)| is_beyond(bit));
+        let beyond: Vec<_> = beyond.map(|(name, _)| path.key(name).key("bit").at_value()).collect();
+        let [first, _, ..] = beyond.as_slice() else { return true };
+        let place = ["bytes", "bits"].map(|key| merged.path(self.diagnostics, key));
+        let [bytes, bits] = place;
+        let at = if bytes == merged.sources[0] { bits } else { bytes };
+        let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
+        let help = "correct the place of the word, or the numbers of the bits";
+        let diagnostic = Diagnostic::error("number", at.at_value(), text).help(help);
+        self.diagnostics.push(diagnostic.other(first.clone(), "the first of them"));
+        false
     }
 
     fn status_bit(
@@ -214,8 +289,6 @@ impl Resolver<'_> {
         width: u8,
         outer: &Doc,
     ) -> Option<StatusBit> {
-        const SEVERITIES: [(&str, Severity); 3] =
-            [("state", Severity::State), ("alarm", Severity::Alarm), ("fault", Severity::Fault)];
         self.check_name(path, name);
         let severity = bit.severity.as_ref().and_then(|text| {
             self.lookup(&path.key("severity"), "severity", text, SEVERITIES.iter().map(|(name, _)| *name))
@@ -245,10 +318,15 @@ impl Resolver<'_> {
     }
 
     fn check_status_bits(&mut self, bits: &[StatusBit]) {
-        for pair in bits.windows(2).filter(|pair| pair[0].bit == pair[1].bit) {
-            let message = format!("bit {} has two names: `{}` and `{}`", pair[0].bit, pair[0].name, pair[1].name);
-            let diagnostic = Diagnostic::error("status_bit", pair[1].doc.path.at_key(), message);
-            self.diagnostics.push(diagnostic.other(pair[0].doc.path.at_key(), "the other name"));
+        let claims: Vec<_> = bits.iter().map(|bit| Claim { first: bit.bit, last: bit.bit }).collect();
+        for (later, bit) in bits.iter().enumerate() {
+            let Some(earlier) = bits[..later].iter().position(|known| known.bit == bit.bit) else { continue };
+            let wrong = suspect(&claims, earlier, later);
+            let right = if wrong == later { earlier } else { later };
+            let message = format!("bit {} has two names: `{}` and `{}`", bit.bit, bits[earlier].name, bit.name);
+            let at = |index: usize| bits[index].doc.path.key("bit").at_value();
+            let diagnostic = Diagnostic::error("status_bit", at(wrong), message);
+            self.diagnostics.push(diagnostic.other(at(right), "the other name"));
         }
     }
 }

@@ -34,6 +34,7 @@ pub struct Spec {
     pub bit_rates: Vec<String>,
     /// Fields of the identifier by name, together with `ones` and `zeros` all of its 11 or 29 bits:
     /// `{command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}`.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "crate::schema::identifier"))]
     pub identifier: Map<IdentifierEntry>,
     /// Fields by name of the data bytes that choose the message: `{register: {bytes: 2..3}}`; none if absent. A frame
     /// has them if its message or its access names one of them.

@@ -1,11 +1,11 @@
 //! Text to tree, without the parts of YAML that a spec does without.
 
+mod cause;
 mod complaint;
 
 use std::ops::Range;
 
 use indexmap::IndexMap;
-use indexmap::map::Entry as Slot;
 use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 
 use super::tree::{Content, Entry, Node};
@@ -73,7 +73,7 @@ impl Gate<'_> {
         while let Some(event) = parser.next_event() {
             let (event, span) = event.map_err(|error| {
                 let at = self.source.byte_of_character(error.marker().index());
-                Box::new(complaint::translate(self.source.text(), at, error.info()))
+                Box::new(complaint::translate(self.source.text(), at, error.info(), self.opened()))
             })?;
             let span = self.bytes(span);
             self.take(event, span.clone())?;
@@ -83,6 +83,12 @@ impl Gate<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Returns the bracket of the innermost map or list that is still to be closed.
+    fn opened(&self) -> Option<usize> {
+        let start = self.open.last()?.start;
+        self.source.text()[start..].starts_with(['{', '[']).then_some(start)
     }
 
     fn finish(&mut self) -> Result<Node, Stopped> {
@@ -166,12 +172,26 @@ impl Gate<'_> {
             None => (span.start..span.start, "this item of the list has no value".to_owned()),
         };
         let help = match key {
-            Some(key) if !is_key && key.name.contains(' ') => {
-                "quote the text that holds a comma: inside `{}` and `[]` a comma ends it"
-            }
-            _ => "write it, write `\"\"` for an empty text, or remove the line",
+            Some(key) if !is_key && self.has_no_colon(key) => self.help_on_comma(key),
+            _ => "write it, write `\"\"` for an empty text, or remove the line".to_owned(),
         };
         Diagnostic::error("wrong_kind", span, message).help(help)
+    }
+
+    /// Tests whether a key is only the end of a text that holds a comma.
+    fn has_no_colon(&self, key: &Key) -> bool {
+        self.opened().is_some() && !self.source.text()[key.span.end..].trim_start().starts_with(':')
+    }
+
+    fn help_on_comma(&self, key: &Key) -> String {
+        let before = self.source.text()[..key.span.start].trim_end().trim_end_matches(',');
+        let is_of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '.');
+        let number = before.rsplit(|letter: char| !is_of_number(letter)).next().unwrap_or_default();
+        let digit = |letter: char| letter.is_ascii_digit();
+        if key.name.starts_with(digit) && number.ends_with(digit) && !number.contains('.') {
+            return format!("write a decimal point for the comma: `{number}.{}`", key.name);
+        }
+        "quote the text that holds a comma: inside `{}` and `[]` a comma ends it".to_owned()
     }
 
     fn alias(&mut self, span: Range<usize>) -> Result<(), Stopped> {
@@ -291,17 +311,32 @@ impl Gate<'_> {
 }
 
 fn put_entry(entries: &mut IndexMap<String, Entry>, key: Key, value: Node) -> Option<Diagnostic> {
-    match entries.entry(key.name) {
-        Slot::Vacant(slot) => {
-            slot.insert(Entry { key: key.span, value });
-            None
-        }
-        Slot::Occupied(first) => {
-            let problem = Diagnostic::error("duplicate_key", key.span, format!("duplicate key `{}`", first.key()));
-            let problem = problem.label("given again here").other(first.get().key.clone(), "first given here");
-            Some(problem.help("remove one of the two, or give it another name"))
-        }
+    if let Some((index, name, first)) = entries.get_full(&key.name) {
+        let text = format!("duplicate key `{name}`");
+        let problem = if is_out_of_order(entries, index) {
+            Diagnostic::error("duplicate_key", first.key.clone(), text)
+                .label("given here, out of order")
+                .other(key.span, "given again here")
+        } else {
+            Diagnostic::error("duplicate_key", key.span, text)
+                .label("given again here")
+                .other(first.key.clone(), "first given here")
+        };
+        return Some(problem.help("remove one of the two, or give it another name"));
     }
+    entries.insert(key.name, Entry { key: key.span, value });
+    None
+}
+
+/// Tells whether the number at the end of a key is above that of the next key, as that of `M12` before `M11`.
+fn is_out_of_order(entries: &IndexMap<String, Entry>, index: usize) -> bool {
+    let numbered = |index| {
+        let (name, _) = entries.get_index(index)?;
+        let word = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        Some((word, name[word.len()..].parse::<u32>().ok()?))
+    };
+    let (Some((word, number)), Some((next_word, next))) = (numbered(index), numbered(index + 1)) else { return false };
+    word == next_word && number > next
 }
 
 fn refused(span: Range<usize>, what: &str, help: &str) -> Diagnostic {

@@ -57,7 +57,11 @@ impl<'a> Reader<'a> {
 
     fn mend(&mut self, path: &Path, error: &str) {
         let complaint = Complaint::of(path, error);
-        if !self.is_mended(path) {
+        let reported = match (&complaint, path.split()) {
+            (Complaint::UnknownKey { .. }, Some((parent, _))) => parent,
+            _ => path,
+        };
+        if !self.is_mended(reported) {
             self.problems.push(complaint.report(path, self.tree));
         }
         match complaint {

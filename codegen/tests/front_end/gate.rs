@@ -143,10 +143,15 @@ fn control_characters_do_not_reach_the_messages() {
 #[test]
 fn what_is_not_yaml_is_said_in_words() {
     let cases = [
-        ("a: 'x\n", "8:4", "this quoted text is never closed"),
+        ("a: 'x\n", "8:4", "this `'` is not closed"),
         ("a: b: c\n", "8:5", "a `:` that ends no key"),
-        ("a: [1, 2\nb: 3\n", "9:2", "a `:` that ends no key"),
-        ("a: {b: c\n", "9:1", "expected `,` or `}` in this map"),
+        ("a: [1, 2\nb: 3\n", "8:4", "this `[` is not closed"),
+        ("a: {b: c\n", "8:4", "this `{` is not closed"),
+        ("a: {b: c\n  d: e}\n", "9:4", "expected `,` or `}` in this map"),
+        ("a: {b: c]\n", "8:9", "`]` does not close this `{`"),
+        ("a: \"b\nc: d\n", "8:4", "this `\"` is not closed"),
+        ("a:\n  b:c\n  d: e\n", "9:4", "no blank after the `:` of `b`"),
+        ("a:\n  -{b: c}\n  - {d: e}\n", "9:3", "no blank after the `-`"),
         ("a:\n\tb: c\n", "9:2", "a tab stands where only spaces may"),
         ("a:\n  - 1\n  b: 2\n", "10:3", "expected a `-` at this indentation"),
         ("a:\n  b: 1\n c: 2\n", "10:2", "expected a key at this indentation"),
@@ -158,11 +163,43 @@ fn what_is_not_yaml_is_said_in_words() {
         ("  a: b\n", "8:3", "expected a key at this indentation"),
         ("a: @b\n", "8:4", "an unquoted text cannot start with this character"),
         ("a: \"\\q\"\n", "8:4", "unknown escape in a text in double quotes"),
-        ("just a line\n", "9:1", "a line without a `:`"),
+        ("just a line\n", "8:1", "`just a line` has no `:`"),
+        ("a:\n  b [c]\n  d: e\n", "9:3", "`b [c]` has no `:`"),
     ];
     for (text, place, message) in cases {
         assert_eq!(errors_after_whole(text), [format!("mini.yaml:{place}: error[yaml]: {message}")], "{text:?}");
     }
+}
+
+#[test]
+fn a_bracket_without_an_end_is_shown_with_the_place_where_the_end_was_missed() {
+    let diagnostics = first(&format!("{WHOLE}a: {{b: {{c: d}}\ne: f\n"));
+    let found: Vec<_> = diagnostics.located().collect();
+    let [found] = found.as_slice() else { panic!("one error: {found:?}") };
+    assert_eq!((found.message, found.help), ("this `{` is not closed", Some("close it with `}`")));
+    let other = found.others[0].place.expect("a place");
+    assert_eq!((other.line, other.column), (9, 1));
+}
+
+#[test]
+fn an_unknown_key_is_the_mistake_where_its_value_is_a_plain_word() {
+    let found = errors_after_whole("types: {a: {signed: true, scale: on}}\n");
+    assert_eq!(
+        found,
+        [
+            "mini.yaml:8:13: error[unknown_key]: unknown key `signed`",
+            "mini.yaml:8:34: error[plain_word]: `on` is written without quotes",
+        ]
+    );
+}
+
+#[test]
+fn a_comma_in_a_text_in_brackets_is_the_mistake() {
+    let diagnostics = first(&format!("{WHOLE}errata: {{a: {{because: b, c, uses: 23,5 V}}}}\n"));
+    let helps: Vec<_> = diagnostics.located().filter_map(|found| found.help.map(str::to_owned)).collect();
+    let comma = "quote the text that holds a comma: inside `{}` and `[]` a comma ends it";
+    assert!(helps.contains(&comma.to_owned()), "{helps:?}");
+    assert!(helps.contains(&"write a decimal point for the comma: `23.5 V`".to_owned()), "{helps:?}");
 }
 
 #[test]

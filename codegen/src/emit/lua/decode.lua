@@ -464,7 +464,7 @@ local function decode(frame)
   local reserved = frame.big:band(shape.reserved):tohex(-16):sub(1, 2 * frame.length)
   if reserved:find("[^0]") then
     decoded.reserved = reserved
-    note("reserved_bit", "bits are set that the document reserves: " .. reserved)
+    note("reserved_bit", "bits are set that no field has: 0x" .. reserved)
   end
   if other_model then note("model_dependent", other_model) end
   return decoded

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::DEPTH_LIMIT;
+use super::{DEPTH_LIMIT, cause};
 use crate::diagnostic::Diagnostic;
 
 /// Part of the parser's message, our message, and the help.
@@ -13,15 +13,23 @@ const TRANSLATIONS: [(&str, &str, &str); 19] = [
     (
         "mapping values are not allowed",
         "a `:` that ends no key",
-        "quote the text that holds it, or check the indentation",
+        "quote the text that holds it, or look at the line above: a quote may be open there",
     ),
     (
         "illegal placement of ':'",
         "a `:` that ends no key",
         "quote the text that holds it, or close the bracket before it",
     ),
-    ("expected ',' or '}'", "expected `,` or `}` in this map", "close the map, or quote the text that goes on here"),
-    ("expected ',' or ']'", "expected `,` or `]` in this list", "close the list, or quote the text that goes on here"),
+    (
+        "expected ',' or '}'",
+        "expected `,` or `}` in this map",
+        "separate entries by `,`, close the map, or quote the text that goes on here",
+    ),
+    (
+        "expected ',' or ']'",
+        "expected `,` or `]` in this list",
+        "separate items by `,`, close the list, or quote the text that goes on here",
+    ),
     ("did not find expected key", "expected a key at this indentation", "indent the line like the keys around it"),
     ("did not find expected '-'", "expected a `-` at this indentation", "indent the line like the items around it"),
     ("simple key expect", "a line without a `:`", "write `name: value`, or indent it under the text it belongs to"),
@@ -37,18 +45,38 @@ const TRANSLATIONS: [(&str, &str, &str); 19] = [
     ("misplaced bracket", "a closing bracket without an opening one", "remove it, or quote the text that holds it"),
     ("sequence entries", "a `-` that starts no item", "start a line with it, or quote the text"),
     ("only valid inside a block", "a `-` that starts no item", "start a line with it, or quote the text"),
-    ("indentation", "this line is indented too little or too much", "indent it like the lines it belongs to"),
+    (
+        "indentation",
+        "this line is indented too little or too much",
+        "indent it like the lines it belongs to, and look at the line above: a bracket or a quote may be open there",
+    ),
 ];
 
-/// Turns the parser's message into a diagnostic.
-pub(super) fn translate(text: &str, at: usize, complaint: &str) -> Diagnostic {
+/// Complaints about what the line above may have begun.
+const BEGUN_ABOVE: [&str; 3] = ["mapping values are not allowed", "simple key expect", "did not find expected key"];
+
+/// Turns the parser's message into a diagnostic; `opened` is the bracket in which the parser is.
+pub(super) fn translate(text: &str, at: usize, complaint: &str, opened: Option<usize>) -> Diagnostic {
     let span = at..at + text[at..].chars().next().filter(|character| *character != '\n').map_or(0, char::len_utf8);
     if complaint.contains("recursion limit") {
         return too_deep(span);
     }
-    match TRANSLATIONS.iter().find(|(part, ..)| complaint.contains(part)) {
+    let is_begun_above = opened.is_none() && BEGUN_ABOVE.iter().any(|part| complaint.contains(part));
+    cause::open_quote(text, at, complaint)
+        .or_else(|| cause::open_bracket(text, span.clone(), opened))
+        .or_else(|| cause::line_above(text, at).filter(|_| is_begun_above))
+        .unwrap_or_else(|| translated(span, complaint, opened))
+}
+
+fn translated(span: Range<usize>, complaint: &str, opened: Option<usize>) -> Diagnostic {
+    let diagnostic = match TRANSLATIONS.iter().find(|(part, ..)| complaint.contains(part)) {
         Some((_, message, help)) => Diagnostic::error("yaml", span, *message).help(*help),
-        None => Diagnostic::error("yaml", span, format!("this is not YAML: {complaint}")),
+        None => Diagnostic::error("yaml", span, format!("this is not YAML: {complaint}"))
+            .help("quote the text, or look at the line above: a bracket or a quote may be open there"),
+    };
+    match opened.filter(|_| complaint.contains("expected ','")) {
+        Some(start) => diagnostic.other(start..start + 1, "opened here"),
+        None => diagnostic,
     }
 }
 

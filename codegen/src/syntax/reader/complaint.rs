@@ -13,6 +13,21 @@ pub(super) enum Complaint {
     WrongKind { allowed: String, expected: Kind },
 }
 
+/// Keys of other descriptions of frames, the key that says it here, and what to write.
+const ELSEWHERE: [(&str, &str, &str); 11] = [
+    ("signed", "as", "write `as: signed`;"),
+    ("factor", "scale", "did you mean `scale`?"),
+    ("resolution", "scale", "did you mean `scale`?"),
+    ("endian", "bytes", "write `bytes: 1..0` for the low byte first;"),
+    ("endianness", "bytes", "write `bytes: 1..0` for the low byte first;"),
+    ("byte_order", "bytes", "write `bytes: 1..0` for the low byte first;"),
+    ("min", "range", "write both limits, as in `range: 0..100`;"),
+    ("max", "range", "write both limits, as in `range: 0..100`;"),
+    ("choices", "values", "did you mean `values`?"),
+    ("enum", "values", "did you mean `values`?"),
+    ("description", "note", "did you mean `note`?"),
+];
+
 /// What a value can be.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
@@ -55,8 +70,9 @@ impl Complaint {
 
 fn unknown_key(path: &Path, key: &str, allowed: &[String]) -> Diagnostic {
     let listed = allowed.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
-    let help = match nearest(key, allowed) {
-        Some(nearest) => format!("did you mean `{nearest}`? allowed here: {listed}"),
+    let nearest = nearest(key, allowed).map(|nearest| format!("did you mean `{nearest}`?"));
+    let help = match nearest.or_else(|| said_otherwise(key, allowed)) {
+        Some(what) => format!("{what} allowed here: {listed}"),
         None => format!("allowed here: {listed}"),
     };
     Diagnostic::error("unknown_key", path.at_key(), format!("unknown key `{key}`")).help(help)
@@ -66,6 +82,12 @@ fn nearest<'a>(key: &str, allowed: &'a [String]) -> Option<&'a str> {
     let near = |other: &&String| strsim::damerau_levenshtein(key, other) <= key.chars().count().max(3) / 3;
     let nearest = allowed.iter().filter(near).min_by_key(|other| strsim::damerau_levenshtein(key, other));
     nearest.map(String::as_str)
+}
+
+/// Says how to write what other descriptions of frames have a key of their own for.
+fn said_otherwise(key: &str, allowed: &[String]) -> Option<String> {
+    let known = ELSEWHERE.iter().find(|(word, of, _)| *word == key && allowed.iter().any(|key| key == of));
+    known.map(|(_, _, help)| (*help).to_owned())
 }
 
 fn missing_key(path: &Path, key: &str) -> Diagnostic {
@@ -85,14 +107,25 @@ fn wrong_kind(path: &Path, allowed: &str, expected: Kind, tree: &Node) -> Diagno
         Some((list, Step::Index(_))) => format!("an item of `{list}`"),
     };
     let message = format!("expected {allowed} for {whose}, found {found_text}");
-    let help = found.and_then(|found| in_brackets(found, expected));
+    let help = found.and_then(|found| how_to_write(found, expected));
     Diagnostic { help, ..Diagnostic::error("wrong_kind", path.at_value(), message) }
 }
 
-/// Says how a text becomes a list of one item.
-fn in_brackets(found: &Node, expected: Kind) -> Option<String> {
+/// Says how to write the kind that is expected.
+fn how_to_write(found: &Node, expected: Kind) -> Option<String> {
     match (&found.content, expected) {
-        (Content::Text(text), Kind::List) if !text.is_empty() => Some(format!("write `[{text}]`")),
+        (Content::Text(text), Kind::List) if !text.is_empty() => {
+            Some(format!("write `[{}]`", text.trim_matches(['[', ']'])))
+        }
+        (Content::Text(_), Kind::Map) => Some("write its entries below it, or in braces: `{name: value}`".to_owned()),
+        (Content::Text(_), Kind::List) => Some("write its items in brackets: `[first, second]`".to_owned()),
+        (Content::List(_), Kind::Map) => Some("write `name: value` for each entry, without `-`".to_owned()),
+        (Content::Map(_), Kind::List) => {
+            Some("write each item after a `-`, or all in brackets: `[first, second]`".to_owned())
+        }
+        (Content::List(_) | Content::Map(_), Kind::Text) => {
+            Some("write one value, without brackets and entries of its own".to_owned())
+        }
         _ => None,
     }
 }

@@ -1,0 +1,97 @@
+//! Where a mistake begins that the parser notices only further on.
+
+use std::ops::Range;
+
+use crate::diagnostic::Diagnostic;
+
+/// Finds a quote without an end; the parser stops at its start.
+pub(super) fn open_quote(text: &str, at: usize, complaint: &str) -> Option<Diagnostic> {
+    let is_open = complaint.contains("indentation in quoted") || complaint.contains("unexpected end of stream");
+    let quote = text[at..].chars().next().filter(|character| is_open && matches!(character, '"' | '\''))?;
+    let message = format!("this `{quote}` is not closed");
+    Some(Diagnostic::error("yaml", at..at + 1, message).help(format!("close it with another `{quote}`")))
+}
+
+/// Finds out whether the map or the list that starts at `opened` has no end, or the wrong one.
+pub(super) fn open_bracket(text: &str, at: Range<usize>, opened: Option<usize>) -> Option<Diagnostic> {
+    let start = opened?;
+    let (bracket, end) = if text[start..].starts_with('{') { ('{', '}') } else { ('[', ']') };
+    let found = text[at.clone()].chars().next();
+    if let Some(wrong) = found.filter(|found| matches!(found, ']' | '}') && *found != end) {
+        let message = format!("`{wrong}` does not close this `{bracket}`");
+        let diagnostic = Diagnostic::error("yaml", at, message).other(start..start + 1, "opened here");
+        return Some(diagnostic.help(format!("write `{end}`, or add the bracket that is missing")));
+    }
+    if !goes_on_outside(text, start, at.start) {
+        return None;
+    }
+    let diagnostic = Diagnostic::error("yaml", start..start + 1, format!("this `{bracket}` is not closed"));
+    let diagnostic = diagnostic.other(at, format!("here `,` or `{end}` was expected"));
+    Some(diagnostic.help(format!("close it with `{end}`")))
+}
+
+/// Tests whether the text ends, or goes on no deeper than the line in which a bracket is opened.
+fn goes_on_outside(text: &str, start: usize, at: usize) -> bool {
+    let depth = indentation(line_of(text, start));
+    let end = at + line_from(text, at).len();
+    let mut after = text[start..end].lines().skip(1).filter(|line| says_something(line));
+    text[at..].trim().is_empty() || after.any(|line| indentation(line) <= depth)
+}
+
+/// Finds what is missing in the line above, which the parser has taken for the start of a longer text.
+pub(super) fn line_above(text: &str, at: usize) -> Option<Diagnostic> {
+    let here = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    if text[here..at].contains(": ") {
+        return None;
+    }
+    let (start, item) = entry_above(text, here)?;
+    if let Some(rest) = item.strip_prefix('-').filter(|rest| !rest.starts_with(['-', ' '])) {
+        let diagnostic = Diagnostic::error("yaml", start..start + 1, "no blank after the `-`");
+        return Some(diagnostic.help(format!("write `- {rest}`")));
+    }
+    let name = item.split(|letter: char| !letter.is_alphanumeric() && letter != '_').next()?;
+    let rest = &item[name.len()..];
+    if name.is_empty() || rest.contains(": ") || rest.ends_with(':') {
+        return None;
+    }
+    if let Some(value) = rest.strip_prefix(':') {
+        let colon = start + name.len();
+        let diagnostic = Diagnostic::error("yaml", colon..colon + 1, format!("no blank after the `:` of `{name}`"));
+        return Some(diagnostic.help(format!("write `{name}: {value}`")));
+    }
+    let diagnostic = Diagnostic::error("yaml", start..start + item.len(), format!("`{item}` has no `:`"));
+    let entry = format!("{name}: {}", rest.trim_start());
+    Some(diagnostic.help(format!("write `{}`, or quote the text that it belongs to", entry.trim_end())))
+}
+
+/// Returns the last entry of a map or a list that starts before the line at `here`, without the `-` of an item.
+fn entry_above(text: &str, here: usize) -> Option<(usize, &str)> {
+    let mut end = here;
+    for line in text[..here].split_inclusive('\n').rev() {
+        end -= line.len();
+        if says_something(line) {
+            let written = line.trim();
+            let item = written.strip_prefix("- ").unwrap_or(written).trim_start();
+            return Some((end + indentation(line) + written.len() - item.len(), item));
+        }
+    }
+    None
+}
+
+/// Tests whether there is more in a line than blanks and a comment.
+fn says_something(line: &str) -> bool {
+    !line.trim_start().is_empty() && !line.trim_start().starts_with('#')
+}
+
+fn indentation(line: &str) -> usize {
+    line.len() - line.trim_start().len()
+}
+
+fn line_of(text: &str, at: usize) -> &str {
+    let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    line_from(text, start)
+}
+
+fn line_from(text: &str, at: usize) -> &str {
+    text[at..].split('\n').next().unwrap_or_default()
+}
