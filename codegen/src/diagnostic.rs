@@ -228,11 +228,15 @@ impl Diagnostics {
         }
     }
 
+    /// Tells whether something stands at a place of the spec.
+    pub fn has(&self, path: &Path) -> bool {
+        self.tree().is_some_and(|tree| tree.get(path).is_some())
+    }
+
     /// Returns the place of the first of these keys that an item has, or else that of its own key.
     pub fn written(&self, item: &Path, keys: &[&str]) -> At {
-        let paths = keys.iter().map(|key| item.key(*key));
-        let has = |path: &Path| self.tree().is_some_and(|tree| tree.get(path).is_some());
-        paths.into_iter().find(has).map_or_else(|| item.at_key(), |path| path.at_value())
+        let mut paths = keys.iter().map(|key| item.key(*key));
+        paths.find(|path| self.has(path)).map_or_else(|| item.at_key(), |path| path.at_value())
     }
 
     /// Writes one line for each diagnostic: `FILE:LINE:COLUMN: SEVERITY[RULE]: MESSAGE`.

@@ -35,7 +35,6 @@ fn bytes(length: u8) -> String {
 
 /// Returns the place that counts bytes: that of a field, or of the word in which it counts bits.
 fn place(field: &Path, diagnostics: &Diagnostics) -> At {
-    let written = |path: &Path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some());
-    let known = field.ancestors().map(|outer| outer.key("bytes")).find(written);
+    let known = field.ancestors().map(|outer| outer.key("bytes")).find(|path| diagnostics.has(path));
     known.map_or_else(|| field.at_key(), |path| path.at_value())
 }

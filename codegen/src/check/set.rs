@@ -59,11 +59,6 @@ fn check_sent(field: &IdentifierField, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Tests whether something stands at a place of the spec.
-fn is_written(path: &Path, diagnostics: &Diagnostics) -> bool {
-    diagnostics.tree().is_some_and(|tree| tree.get(path).is_some())
-}
-
 fn wrong(at: At, text: impl Into<String>) -> Diagnostic {
     Diagnostic::error("set", at, text)
 }
@@ -199,7 +194,7 @@ impl Checker<'_> {
             let help =
                 format!("take the constant of `{field}` out of `match`, of the access and of the addressing modes");
             let diagnostic = wrong(at.at_value(), text).help(help);
-            let places = self.constants(member, field).into_iter().filter(|path| is_written(path, diagnostics));
+            let places = self.constants(member, field).into_iter().filter(|path| diagnostics.has(path));
             diagnostics.push(places.fold(diagnostic, |known, path| known.other(path.at_value(), "the constant")));
         }
         if !self.has_models(member) {

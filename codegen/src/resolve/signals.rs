@@ -266,7 +266,7 @@ impl Resolver<'_> {
         key: &str,
         has: impl Fn(&TypeOfModel) -> bool,
     ) -> Option<TypeOfModel> {
-        let writes = |source: &Path| self.diagnostics.tree().is_some_and(|tree| tree.get(&source.key(key)).is_some());
+        let writes = |source: &Path| self.diagnostics.has(&source.key(key));
         if writes(&merged.sources[0]) {
             return None;
         }

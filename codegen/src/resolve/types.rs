@@ -27,11 +27,7 @@ pub struct Merged {
 impl Merged {
     /// Returns where `key` is written.
     pub fn path(&self, diagnostics: &Diagnostics, key: &str) -> Path {
-        let written = self
-            .sources
-            .iter()
-            .map(|source| source.key(key))
-            .find(|path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some()));
+        let written = self.sources.iter().map(|source| source.key(key)).find(|path| diagnostics.has(path));
         written.unwrap_or_else(|| self.sources[0].clone())
     }
 }
@@ -271,9 +267,8 @@ impl Resolver<'_> {
         let beyond = merged.field.status.iter().filter(|(_, bit)| is_beyond(bit));
         let beyond: Vec<_> = beyond.map(|(name, _)| path.key(name).key("bit").at_value()).collect();
         let [first, _, ..] = beyond.as_slice() else { return true };
-        let place = ["bytes", "bits"].map(|key| merged.path(self.diagnostics, key));
-        let [bytes, bits] = place;
-        let at = if bytes == merged.sources[0] { bits } else { bytes };
+        let key = if merged.field.bytes.is_some() { "bytes" } else { "bits" };
+        let at = merged.path(self.diagnostics, key);
         let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
         let help = "correct the place of the word, or the numbers of the bits";
         let diagnostic = Diagnostic::error("number", at.at_value(), text).help(help);

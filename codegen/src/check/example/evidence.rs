@@ -224,7 +224,6 @@ impl<'a> Field<'a> {
         let types = Path::default().key("types");
         let own = std::iter::once(self.signal.doc.path.clone());
         let mut sources = own.chain(self.signal.types.iter().map(|name| types.key(name)));
-        let has = |path: &Path| diagnostics.tree().is_some_and(|tree| tree.get(path).is_some());
-        sources.find_map(|source| Some(source.key(key)).filter(has))
+        sources.find_map(|source| Some(source.key(key)).filter(|path| diagnostics.has(path)))
     }
 }
