@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{self, Decoded, Frame, Unrecognised};
-use canspec_codegen::model::Protocol;
+use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
 use crate::capture::Capture;
@@ -115,8 +115,8 @@ impl Printer {
     }
 }
 
-/// A protocol, and the number of the device model if one of its models is chosen.
-type Device<'a> = (&'a Protocol, Option<usize>);
+/// A protocol, and the device model if one of its models is chosen.
+type Device<'a> = (&'a Protocol, Option<ModelId>);
 
 /// Decodes by the first protocol that recognises the frame, else says what the first one has against it.
 fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<(&'a Protocol, Result<Decoded, Unrecognised>)> {

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use canspec_codegen::interpret::{self, Frame, Target};
-use canspec_codegen::model::Protocol;
+use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Finish};
@@ -79,7 +79,7 @@ impl Encode {
         }
     }
 
-    fn request(&self, protocol: &Protocol, model: Option<usize>, to: &str) -> Result<Finish, Failure> {
+    fn request(&self, protocol: &Protocol, model: Option<ModelId>, to: &str) -> Result<Finish, Failure> {
         let (signals, names): (Vec<&String>, Vec<&String>) = self.words.iter().partition(|word| word.contains('='));
         let (access, message) = match names.as_slice() {
             [message] => (None, message),
@@ -98,7 +98,7 @@ impl Encode {
 }
 
 /// Turns decoded lines into a log.
-fn lines(protocol: &Protocol, model: Option<usize>, file: Option<&Path>) -> Result<Finish, Failure> {
+fn lines(protocol: &Protocol, model: Option<ModelId>, file: Option<&Path>) -> Result<Finish, Failure> {
     let out = BufWriter::new(io::stdout().lock());
     Input::open(file)?.each(out, |out, line| {
         let made = line.text.and_then(|text| read(protocol, model, text))?;
@@ -109,7 +109,7 @@ fn lines(protocol: &Protocol, model: Option<usize>, file: Option<&Path>) -> Resu
     })
 }
 
-fn read(protocol: &Protocol, model: Option<usize>, line: &str) -> Result<Option<(Content, Frame)>, String> {
+fn read(protocol: &Protocol, model: Option<ModelId>, line: &str) -> Result<Option<(Content, Frame)>, String> {
     let Some(content) = Content::read(line)? else { return Ok(None) };
     check_protocol(protocol, &content)?;
     check_units(protocol, &content)?;

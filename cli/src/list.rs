@@ -4,8 +4,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use canspec_codegen::model::{
-    DeviceModel, Document, Encoding, Enumeration, Example, Message, NamedValue, Piece, Protocol, Shape, Signal,
-    StatusWord,
+    DeviceModel, Document, Encoding, Enumeration, Example, Message, MessageId, NamedValue, PartId, Piece, Protocol,
+    SelectorId, Signal, StatusWord, Table,
 };
 use canspec_codegen::number::Rational;
 use canspec_specs::SPECS;
@@ -51,8 +51,8 @@ fn built_in(out: &mut impl Write) -> Result<(), Failure> {
 fn protocol_row(name: &str, protocol: &Protocol) -> Row {
     let count = protocol.messages.len();
     let documented: Vec<&Example> = protocol.examples.iter().filter(|example| !example.ours).collect();
-    let shown = |index: &usize| documented.iter().any(|example| example.message == Some(*index));
-    let covered = (0..count).filter(shown).count();
+    let shown = |id: &MessageId| documented.iter().any(|example| example.message == Some(*id));
+    let covered = protocol.messages.ids().filter(shown).count();
     let cells = vec![
         name.to_owned(),
         protocol.title.clone(),
@@ -67,7 +67,7 @@ fn protocol_row(name: &str, protocol: &Protocol) -> Row {
 fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     writeln!(out, "{}: {}\n{}\n", protocol.name, protocol.title, document(&protocol.document))?;
     let selectors = selectors(protocol);
-    let upper: Vec<String> = selectors.iter().map(|index| protocol.selectors[*index].name.to_uppercase()).collect();
+    let upper: Vec<String> = selectors.iter().map(|id| protocol[*id].name.to_uppercase()).collect();
     let mut headings: Vec<&str> = upper.iter().map(String::as_str).collect();
     headings.extend(["ACCESS", "MESSAGE", "UNIT", "SECTION"]);
     let mut rows = Vec::new();
@@ -114,32 +114,31 @@ fn document(document: &Document) -> String {
 }
 
 /// Returns the selectors whose constants choose a message whatever its access.
-fn selectors(protocol: &Protocol) -> Vec<usize> {
-    let chooses = |index: &usize| protocol.messages.iter().any(|message| constant(message, *index).is_some());
-    (0..protocol.selectors.len()).filter(chooses).collect()
+fn selectors(protocol: &Protocol) -> Vec<SelectorId> {
+    let chooses = |id: &SelectorId| protocol.messages.iter().any(|message| constant(protocol, message, *id).is_some());
+    protocol.selectors.ids().filter(chooses).collect()
 }
 
 /// Returns the value that a selector has in every frame of a message, but for those of sets if it has accesses of its own.
-fn constant(message: &Message, selector: usize) -> Option<u64> {
-    let is_own = |shape: &Shape| message.accesses[shape.access].set.is_none();
-    let has_own = message.shapes.iter().any(is_own);
-    let own = message.shapes.iter().filter(|shape| is_own(shape) || !has_own);
-    let own = own.map(|shape| &shape.constants).chain(message.set.as_ref().map(|set| &set.replies));
+fn constant(protocol: &Protocol, message: &Message, selector: SelectorId) -> Option<u64> {
+    let has_own = protocol.frames_of(message).any(|frame| frame.set.is_none());
+    let own = protocol.frames_of(message).filter(|frame| frame.set.is_none() || !has_own);
+    let own = own.map(|frame| &frame.constants).chain(message.set.as_ref().map(|set| &set.replies));
     let mut values = own.map(|constants| {
-        let constant = constants.iter().find(|(index, _)| *index == selector);
-        constant.map(|(_, value)| *value)
+        let constant = constants.iter().find(|constant| constant.selector == selector);
+        constant.map(|constant| constant.value)
     });
     let first = values.next()??;
     values.all(|value| value == Some(first)).then_some(first)
 }
 
-fn message_row(protocol: &Protocol, selectors: &[usize], message: &Message) -> Row {
-    let shown = |index: &usize| {
-        let value = constant(message, *index);
-        value.map_or(String::new(), |value| protocol.selector_value(*index, value))
+fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message) -> Row {
+    let shown = |id: &SelectorId| {
+        let value = constant(protocol, message, *id);
+        value.map_or(String::new(), |value| protocol.selector_value(*id, value))
     };
-    let accesses = message.accesses.iter().filter(|access| access.set.is_none());
-    let accesses = accesses.map(|access| protocol.accesses[access.access].name.as_str());
+    let accesses = message.exchanges.iter().filter(|exchange| exchange.set.is_none());
+    let accesses = accesses.map(|exchange| protocol[exchange.access].name.as_str());
     let mut cells: Vec<String> = selectors.iter().map(shown).collect();
     cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
     cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_owned()));
@@ -219,7 +218,7 @@ fn bits(word: &StatusWord) -> Vec<String> {
 }
 
 /// Returns a packed text's form as the spec writes it.
-fn form(pieces: &[Piece], parts: &[Signal]) -> String {
+fn form(pieces: &[Piece], parts: &Table<PartId, Signal>) -> String {
     let piece = |piece: &Piece| match piece {
         Piece::Literal(text) => text.clone(),
         Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", parts[*part].name),

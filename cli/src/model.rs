@@ -1,6 +1,6 @@
 //! Choosing a device model.
 
-use canspec_codegen::model::{DeviceModel, Protocol};
+use canspec_codegen::model::{DeviceModel, ModelId, Protocol};
 use clap::Args;
 
 use crate::failure::Failure;
@@ -14,16 +14,16 @@ pub struct Model {
 }
 
 impl Model {
-    /// Returns the model's number in each protocol that has it.
-    pub fn find(&self, protocols: &[Protocol]) -> Result<Vec<Option<usize>>, Failure> {
+    /// Returns the model in each protocol that has it.
+    pub fn find(&self, protocols: &[Protocol]) -> Result<Vec<Option<ModelId>>, Failure> {
         let Some(name) = &self.name else { return Ok(vec![None; protocols.len()]) };
         let is_meant = |model: &DeviceModel| model.name == *name || model.items.contains(name);
-        let found: Vec<_> = protocols.iter().map(|protocol| protocol.models.iter().position(is_meant)).collect();
+        let found: Vec<_> = protocols.iter().map(|protocol| protocol.models.position(is_meant)).collect();
         if found.iter().all(Option::is_none) { Err(Failure::Call(unknown(name, protocols))) } else { Ok(found) }
     }
 
-    /// Returns the model's number in a protocol.
-    pub fn find_in(&self, protocol: &Protocol) -> Result<Option<usize>, Failure> {
+    /// Returns the model in a protocol.
+    pub fn find_in(&self, protocol: &Protocol) -> Result<Option<ModelId>, Failure> {
         Ok(self.find(std::slice::from_ref(protocol))?.into_iter().flatten().next())
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressPattern, Encoding, Kind, Mode, Protocol, Signal, Who};
+use canspec_codegen::model::{AddressPattern, Encoding, Kind, Mode, Protocol, Signal};
 
 use crate::columns::{Columns, wrap};
 use crate::line::{Origin, bit_names};
@@ -100,21 +100,11 @@ fn address(protocol: &Protocol, decoded: &Decoded, id: u32) -> String {
         Kind::Reply => "←",
         Kind::Report => "⇐",
     };
-    let Some(index) = decoded.addressing else { return format!("{arrow} ?") };
-    let mode = &protocol.modes[index];
-    let pattern = match decoded.kind {
-        Kind::Request => mode.request.as_ref(),
-        Kind::Reply | Kind::Report => mode.reply(who_answers(protocol, decoded, index)),
-    };
+    let Some(travel) = decoded.addressing else { return format!("{arrow} ?") };
+    let mode = &protocol[travel.mode];
+    let pattern = mode.pattern(decoded.kind, travel.who);
     let addresses = pattern.map_or(Vec::new(), |pattern| addresses(protocol, pattern, id));
     if addresses.is_empty() { format!("{arrow} {}", mode.name) } else { format!("{arrow} {}", addresses.join(", ")) }
-}
-
-/// Returns who answers this message in a mode; one module where the document does not say.
-fn who_answers(protocol: &Protocol, decoded: &Decoded, mode: usize) -> Who {
-    let accesses = &protocol.messages[decoded.message].accesses;
-    let access = accesses.iter().find(|access| access.access == decoded.access);
-    access.and_then(|access| *access.answers.get(mode)?).unwrap_or(Who::One)
 }
 
 fn addresses(protocol: &Protocol, pattern: &AddressPattern, id: u32) -> Vec<String> {

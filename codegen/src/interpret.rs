@@ -6,7 +6,6 @@ mod encode;
 mod request;
 mod value;
 
-pub(crate) use decode::coverage;
 pub use decode::decode;
 pub use encode::encode;
 pub use request::{Target, parse_input, request, requests};
@@ -14,7 +13,7 @@ pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
-use crate::model::{Kind, Protocol};
+use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, SelectorId, SignalId, Table, Travel};
 
 /// A frame as it stood on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +26,20 @@ pub struct Frame {
     pub data: Vec<u8>,
     /// What sort of frame it is.
     pub form: Form,
+}
+
+impl Frame {
+    /// Returns the data bytes, filled up with zeros.
+    pub fn padded(&self) -> [u8; 8] {
+        padded(&self.data)
+    }
+}
+
+/// Returns bytes filled up with zeros to those of the longest frame; what is longer is cut.
+pub(crate) fn padded(bytes: &[u8]) -> [u8; 8] {
+    let mut data = [0; 8];
+    data.iter_mut().zip(bytes).for_each(|(byte, given)| *byte = *given);
+    data
 }
 
 /// What sort of frame it is; only data frames are ever recognised.
@@ -45,20 +58,22 @@ pub enum Form {
 /// A recognised frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decoded {
-    /// Index into [`Protocol::messages`].
-    pub message: usize,
-    /// Index into [`Protocol::accesses`].
-    pub access: usize,
+    /// The kind of frame.
+    pub frame: FrameId,
+    /// The message that it carries.
+    pub message: MessageId,
+    /// The access by which it travels.
+    pub access: AccessId,
     /// What the frame is for.
     pub kind: Kind,
-    /// Index into [`Protocol::messages`]: the set of which the frame is one.
-    pub set: Option<usize>,
-    /// Index into [`Protocol::modes`], if one fits.
-    pub addressing: Option<usize>,
-    /// Values of [`crate::model::Identifier::fields`], in order.
-    pub identifier: Vec<u32>,
-    /// Payload selectors: index into [`Protocol::selectors`] and raw value.
-    pub selectors: Vec<(usize, u64)>,
+    /// The set of which the frame is one.
+    pub set: Option<MessageId>,
+    /// The addressing mode, if one fits, and who answers by it or sends it.
+    pub addressing: Option<Travel>,
+    /// Values of the identifier's fields.
+    pub identifier: Table<FieldId, u32>,
+    /// Payload selectors and their raw values.
+    pub selectors: Vec<(SelectorId, u64)>,
     /// Values of the signals that the frame carries.
     pub signals: Vec<Reading>,
     /// Set bits of the data bytes that nothing covers, first byte first.
@@ -72,8 +87,8 @@ pub struct Decoded {
 /// What a frame says of one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Index into the message's signals.
-    pub signal: usize,
+    /// The signal.
+    pub signal: SignalId,
     /// The bits, as the low bits of a number; not sign-extended.
     pub bits: u64,
     /// The physical value.
@@ -131,10 +146,10 @@ pub struct Unrecognised {
     pub problem: Problem,
     /// What was found, in one sentence without a full stop.
     pub text: String,
-    /// Values of the identifier's fields, in order; empty if it was not split.
-    pub identifier: Vec<u32>,
-    /// Payload selectors: index into [`Protocol::selectors`] and raw value.
-    pub selectors: Vec<(usize, u64)>,
+    /// Values of the identifier's fields; empty if it was not split.
+    pub identifier: Table<FieldId, u32>,
+    /// Payload selectors and their raw values.
+    pub selectors: Vec<(SelectorId, u64)>,
 }
 
 /// Why a frame is not recognised, in the order of the tests.
@@ -224,9 +239,4 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 /// Shows an address field as documents print it.
 fn hexadecimal(value: u32) -> String {
     format!("0x{value:02X}")
-}
-
-/// Returns the name of a mode, for texts.
-fn mode_name(protocol: &Protocol, mode: usize) -> &str {
-    protocol.modes.get(mode).map_or("", |mode| mode.name.as_str())
 }

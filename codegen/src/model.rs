@@ -5,6 +5,7 @@
 mod address;
 mod data;
 mod example;
+mod id;
 mod identifier;
 mod message;
 mod set;
@@ -13,8 +14,12 @@ mod signal;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
 pub use example::{Example, Failure, Meaning, Misfit, ValueExample};
+pub use id::{
+    AccessId, AddressTypeId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId, ModelId,
+    PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
+};
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
-pub use message::{Access, Kind, Message, MessageAccess, Shape, Who};
+pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Travel, Who};
 pub use set::{Continuation, Set};
 pub use signal::{
     Encoding, Enumeration, NamedValue, OfModel, Piece, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit,
@@ -38,29 +43,31 @@ pub struct Protocol {
     /// Layout of the identifier.
     pub identifier: Identifier,
     /// Fields whose constants choose a message: of the identifier, of the header, of a message.
-    pub selectors: Vec<Selector>,
+    pub selectors: Table<SelectorId, Selector>,
     /// Named values of signals, selectors and fields of the identifier.
-    pub enumerations: Vec<Enumeration>,
+    pub enumerations: Table<EnumerationId, Enumeration>,
     /// Status words of signals.
-    pub status_words: Vec<StatusWord>,
+    pub status_words: Table<StatusWordId, StatusWord>,
     /// Kinds of addresses that the addressing modes name.
-    pub address_types: Vec<AddressType>,
+    pub address_types: Table<AddressTypeId, AddressType>,
     /// Addressing modes in the order of the spec.
-    pub modes: Vec<Mode>,
+    pub modes: Table<ModeId, Mode>,
     /// How an identifier shows that a frame goes to a module.
     pub to_module: Direction,
     /// How an identifier shows that a frame goes to the controller.
     pub to_controller: Direction,
     /// Accesses in the order of the spec.
-    pub accesses: Vec<Access>,
+    pub accesses: Table<AccessId, Access>,
     /// Identifiers that are never sent, and refused on receipt.
     pub foreign: Vec<Foreign>,
     /// Messages in the order of the spec.
-    pub messages: Vec<Message>,
+    pub messages: Table<MessageId, Message>,
+    /// The frames that exist, message by message.
+    pub frames: Table<FrameId, FrameLayout>,
     /// Device models in the order of the spec.
-    pub models: Vec<DeviceModel>,
+    pub models: Table<ModelId, DeviceModel>,
     /// Times that the document states.
-    pub timing: Vec<Timing>,
+    pub timing: Table<TimingId, Timing>,
     /// Procedures that the document describes.
     pub procedures: Vec<Procedure>,
     /// Examples of whole messages in the order of the spec, then those of the sequences.
@@ -79,12 +86,49 @@ pub struct Protocol {
 
 impl Protocol {
     /// Writes a selector's value in as many hexadecimal digits as it has on the bus.
-    pub fn selector_value(&self, selector: usize, value: u64) -> String {
-        let width = match self.selectors[selector].place {
-            SelectorPlace::Identifier(field) => self.identifier.fields[field].width,
+    pub fn selector_value(&self, selector: SelectorId, value: u64) -> String {
+        let width = match self[selector].place {
+            SelectorPlace::Identifier(field) => self[field].width,
             SelectorPlace::Payload(place) => place.width(),
         };
         format!("0x{value:0digits$X}", digits = usize::from(width.div_ceil(4)))
+    }
+
+    /// Returns the frames that exist of a message.
+    pub fn frames_of<'a>(
+        &'a self,
+        message: &'a Message,
+    ) -> impl DoubleEndedIterator<Item = &'a FrameLayout> + ExactSizeIterator + Clone {
+        message.frames.iter().map(|frame| &self[*frame])
+    }
+
+    /// Returns the signals that a frame carries.
+    pub fn signals_of<'a>(
+        &'a self,
+        frame: &'a FrameLayout,
+    ) -> impl DoubleEndedIterator<Item = (SignalId, &'a Signal)> + ExactSizeIterator + Clone {
+        let message = &self[frame.message];
+        frame.signals.iter().map(|signal| (*signal, &message[*signal]))
+    }
+
+    /// Returns the addressing patterns by which a frame is sent, with their modes.
+    pub fn patterns_of<'a>(&'a self, frame: &'a FrameLayout) -> impl Iterator<Item = (ModeId, &'a AddressPattern)> {
+        let patterns = frame.travels.iter();
+        patterns.filter_map(|Travel { mode, who }| Some((*mode, self[*mode].pattern(frame.kind, *who)?)))
+    }
+
+    /// Returns the identifier of a frame that is sent by an addressing pattern, before its addresses are put in.
+    pub fn base_identifier(&self, frame: &FrameLayout, pattern: &AddressPattern) -> u32 {
+        let fields = self.identifier.fields.iter();
+        let id = fields.fold(self.identifier.value, |id, field| field.put(id, field.sent()));
+        let id = frame.identifier().fold(id, |id, (field, value)| self[field].put(id, value));
+        id & !pattern.mask | pattern.value
+    }
+
+    /// Returns the short name of a mode's target: the address type that only this mode leaves open, else the mode.
+    pub fn target_name<'a>(&'a self, mode: &'a Mode) -> &'a str {
+        let alone = |known: &AddressTypeId| self.modes.iter().filter(|other| other.target == Some(*known)).count() == 1;
+        mode.target.filter(alone).map_or(&mode.name, |known| &self[known].name)
     }
 
     /// Returns the remarks of every item that can refer to an erratum.

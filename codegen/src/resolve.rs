@@ -18,7 +18,7 @@ use std::collections::{HashMap, HashSet};
 use indexmap::IndexSet;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::model::{self, Protocol};
+use crate::model::{self, EnumerationId, ModelId, Protocol, SelectorId, StatusWordId, Table};
 use crate::rules::RULES;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -40,9 +40,9 @@ struct Resolver<'a> {
 /// Tables of the model that grow while messages are resolved.
 #[derive(Default)]
 struct Tables {
-    selectors: Vec<model::Selector>,
-    enumerations: Vec<model::Enumeration>,
-    status_words: Vec<model::StatusWord>,
+    selectors: Table<SelectorId, model::Selector>,
+    enumerations: Table<EnumerationId, model::Enumeration>,
+    status_words: Table<StatusWordId, model::StatusWord>,
     /// Remarks of words, which are no signals themselves.
     words: Vec<model::Doc>,
     /// Names of fields that were given up because of an error, by message; what examples say of them is not judged.
@@ -51,7 +51,7 @@ struct Tables {
     given_up_header: Vec<String>,
     /// Types that a field names.
     used_types: HashSet<String>,
-    models: Vec<model::DeviceModel>,
+    models: Table<ModelId, model::DeviceModel>,
     /// Fields of the message at hand so far.
     fields: usize,
 }
@@ -71,7 +71,7 @@ impl Resolver<'_> {
         let modes = self.modes(&identifier, &address_types);
         let (to_module, to_controller) = addressing::directions(&identifier, &address_types, &modes);
         let accesses = self.accesses(&modes, &timing);
-        let messages = self.messages(&identifier, &modes, &accesses, &timing);
+        let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
         let foreign = self.foreign(&identifier);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
@@ -91,6 +91,7 @@ impl Resolver<'_> {
             accesses,
             foreign,
             messages,
+            frames,
             timing,
             procedures,
             examples,

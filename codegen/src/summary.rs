@@ -60,12 +60,11 @@ impl Summary {
 
 /// Counts the values of each selector.
 fn selectors(protocol: &Protocol) -> Vec<(String, usize)> {
-    let shapes = || protocol.messages.iter().flat_map(|message| &message.shapes);
-    let values = |index: usize| {
-        let constants = shapes().flat_map(|shape| &shape.constants);
-        constants.filter(|(selector, _)| *selector == index).map(|(_, value)| value).collect::<BTreeSet<_>>().len()
-    };
-    let selectors =
-        protocol.selectors.iter().enumerate().map(|(index, selector)| (selector.name.clone(), values(index)));
-    selectors.filter(|(_, values)| *values > 0).collect()
+    let mut values = protocol.selectors.map(|_| BTreeSet::new());
+    for constant in protocol.frames.iter().flat_map(|frame| &frame.constants) {
+        values[constant.selector].insert(constant.value);
+    }
+    let selectors = protocol.selectors.iter().zip(&values);
+    let counted = selectors.map(|(selector, values)| (selector.name.clone(), values.len()));
+    counted.filter(|(_, values)| *values > 0).collect()
 }

@@ -1,6 +1,8 @@
 //! Physical values as texts, both ways: what a spec writes after `means`, what a packed value reads like.
 
-use crate::model::{Encoding, Enumeration, Misfit, Piece, Signal, StatusWord, Unit, raw_limits};
+use crate::model::{
+    Encoding, Enumeration, EnumerationId, Misfit, PartId, Piece, Signal, StatusWord, Table, Unit, raw_limits,
+};
 use crate::multiples;
 use crate::number::Rational;
 
@@ -9,7 +11,12 @@ use crate::number::Rational;
 /// # Errors
 ///
 /// Says what is wrong: no such name, not a number, the wrong unit, off the grid, too large.
-pub fn raw_of_text(enumerations: &[Enumeration], signal: &Signal, text: &str, unit: bool) -> Result<u64, Misfit> {
+pub fn raw_of_text(
+    enumerations: &Table<EnumerationId, Enumeration>,
+    signal: &Signal,
+    text: &str,
+    unit: bool,
+) -> Result<u64, Misfit> {
     match &signal.encoding {
         Encoding::Number { signed, scale, offset } => {
             if let Some(special) = signal.specials.iter().find(|special| special.name == text) {
@@ -138,7 +145,7 @@ pub fn text_of_bits(signal: &Signal, bits: u64) -> Option<String> {
 }
 
 /// Reads a packed value's text; `None` if it has another form or a part does not fit.
-pub fn parse_packed(pieces: &[Piece], parts: &[Signal], signal: &Signal, text: &str) -> Option<u64> {
+pub fn parse_packed(pieces: &[Piece], parts: &Table<PartId, Signal>, signal: &Signal, text: &str) -> Option<u64> {
     let mut data = [0; 8];
     let mut rest = text;
     for (index, piece) in pieces.iter().enumerate() {
@@ -171,7 +178,7 @@ fn parse_part(part: &Signal, text: &str) -> Option<u64> {
 }
 
 /// Writes a packed value; `None` if its text would not give the same bits.
-pub fn write_packed(pieces: &[Piece], parts: &[Signal], signal: &Signal, bits: u64) -> Option<String> {
+pub fn write_packed(pieces: &[Piece], parts: &Table<PartId, Signal>, signal: &Signal, bits: u64) -> Option<String> {
     let mut data = [0; 8];
     signal.place.put(&mut data, bits);
     let texts = pieces.iter().map(|piece| write_piece(piece, parts, data));
@@ -179,7 +186,7 @@ pub fn write_packed(pieces: &[Piece], parts: &[Signal], signal: &Signal, bits: u
     (parse_packed(pieces, parts, signal, &text) == Some(bits)).then_some(text)
 }
 
-fn write_piece(piece: &Piece, parts: &[Signal], data: [u8; 8]) -> Option<String> {
+fn write_piece(piece: &Piece, parts: &Table<PartId, Signal>, data: [u8; 8]) -> Option<String> {
     match piece {
         Piece::Literal(literal) => Some(literal.clone()),
         Piece::Part { part, digits } => {

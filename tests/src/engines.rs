@@ -1,7 +1,7 @@
 //! What both engines say of a frame, and to which bits they encode a value.
 
 use canspec_codegen::interpret::{self, Frame, Input, Limits, Value, raw_of};
-use canspec_codegen::model::{Encoding, Message, Protocol, Signal};
+use canspec_codegen::model::{Encoding, Message, ModelId, Protocol, Signal};
 use canspec_runtime::{AnySignal, Meaning, Number, Payload, Problem, Reading};
 use embedded_can::Frame as _;
 
@@ -14,7 +14,7 @@ use crate::{models, number, received};
 /// If they disagree.
 pub fn compare_decoding<P: canspec_runtime::Protocol>(
     protocol: &Protocol,
-    model: Option<usize>,
+    model: Option<ModelId>,
     frame: &Frame,
 ) -> bool {
     let report = interpreted(protocol, model, frame);
@@ -63,7 +63,7 @@ struct Report {
     encoded: Option<Vec<u8>>,
 }
 
-fn generated<P: canspec_runtime::Protocol>(model: Option<usize>, frame: &Frame) -> Result<Report, Problem> {
+fn generated<P: canspec_runtime::Protocol>(model: Option<ModelId>, frame: &Frame) -> Result<Report, Problem> {
     let received = received::<P>(model, frame)?;
     let mut signals = Vec::new();
     received.visit(|reading| signals.push(shown(&reading)));
@@ -97,7 +97,7 @@ fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
     (reading.name.to_owned(), reading.unit.map(str::to_owned), bits, meaning)
 }
 
-fn interpreted(protocol: &Protocol, model: Option<usize>, frame: &Frame) -> Result<Report, Problem> {
+fn interpreted(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Report, Problem> {
     let decoded = interpret::decode(protocol, model, frame).map_err(|problem| match problem.problem {
         interpret::Problem::Frame => Problem::Frame,
         interpret::Problem::Foreign => Problem::Foreign,
@@ -112,7 +112,7 @@ fn interpreted(protocol: &Protocol, model: Option<usize>, frame: &Frame) -> Resu
         message: message.name.clone(),
         access: protocol.accesses[decoded.access].name.clone(),
         kind: format!("{:?}", decoded.kind),
-        addressing: decoded.addressing.map(|mode| protocol.modes[mode].name.clone()),
+        addressing: decoded.addressing.map(|travel| protocol[travel.mode].name.clone()),
         signals: decoded.signals.iter().map(|reading| read(&message.signals[reading.signal], reading)).collect(),
         selectors: selectors.map(|(index, raw)| (protocol.selectors[*index].name.clone(), *raw)).collect(),
         reserved: decoded.reserved,

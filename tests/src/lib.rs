@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Form, Frame};
-use canspec_codegen::model::{AddressPattern, Message, Protocol, SelectorPlace, Shape};
+use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol};
 use canspec_codegen::{Outcome, compile, source::Source};
 use canspec_runtime::{Problem, Received};
 
@@ -80,7 +80,7 @@ pub fn outcome(path: impl AsRef<Path>) -> Outcome {
 /// # Errors
 ///
 /// As the generated code has them.
-pub fn received<P: canspec_runtime::Protocol>(model: Option<usize>, frame: &Frame) -> Result<Received<P>, Problem> {
+pub fn received<P: canspec_runtime::Protocol>(model: Option<ModelId>, frame: &Frame) -> Result<Received<P>, Problem> {
     let mut data = [0; 8];
     data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
     let length = u8::try_from(frame.data.len()).unwrap_or(u8::MAX);
@@ -93,13 +93,13 @@ pub fn received<P: canspec_runtime::Protocol>(model: Option<usize>, frame: &Fram
 /// # Panics
 ///
 /// If a spec has more models than a byte counts.
-pub fn number(model: usize) -> u8 {
-    u8::try_from(model).expect("a spec of the tests has few models")
+pub fn number(model: ModelId) -> u8 {
+    u8::try_from(model.place()).expect("a spec of the tests has few models")
 }
 
 /// Returns no device model, and then each.
-pub fn models(protocol: &Protocol) -> impl Iterator<Item = Option<usize>> + Clone {
-    std::iter::once(None).chain((0..protocol.models.len()).map(Some))
+pub fn models(protocol: &Protocol) -> impl Iterator<Item = Option<ModelId>> + Clone {
+    std::iter::once(None).chain(protocol.models.ids().map(Some))
 }
 
 /// Makes frames that are close to those of a protocol: right, nearly right, and far off.
@@ -134,9 +134,9 @@ impl<'a> Frames<'a> {
     /// Returns identifier, data and length of a frame of some message.
     fn shaped(&mut self) -> (u32, [u8; 8], usize) {
         let protocol = self.protocol;
-        let message = &protocol.messages[self.random.usize(..protocol.messages.len())];
-        let Some(shape) = self.shape_of(message) else { return self.shaped() };
-        let mode = &protocol.modes[self.random.usize(..protocol.modes.len())];
+        let message = &protocol[MessageId::new(self.random.usize(..protocol.messages.len()))];
+        let Some(layout) = self.layout_of(message) else { return self.shaped() };
+        let mode = &protocol[ModeId::new(self.random.usize(..protocol.modes.len()))];
         let patterns = [&mode.request, &mode.one, &mode.each, &mode.coordinator];
         let pattern = patterns[self.random.usize(..4)].as_ref();
         let mut id = match pattern {
@@ -144,23 +144,19 @@ impl<'a> Frames<'a> {
             None => self.random.u32(..),
         };
         let mut data = self.random.u64(..).to_be_bytes();
-        for (selector, value) in &shape.constants {
-            match protocol.selectors[*selector].place {
-                SelectorPlace::Identifier(field) => {
-                    let field = &protocol.identifier.fields[field];
-                    id = id & !field.mask() | u32::try_from(*value).unwrap_or(0) << field.shift;
-                }
-                SelectorPlace::Payload(place) => place.put(&mut data, *value),
-                _ => {}
-            }
+        for (field, value) in layout.identifier() {
+            id = protocol[field].put(id, value);
+        }
+        for (place, value) in layout.payload() {
+            place.put(&mut data, value);
         }
         (id, data, message.length.into())
     }
 
     /// Returns one of the kinds of frames of a message; a set whose requests are split too has none of its own.
-    fn shape_of<'m>(&mut self, message: &'m Message) -> Option<&'m Shape> {
-        let count = message.shapes.len();
-        (count > 0).then(|| &message.shapes[self.random.usize(..count)])
+    fn layout_of(&mut self, message: &Message) -> Option<&'a FrameLayout> {
+        let count = message.frames.len();
+        (count > 0).then(|| &self.protocol[message.frames[self.random.usize(..count)]])
     }
 
     /// Returns an identifier that fits a pattern, mostly with documented addresses.
@@ -173,8 +169,8 @@ impl<'a> Frames<'a> {
             }
         }
         for address in &pattern.addresses {
-            let field = &identifier.fields[address.field];
-            let (first, last) = self.protocol.address_types[address.address_type].raw_range();
+            let field = &self.protocol[address.field];
+            let (first, last) = self.protocol[address.address_type].raw_range();
             if self.random.u8(..8) > 0 {
                 id = id & !field.mask() | self.random.u32(first..=last) << field.shift;
             }

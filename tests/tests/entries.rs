@@ -1,6 +1,6 @@
 //! The list of messages in generated code.
 
-use canspec_codegen::model::Kind;
+use canspec_codegen::model::{Id, Kind};
 use canspec_codegen::number::Rational;
 use canspec_protocols::mxr::{self, Message, ModuleStatus, OutputVoltage, Target};
 use canspec_runtime::{Frame, Number, Protocol};
@@ -24,19 +24,19 @@ impl Visitor for Listed {
             let name = format!("{path}: {}", message.name);
             assert_eq!(entry.name(), message.name, "{path}");
             assert_eq!(entry.title, message.doc.title.clone().unwrap_or(message.name.replace('_', " ")), "{name}");
-            for (selector, value) in &message.constants {
-                assert!(entry.constants.contains(&(&protocol.selectors[*selector].name, *value)), "{name}");
+            for known in &message.constants {
+                assert!(entry.constants.contains(&(&protocol[known.selector].name, known.value)), "{name}");
             }
             assert_eq!(entry.constants.len(), message.constants.len(), "{name}");
-            for (exchange, access) in entry.exchanges.iter().zip(&message.accesses) {
-                assert_eq!(exchange.access(), protocol.accesses[access.access].name, "{name}");
+            for (exchange, access) in entry.exchanges.iter().zip(&message.exchanges) {
+                assert_eq!(exchange.access(), protocol[access.access].name, "{name}");
             }
-            assert_eq!(entry.exchanges.len(), message.accesses.len(), "{name}");
-            for shape in &message.shapes {
-                let exchange = entry.exchanges[shape.access];
-                assert!(exchange.filter(kind(shape.kind)).is_some(), "{name}");
-                let carries = shape.kind == Kind::Request && !shape.signals.is_empty();
-                assert!(shape.kind != Kind::Request || exchange.has_values() == carries, "{name}");
+            assert_eq!(entry.exchanges.len(), message.exchanges.len(), "{name}");
+            for frame in protocol.frames_of(message) {
+                let exchange = entry.exchanges[frame.exchange.place()];
+                assert!(exchange.filter(kind(frame.kind)).is_some(), "{name}");
+                let carries = frame.kind == Kind::Request && !frame.signals.is_empty();
+                assert!(frame.kind != Kind::Request || exchange.has_values() == carries, "{name}");
             }
             for (listed, signal) in entry.signals.iter().zip(&message.signals) {
                 assert_eq!(listed.name(), signal.name, "{name}");

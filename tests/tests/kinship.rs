@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use canspec_codegen::model::{
-    AddressPattern, AddressType, Encoding, Foreign, IdentifierField, Message, Mode, NamedValue, Protocol, Signal,
-    StatusBit, Who,
+    AddressPattern, AddressType, Answers, Encoding, Foreign, Id, IdentifierField, Message, Mode, NamedValue, Protocol,
+    Signal, SignalId, StatusBit, Who,
 };
 use canspec_tests::protocol;
 
@@ -116,21 +116,22 @@ impl Words<'_> {
     }
 
     fn constants(&self, message: &Message) -> String {
-        let constants = message.shapes.iter().flat_map(|shape| &shape.constants).collect::<BTreeSet<_>>();
-        let named = |(selector, value): &&(usize, u64)| format!("{} {value:#04X}", self.0.selectors[*selector].name);
-        constants.iter().map(named).collect::<Vec<_>>().join(" ")
+        let constants = self.0.frames_of(message).flat_map(|frame| &frame.constants);
+        let constants = constants.map(|known| (known.selector, known.value)).collect::<BTreeSet<_>>();
+        let named = constants.iter().map(|(selector, value)| format!("{} {value:#04X}", self.0[*selector].name));
+        named.collect::<Vec<_>>().join(" ")
     }
 
     fn message(&self, message: &Message) -> Vec<Fact> {
         let name = format!("{} {}", self.constants(message), message.name);
-        let answers = message.accesses.iter().flat_map(|access| self.answers(&name, &access.answers));
-        let signals = message.signals.iter().enumerate();
-        let signals = signals.flat_map(|(index, signal)| self.signal(&name, message, index, signal));
+        let answers = message.exchanges.iter().flat_map(|exchange| self.answers(&name, &exchange.answers));
+        let signals = message.signals.entries();
+        let signals = signals.flat_map(|(id, signal)| self.signal(&name, message, id, signal));
         let length = Fact::new([&name], format!("{name}, length"), message.length.to_string());
         std::iter::once(length).chain(answers).chain(signals).collect()
     }
 
-    fn answers(&self, message: &str, answers: &[Option<Who>]) -> Vec<Fact> {
+    fn answers(&self, message: &str, answers: &Answers) -> Vec<Fact> {
         let modes = self.0.modes.iter().zip(answers);
         let fact = |(mode, who): (&Mode, &Option<Who>)| {
             let mode = format!("mode {}", mode.name);
@@ -139,9 +140,9 @@ impl Words<'_> {
         modes.map(fact).collect()
     }
 
-    fn signal(&self, message: &str, owner: &Message, index: usize, signal: &Signal) -> Vec<Fact> {
+    fn signal(&self, message: &str, owner: &Message, id: SignalId, signal: &Signal) -> Vec<Fact> {
         let bits = signal.place.bits_of_payload();
-        let kinds = owner.shapes.iter().filter(|shape| shape.signals.contains(&index)).map(|shape| shape.kind.name());
+        let kinds = self.0.frames_of(owner).filter(|frame| frame.signals.contains(&id)).map(|frame| frame.kind.name());
         let kinds = kinds.collect::<Vec<_>>().join(" and ");
         let order = format!("{:?}", signal.place.order()).to_lowercase();
         let place = format!("{order} endian {} bits from {} up", bits.width(), bits.shift());
@@ -248,6 +249,6 @@ fn a_shared_signal_that_is_scaled_otherwise_is_seen() {
     let [mut infy, gcp] = specs();
     let before = differences(&infy, &gcp).len();
     let message = infy.messages.iter_mut().find(|message| message.name == "external_voltage").expect("the message");
-    message.signals[0].encoding = Encoding::Float;
+    message.signals[SignalId::new(0)].encoding = Encoding::Float;
     assert_eq!(differences(&infy, &gcp).len(), before + 1);
 }

@@ -1,7 +1,7 @@
 //! Raw values survive the way to a physical value and back, in both engines; set-points on the grid meet their own raw value.
 
 use canspec_codegen::interpret::{Input, Limits, physical, raw_of};
-use canspec_codegen::model::{Message, Protocol, Signal};
+use canspec_codegen::model::{Message, MessageId, Protocol, Signal, SignalId};
 use canspec_protocols::infy::SetModuleOutput;
 use canspec_protocols::{mxr, trio};
 use canspec_runtime::{AnySignal, Meaning, Payload, Reading};
@@ -127,21 +127,21 @@ fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_generated_
 /// A scaled signal of a shipped protocol, for the interpreter.
 struct SetPoint {
     protocol: Protocol,
-    message: usize,
-    signal: usize,
+    message: MessageId,
+    signal: SignalId,
 }
 
 impl SetPoint {
     fn of(spec: &str, message: &str, signal: &str) -> Self {
         let protocol = protocol(format!("{}/../specs/{spec}.yaml", env!("CARGO_MANIFEST_DIR")));
-        let message = protocol.messages.iter().position(|known| known.name == message).expect("a message");
-        let signal = protocol.messages[message].signals.iter().position(|known| known.name == signal);
+        let message = protocol.messages.position(|known| known.name == message).expect("a message");
+        let signal = protocol[message].signals.position(|known| known.name == signal);
         Self { protocol, message, signal: signal.expect("a signal") }
     }
 
     fn raw(&self, value: f64, limits: Limits) -> Option<u64> {
-        let message = &self.protocol.messages[self.message];
-        raw_of(&self.protocol, message, &message.signals[self.signal], &Input::Number(value), limits).ok()
+        let message = &self.protocol[self.message];
+        raw_of(&self.protocol, message, &message[self.signal], &Input::Number(value), limits).ok()
     }
 }
 
@@ -179,11 +179,11 @@ const PRINTED: [(trio::Model, u32, u32); 5] = [
 fn every_set_point_of_a_model_meets_its_own_raw_value_and_no_other_is_taken() {
     assert_eq!(PRINTED.map(|(model, ..)| model), trio::Model::ALL);
     let voltage = SetPoint::of("trio", "control", "voltage");
-    for (index, (model, lowest, highest)) in PRINTED.into_iter().enumerate() {
+    for (id, (model, lowest, highest)) in voltage.protocol.models.ids().zip(PRINTED) {
         for tenths in 0..=1000 {
             let name = format!("{}, {tenths} tenths of a volt", model.name());
             let raw = (lowest..=highest).contains(&tenths).then_some(tenths);
-            assert_eq!(voltage.raw(volts(tenths * 100), Limits::Range(Some(index))), raw.map(u64::from), "{name}");
+            assert_eq!(voltage.raw(volts(tenths * 100), Limits::Range(Some(id))), raw.map(u64::from), "{name}");
             let control = trio::Control {
                 mode: trio::ControlMode::Remote,
                 operation: trio::Operation::On,

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Frame, Note, Reading, Unrecognised, Value};
-use canspec_codegen::model::{Encoding, Message, Protocol, Signal};
+use canspec_codegen::model::{Encoding, FieldId, Message, Protocol, SelectorId, Signal, Table};
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
@@ -80,7 +80,7 @@ impl<'a> Recognised<'a> {
             message: &message.name,
             access: &protocol.accesses[decoded.access].name,
             kind: decoded.kind.name(),
-            addressing: decoded.addressing.map(|mode| protocol.modes[mode].name.as_str()),
+            addressing: decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()),
             identifier: identifier(protocol, &decoded.identifier),
             selectors: selectors(protocol, &decoded.selectors),
             signals: signals(protocol, message, &decoded.signals),
@@ -192,13 +192,13 @@ fn raw(signal: &Signal, bits: u64) -> Raw {
     Raw::Signed(bits.wrapping_shl(unused).cast_signed().wrapping_shr(unused))
 }
 
-fn identifier<'a>(protocol: &'a Protocol, values: &[u32]) -> Members<&'a str, u32> {
+fn identifier<'a>(protocol: &'a Protocol, values: &Table<FieldId, u32>) -> Members<&'a str, u32> {
     let names = protocol.identifier.fields.iter().map(|field| field.name.as_str());
     Members(names.zip(values.iter().copied()).collect())
 }
 
-fn selectors<'a>(protocol: &'a Protocol, values: &[(usize, u64)]) -> Members<&'a str, u64> {
-    let named = |&(selector, value): &(usize, u64)| (protocol.selectors[selector].name.as_str(), value);
+fn selectors<'a>(protocol: &'a Protocol, values: &[(SelectorId, u64)]) -> Members<&'a str, u64> {
+    let named = |&(selector, value): &(SelectorId, u64)| (protocol[selector].name.as_str(), value);
     Members(values.iter().map(named).collect())
 }
 

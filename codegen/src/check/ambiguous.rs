@@ -1,51 +1,50 @@
 #![doc = include_str!("../rules/ambiguous.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{AddressPattern, Kind, Message, Protocol, Shape, Who};
+use crate::model::{AddressPattern, Constant, FieldId, FrameLayout, Id, Kind, Protocol};
 use crate::syntax::tree::Path;
 
 /// Inclusive raw ranges.
 pub type Ranges = Vec<(u32, u32)>;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let all = protocol.messages.iter().flat_map(|message| message.shapes.iter().map(move |shape| (message, shape)));
-    let frames: Vec<_> = all.filter(|frame| !is_of_wrong_set(protocol, *frame, diagnostics)).collect();
+    let frames = protocol.frames.iter().filter(|frame| !is_of_wrong_set(protocol, frame, diagnostics));
+    let frames: Vec<_> = frames.collect();
     let mut reported: Vec<(Path, Path)> = Vec::new();
     for (index, one) in frames.iter().enumerate() {
-        let Some(other) = frames[..index].iter().find(|other| both_fit(protocol, *one, **other)) else { continue };
-        let pair = places(protocol, *one, *other);
+        let Some(other) = frames[..index].iter().find(|other| both_fit(protocol, one, other)) else { continue };
+        let pair = places(protocol, one, other);
         if !reported.contains(&pair) {
-            report(protocol, *one, *other, &pair, diagnostics);
+            report(protocol, one, other, &pair, diagnostics);
             reported.push(pair);
         }
     }
 }
 
 /// Tests whether a frame belongs to a set that has an error of its own, which can be why it is ambiguous.
-fn is_of_wrong_set(protocol: &Protocol, (message, shape): (&Message, &Shape), diagnostics: &Diagnostics) -> bool {
-    let set = message.accesses[shape.access].set.map(|set| &protocol.messages[set]);
-    let set = set.or(message.set.as_ref().map(|_| message));
+fn is_of_wrong_set(protocol: &Protocol, frame: &FrameLayout, diagnostics: &Diagnostics) -> bool {
+    let message = &protocol[frame.message];
+    let set = frame.set.map(|set| &protocol[set]).or(message.set.as_ref().map(|_| message));
     set.is_some_and(|set| diagnostics.has_errors_in(&set.doc.path))
 }
 
 fn report(
     protocol: &Protocol,
-    one: (&Message, &Shape),
-    other: (&Message, &Shape),
+    one: &FrameLayout,
+    other: &FrameLayout,
     (place, second): &(Path, Path),
     diagnostics: &mut Diagnostics,
 ) {
-    let name = |(message, shape): (&Message, &Shape)| {
-        let access = &message.accesses[shape.access];
-        let set = access.set.map_or_else(String::new, |set| format!(" in `{}`", protocol.messages[set].name));
-        let access = &protocol.accesses[access.access].name;
-        format!("the {} of `{}` by `{access}`{set}", shape.kind.name(), message.name)
+    let name = |frame: &FrameLayout| {
+        let set = frame.set.map_or_else(String::new, |set| format!(" in `{}`", protocol[set].name));
+        let (message, access) = (&protocol[frame.message].name, &protocol[frame.access].name);
+        format!("the {} of `{message}` by `{access}`{set}", frame.kind.name())
     };
     let text = format!("a frame can be {} and {}", name(other), name(one));
     let help = "give one of the two another constant, addressing modes of its own, or `models` of its own";
     let (at, second) = if place == second {
-        let access = |shape: &Shape| place.key("access").index(shape.access).at_value();
-        (access(one.1), access(other.1))
+        let access = |frame: &FrameLayout| place.key("access").index(frame.exchange.place()).at_value();
+        (access(one), access(other))
     } else {
         (place.at_key(), second.at_key())
     };
@@ -53,57 +52,43 @@ fn report(
 }
 
 /// Returns the places of the sets that two frames are part of; where they are part of one, or of none, those of their messages.
-fn places(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> (Path, Path) {
-    let whole = |(message, shape): (&Message, &Shape)| {
-        let set = message.accesses[shape.access].set;
-        set.map_or(message, |set| &protocol.messages[set]).doc.path.clone()
-    };
+fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path, Path) {
+    let own = |frame: &FrameLayout| protocol[frame.message].doc.path.clone();
+    let whole = |frame: &FrameLayout| protocol[frame.set.unwrap_or(frame.message)].doc.path.clone();
     let (first, second) = (whole(one), whole(other));
-    if first == second { (one.0.doc.path.clone(), other.0.doc.path.clone()) } else { (first, second) }
+    if first == second { (own(one), own(other)) } else { (first, second) }
 }
 
-fn both_fit(protocol: &Protocol, one: (&Message, &Shape), other: (&Message, &Shape)) -> bool {
-    let same_direction = (one.1.kind == Kind::Request) == (other.1.kind == Kind::Request);
+fn both_fit(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
+    let same_direction = (one.kind == Kind::Request) == (other.kind == Kind::Request);
     same_direction
-        && !one.0.is_apart_from(other.0)
-        && one.0.length == other.0.length
-        && agree(one.1, other.1)
-        && patterns(protocol, one)
-            .iter()
-            .any(|pattern| patterns(protocol, other).iter().any(|opposite| intersect(protocol, pattern, opposite)))
+        && !protocol[one.message].is_apart_from(&protocol[other.message])
+        && one.length == other.length
+        && agree(one, other)
+        && protocol
+            .patterns_of(one)
+            .any(|(_, pattern)| protocol.patterns_of(other).any(|(_, opposite)| intersect(protocol, pattern, opposite)))
 }
 
 /// Tests whether no selector has two values.
-fn agree(one: &Shape, other: &Shape) -> bool {
-    let differs = |(selector, value): &(usize, u64)| {
-        other.constants.iter().any(|(known, opposite)| known == selector && opposite != value)
+fn agree(one: &FrameLayout, other: &FrameLayout) -> bool {
+    let differs = |known: &Constant| {
+        other.constants.iter().any(|opposite| opposite.selector == known.selector && opposite.value != known.value)
     };
     !one.constants.iter().any(differs)
 }
 
-/// Returns the addressing patterns that the document allows for a frame.
-pub fn patterns<'a>(protocol: &'a Protocol, (message, shape): (&Message, &Shape)) -> Vec<&'a AddressPattern> {
-    let answers = &message.accesses[shape.access].answers;
-    let allowed = protocol.modes.iter().zip(answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
-    allowed
-        .filter_map(|(mode, who): (_, Who)| match shape.kind {
-            Kind::Request => mode.request.as_ref(),
-            Kind::Reply | Kind::Report => mode.reply(who),
-        })
-        .collect()
-}
-
 /// Tests whether one identifier fits both patterns.
 fn intersect(protocol: &Protocol, one: &AddressPattern, other: &AddressPattern) -> bool {
-    (0..protocol.identifier.fields.len()).all(|field| {
+    protocol.identifier.fields.ids().all(|field| {
         let (ranges, others) = (accepted(protocol, one, field), accepted(protocol, other, field));
         ranges.iter().any(|(first, last)| others.iter().any(|(start, end)| first <= end && start <= last))
     })
 }
 
 /// Returns the raw values of a field that a pattern accepts, tolerated ones included.
-pub fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: usize) -> Ranges {
-    let known = &protocol.identifier.fields[field];
+pub fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: FieldId) -> Ranges {
+    let known = &protocol[field];
     let greatest = known.mask() >> known.shift;
     if pattern.mask & known.mask() != 0 {
         let value = known.get(pattern.value);
@@ -112,7 +97,7 @@ pub fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: usize) -> 
     let Some(address) = pattern.addresses.iter().find(|address| address.field == field) else {
         return vec![(0, greatest)];
     };
-    let address_type = &protocol.address_types[address.address_type];
+    let address_type = &protocol[address.address_type];
     let documented = address_type.raw_range();
     if address_type.strict { vec![documented] } else { without(greatest, &address.excluded, documented) }
 }

@@ -1,20 +1,19 @@
 #![doc = include_str!("../rules/default_value.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Encoding, Message, Protocol, Signal};
+use crate::model::{Encoding, Message, ModelId, Protocol, Signal};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let models = 0..protocol.models.len();
     for message in &protocol.messages {
         for signal in &message.signals {
             check_for(None, message, signal, diagnostics);
-            models.clone().for_each(|model| check_for(Some(model), message, signal, diagnostics));
+            protocol.models.ids().for_each(|model| check_for(Some(model), message, signal, diagnostics));
         }
     }
 }
 
 /// Tests the default that holds for a device model, or where none is chosen.
-fn check_for(model: Option<usize>, message: &Message, signal: &Signal, diagnostics: &mut Diagnostics) {
+fn check_for(model: Option<ModelId>, message: &Message, signal: &Signal, diagnostics: &mut Diagnostics) {
     if !matches!(signal.encoding, Encoding::Number { .. }) {
         return;
     }

@@ -11,7 +11,7 @@ use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
 };
-use crate::model::{Example, Failure, Kind, Meaning, Message, Misfit, Protocol, Signal, ValueExample};
+use crate::model::{Example, Failure, Kind, Meaning, Message, Misfit, Protocol, Signal, SignalId, ValueExample};
 
 /// How many examples hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -171,12 +171,10 @@ impl<'a> Checker<'a> {
     /// Tells whether one digit of the frame is wrong rather than one of the text.
     fn is_slip_in_frame(&self, signal: &Signal, meaning: &Meaning, read: &str) -> bool {
         let Ok(raw) = meaning.raw else { return false };
-        let mut data = [0; 8];
-        data.iter_mut().zip(self.frame().data).for_each(|(byte, given)| *byte = given);
-        evidence::digits_apart(signal, data, raw) == 1 && strsim::osa_distance(&meaning.text, read) > 1
+        evidence::digits_apart(signal, self.frame().padded(), raw) == 1 && strsim::osa_distance(&meaning.text, read) > 1
     }
 
-    fn meaning(&self, signal: usize) -> Option<&Meaning> {
+    fn meaning(&self, signal: SignalId) -> Option<&Meaning> {
         self.example.means.iter().find(|meaning| meaning.signal == signal)
     }
 

@@ -1,12 +1,11 @@
 #![doc = include_str!("../rules/no_example.md")]
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::model::{Message, Protocol};
+use crate::model::{Message, MessageId, Protocol};
 
 /// Tests that of a hundred messages at least so many have an example.
 pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
-    let without: Vec<_> =
-        protocol.messages.iter().enumerate().filter(|(index, _)| !has_example(protocol, *index)).collect();
+    let without: Vec<_> = protocol.messages.entries().filter(|(id, _)| !has_example(protocol, *id)).collect();
     for (_, message) in &without {
         diagnostics.push(nothing_shows(protocol, message));
     }
@@ -19,7 +18,7 @@ pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
     }
 }
 
-fn has_example(protocol: &Protocol, message: usize) -> bool {
+fn has_example(protocol: &Protocol, message: MessageId) -> bool {
     protocol.examples.iter().any(|example| example.message == Some(message) && example.fails.is_none())
 }
 

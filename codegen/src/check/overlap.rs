@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Doc, Encoding, Message, Protocol, SelectorPlace, Shape, Signal};
+use crate::model::{Doc, Encoding, FrameLayout, Message, Protocol, SelectorPlace, Signal};
 use crate::suspect::{Claim, suspect};
 
 /// A leaf of a frame: its name, its remarks, its bits with byte 0 highest.
@@ -12,8 +12,8 @@ type Leaf<'a> = (&'a str, &'a Doc, u64);
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         let mut reported = HashSet::new();
-        for shape in &message.shapes {
-            check_leaves(message, &leaves(protocol, message, shape), &mut reported, diagnostics);
+        for frame in protocol.frames_of(message) {
+            check_leaves(message, &leaves(protocol, frame), &mut reported, diagnostics);
         }
         for signal in &message.signals {
             let Encoding::Packed { parts, .. } = &signal.encoding else { continue };
@@ -40,10 +40,10 @@ fn check_leaves<'a>(
     }
 }
 
-fn leaves<'a>(protocol: &'a Protocol, message: &'a Message, shape: &Shape) -> Vec<Leaf<'a>> {
-    let signals = shape.signals.iter().map(|index| leaf(&message.signals[*index]));
-    let selectors = shape.selectors.iter().filter_map(|index| {
-        let selector = &protocol.selectors[*index];
+fn leaves<'a>(protocol: &'a Protocol, frame: &'a FrameLayout) -> Vec<Leaf<'a>> {
+    let signals = protocol.signals_of(frame).map(|(_, signal)| leaf(signal));
+    let selectors = frame.selectors.iter().filter_map(|id| {
+        let selector = &protocol[*id];
         match selector.place {
             SelectorPlace::Payload(place) => {
                 Some((selector.name.as_str(), &selector.doc, u64::from_be_bytes(place.mask())))

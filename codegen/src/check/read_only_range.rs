@@ -1,14 +1,14 @@
 #![doc = include_str!("../rules/read_only_range.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Kind, Message, Protocol};
+use crate::model::{Kind, Message, Protocol, SignalId};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
-        for (index, signal) in message.signals.iter().enumerate() {
+        for (id, signal) in message.signals.entries() {
             let is_own = signal.range_path.ancestors().any(|path| *path == message.doc.path);
             let is_idle = signal.range.is_some() && signal.specials.is_empty();
-            if is_idle && is_own && !is_sent(message, index) {
+            if is_idle && is_own && !is_sent(protocol, message, id) {
                 let text = format!(
                     "`{}.{}` has a range, which limits what is sent, but no request carries the field",
                     message.name, signal.name
@@ -21,6 +21,6 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-fn is_sent(message: &Message, signal: usize) -> bool {
-    message.shapes.iter().any(|shape| shape.kind == Kind::Request && shape.signals.contains(&signal))
+fn is_sent(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {
+    protocol.frames_of(message).any(|frame| frame.kind == Kind::Request && frame.signals.contains(&signal))
 }

@@ -1,14 +1,14 @@
 #![doc = include_str!("../rules/refusal.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Kind, Message, Protocol, Shape};
+use crate::model::{Constant, FrameLayout, Kind, Message, Protocol};
 use crate::syntax::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         for refusal in &message.refusals {
             if let Some((text, help)) = complaint(protocol, message, refusal) {
-                let access = &protocol.accesses[message.accesses[refusal.access].access].name;
+                let access = &protocol[refusal.access].name;
                 let at = Path::default().key("access").key(access).key("refusal").at_key();
                 diagnostics.push_first(Diagnostic::error("refusal", at, text).help(help));
             }
@@ -17,11 +17,11 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 /// Says what is wrong with a refusal, and what to do.
-fn complaint(protocol: &Protocol, message: &Message, refusal: &Shape) -> Option<(String, String)> {
+fn complaint(protocol: &Protocol, message: &Message, refusal: &FrameLayout) -> Option<(String, String)> {
     let name = &message.name;
-    let frames = message.shapes.iter().filter(|shape| shape.access == refusal.access);
-    let replies: Vec<_> = frames.clone().filter(|shape| shape.kind == Kind::Reply).collect();
-    if replies.is_empty() || !frames.clone().any(|shape| shape.kind == Kind::Request) {
+    let frames = protocol.frames_of(message).filter(|frame| frame.exchange == refusal.exchange);
+    let replies: Vec<_> = frames.clone().filter(|frame| frame.kind == Kind::Reply).collect();
+    if replies.is_empty() || !frames.clone().any(|frame| frame.kind == Kind::Request) {
         let text =
             format!("a refusal of `{name}` stands in place of the reply to a request, but there is no such reply");
         return Some((text, "add `request:` and `reply:` to the access, or take `refusal` out".to_owned()));
@@ -31,7 +31,7 @@ fn complaint(protocol: &Protocol, message: &Message, refusal: &Shape) -> Option<
         let constants = shown(protocol, refusal);
         return Some((format!("nothing tells a refusal of `{name}` from its reply: both have {constants}"), help));
     }
-    let is_known = protocol.messages.iter().flat_map(|other| &other.shapes).any(|shape| says_why(shape, refusal));
+    let is_known = protocol.frames.iter().any(|frame| says_why(frame, refusal));
     (!is_known).then(|| {
         let text =
             format!("no message says why `{name}` is refused: none has a reply with {}", shown(protocol, refusal));
@@ -44,21 +44,21 @@ fn complaint(protocol: &Protocol, message: &Message, refusal: &Shape) -> Option<
 }
 
 /// Names the constants of a refusal.
-fn shown(protocol: &Protocol, refusal: &Shape) -> String {
+fn shown(protocol: &Protocol, refusal: &FrameLayout) -> String {
     let constants = refusal.constants.iter();
-    let texts = constants.map(|(selector, value)| format!("`{}` {value:#04X}", protocol.selectors[*selector].name));
+    let texts = constants.map(|known| format!("`{}` {:#04X}", protocol[known.selector].name, known.value));
     texts.collect::<Vec<_>>().join(", ")
 }
 
 /// Tests whether one field has different constants in both.
-fn is_apart(reply: &Shape, refusal: &Shape) -> bool {
-    let differs = |(selector, value): &(usize, u64)| {
-        refusal.constants.iter().any(|(other, refused)| other == selector && refused != value)
+fn is_apart(reply: &FrameLayout, refusal: &FrameLayout) -> bool {
+    let differs = |known: &Constant| {
+        refusal.constants.iter().any(|other| other.selector == known.selector && other.value != known.value)
     };
     reply.constants.iter().any(differs)
 }
 
 /// Tests whether every refusal is such a frame.
-fn says_why(shape: &Shape, refusal: &Shape) -> bool {
-    shape.kind == Kind::Reply && shape.constants.iter().all(|constant| refusal.constants.contains(constant))
+fn says_why(frame: &FrameLayout, refusal: &FrameLayout) -> bool {
+    frame.kind == Kind::Reply && frame.constants.iter().all(|constant| refusal.constants.contains(constant))
 }

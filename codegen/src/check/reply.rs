@@ -2,7 +2,10 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::interpret::{Decoded, Frame, decode};
-use crate::model::{AddressPattern, Example, Kind, Message, MessageAccess, Mode, Protocol, SelectorPlace, Shape, Who};
+use crate::model::{
+    AddressPattern, AddressTypeId, Constant, Example, FieldId, FrameLayout, Kind, Message, MessageId, Mode, Protocol,
+    SelectorId, SelectorPlace, Table, Who,
+};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let mut latest: Option<(&Example, Decoded)> = None;
@@ -48,10 +51,9 @@ fn mismatch(protocol: &Protocol, asked: &Decoded, reply: &Decoded) -> Option<Str
         let why = difference(protocol, request, asked, reply).unwrap_or_default();
         return Some(format!("a reply of {found} follows a request of {other}{why}"));
     }
-    let mode = &protocol.modes[asked.addressing?];
-    let is_asked = |access: &&MessageAccess| access.access == asked.access && access.set == asked.set;
-    let access = request.accesses.iter().find(is_asked)?;
-    match access.answers[asked.addressing?] {
+    let addressing = asked.addressing?;
+    let mode = &protocol[addressing.mode];
+    match request[protocol[asked.frame].exchange].answers[addressing.mode] {
         Some(Who::Nobody) | None => {
             Some(format!("nobody answers `{}` in the addressing mode `{}`", message.name, mode.name))
         }
@@ -61,14 +63,14 @@ fn mismatch(protocol: &Protocol, asked: &Decoded, reply: &Decoded) -> Option<Str
 
 /// Tests whether a reply shows that a request is refused.
 fn refuses(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Decoded) -> bool {
-    let shows = |(selector, value): &(usize, u64)| value_of(protocol, reply, *selector) == Some(*value);
-    let is_of_access = |refusal: &&Shape| request.accesses[refusal.access].access == asked.access;
+    let shows = |known: &Constant| value_of(protocol, reply, known.selector) == Some(known.value);
+    let is_of_access = |refusal: &&FrameLayout| refusal.access == asked.access;
     request.refusals.iter().filter(is_of_access).any(|refusal| refusal.constants.iter().all(shows))
 }
 
 /// Returns what a frame shows in the place of a selector.
-fn value_of(protocol: &Protocol, frame: &Decoded, selector: usize) -> Option<u64> {
-    match protocol.selectors[selector].place {
+fn value_of(protocol: &Protocol, frame: &Decoded, selector: SelectorId) -> Option<u64> {
+    match protocol[selector].place {
         SelectorPlace::Identifier(field) => Some(frame.identifier[field].into()),
         SelectorPlace::Payload(_) => {
             frame.selectors.iter().find(|(known, _)| *known == selector).map(|(_, value)| *value)
@@ -78,19 +80,13 @@ fn value_of(protocol: &Protocol, frame: &Decoded, selector: usize) -> Option<u64
 
 /// Says in which constants a reply departs from that of the answer or the refusal to which it comes nearest.
 fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Decoded) -> Option<String> {
-    let is_of_access = |shape: &&Shape| {
-        let access = &request.accesses[shape.access];
-        access.access == asked.access && access.set == asked.set && shape.kind == Kind::Reply
-    };
-    let shapes = request.shapes.iter().chain(&request.refusals).filter(is_of_access);
+    let answers = |frame: &&FrameLayout| frame.is_exchanged_with(&protocol[asked.frame]) && frame.kind == Kind::Reply;
+    let frames = protocol.frames_of(request).chain(&request.refusals).filter(answers);
     let of_set = asked.set.map_or(request, |set| &protocol.messages[set]).set.iter().map(|set| &set.replies);
-    let departures = shapes.map(|shape| &shape.constants).chain(of_set).map(|constants| {
-        let found = constants.iter().filter_map(|(selector, wanted)| {
+    let departures = frames.map(|frame| &frame.constants).chain(of_set).map(|constants| {
+        let found = constants.iter().filter_map(|Constant { selector, value: wanted, .. }| {
             let found = value_of(protocol, reply, *selector).filter(|found| found != wanted)?;
-            Some(format!(
-                "`{}` is {found:#04X} here, and {wanted:#04X} in an answer",
-                protocol.selectors[*selector].name
-            ))
+            Some(format!("`{}` is {found:#04X} here, and {wanted:#04X} in an answer", protocol[*selector].name))
         });
         found.collect::<Vec<_>>()
     });
@@ -99,7 +95,7 @@ fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &D
 }
 
 /// Returns the message that a frame belongs to: its set, if it is one of a set.
-fn whole(decoded: &Decoded) -> usize {
+fn whole(decoded: &Decoded) -> MessageId {
     decoded.set.unwrap_or(decoded.message)
 }
 
@@ -128,7 +124,11 @@ fn unbound(protocol: &Protocol, mode: &Mode, who: Who, asked: &Decoded, reply: &
 }
 
 /// Returns the numbers that a pattern binds, by address type.
-fn numbers(protocol: &Protocol, pattern: &AddressPattern, identifier: &[u32]) -> Vec<(usize, i64)> {
+fn numbers(
+    protocol: &Protocol,
+    pattern: &AddressPattern,
+    identifier: &Table<FieldId, u32>,
+) -> Vec<(AddressTypeId, i64)> {
     let addresses = pattern.addresses.iter();
     addresses
         .map(|address| {

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{
-    Access, IdentifierField, Kind, Message, MessageAccess, Protocol, Selector, SelectorPlace, Set, Shape,
+    Access, Constant, Exchange, FrameLayout, IdentifierField, Kind, Message, MessageId, Protocol, SelectorPlace, Set,
 };
 use crate::syntax::tree::Path;
 
@@ -11,9 +11,9 @@ const MOST: usize = 64;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     check_fields(protocol, diagnostics);
-    let sets = protocol.messages.iter().enumerate().filter_map(|(index, message)| {
+    let sets = protocol.messages.entries().filter_map(|(id, message)| {
         let set = message.set.as_ref()?;
-        Some(Checker { protocol, index, message, set })
+        Some(Checker { protocol, id, message, set })
     });
     for checker in sets {
         checker.check(diagnostics);
@@ -50,7 +50,7 @@ fn check_fields(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Tests that a single frame does not say that more follow.
 fn check_sent(field: &IdentifierField, diagnostics: &mut Diagnostics) {
-    let sent = field.constant.or(field.send).or(field.normal).unwrap_or(0);
+    let sent = field.sent();
     if field.continues == Some(sent) {
         let text = format!("`{}` is sent as {sent}, so every frame would say that more follow", field.name);
         let help = format!("give it another value to send, for instance `send: {}`", u32::from(sent == 0));
@@ -65,7 +65,7 @@ fn wrong(at: At, text: impl Into<String>) -> Diagnostic {
 
 struct Checker<'a> {
     protocol: &'a Protocol,
-    index: usize,
+    id: MessageId,
     message: &'a Message,
     set: &'a Set,
 }
@@ -96,19 +96,19 @@ impl Checker<'_> {
     }
 
     fn check_access(&self, diagnostics: &mut Diagnostics) {
-        let [access] = self.message.accesses.as_slice() else {
+        let [exchange] = &*self.message.exchanges else {
             let text = format!("the set `{}` has more than one access", self.message.name);
             let help = "name the one by which it is asked for";
             return diagnostics.push(wrong(self.key("access").at_value(), text).help(help));
         };
-        let known = &self.protocol.accesses[access.access];
+        let known = &self.protocol[exchange.access];
         if let Some(diagnostic) = self.wrong_kinds().filter(|_| known.kinds.contains(&Kind::Reply)) {
             diagnostics.push(diagnostic);
         } else if let Some(diagnostic) = self.misfit(known) {
             diagnostics.push(diagnostic.other(known.doc.path.at_key(), "the access"));
         }
-        if self.protocol.answering(access).is_none() {
-            diagnostics.push(self.nameless(access));
+        if self.protocol.answering(exchange).is_none() {
+            diagnostics.push(self.nameless(exchange));
         }
     }
 
@@ -147,11 +147,11 @@ impl Checker<'_> {
     }
 
     /// Says that replies do not show which node sends them; where one addressing mode is the reason, it is shown.
-    fn nameless(&self, access: &MessageAccess) -> Diagnostic {
+    fn nameless(&self, exchange: &Exchange) -> Diagnostic {
         let text = format!("the replies of the set `{}` do not show which node sends them", self.message.name);
         let help = "let each pattern of the replies name the address of who answers, the same in all addressing modes";
         let diagnostic = wrong(self.key("access").index(0).at_value(), text).help(help);
-        let answers = self.protocol.modes.iter().zip(&access.answers);
+        let answers = self.protocol.modes.iter().zip(&exchange.answers);
         let silent = answers.filter_map(|(mode, who)| {
             mode.reply((*who)?).filter(|pattern| pattern.addresses.is_empty())?;
             Some(mode.doc.path.at_key())
@@ -176,8 +176,9 @@ impl Checker<'_> {
 
     fn check_member(&self, member: &Message, at: &Path, diagnostics: &mut Diagnostics) {
         let name = &member.name;
-        let shapes: Vec<_> = member.shapes.iter().filter(|shape| self.is_of_set(member, shape)).collect();
-        let reply = shapes.iter().find(|shape| shape.kind == Kind::Reply);
+        let frames = self.protocol.frames_of(member).filter(|frame| frame.set == Some(self.id));
+        let frames: Vec<_> = frames.collect();
+        let reply = frames.iter().find(|frame| frame.kind == Kind::Reply);
         if reply.is_some_and(|reply| reply.signals.is_empty()) {
             let text = format!("a reply of `{name}` has no field, so it carries nothing");
             let help = "give it fields that a reply has, or take it out of the set";
@@ -185,11 +186,11 @@ impl Checker<'_> {
             let diagnostic = wrong(at.at_value(), text).help(help);
             diagnostics.push(fields.fold(diagnostic, |known, at| known.other(at, "this is in no reply")));
         }
-        if shapes.iter().any(|shape| shape.kind == Kind::Request && !shape.signals.is_empty()) {
+        if frames.iter().any(|frame| frame.kind == Kind::Request && !frame.signals.is_empty()) {
             let text = format!("a request of `{name}` in a set would carry values");
             diagnostics.push(wrong(at.at_value(), text).help("take `request` out of the `in` of its fields"));
         }
-        if let Some(field) = shapes.iter().find_map(|shape| self.fixed(shape)) {
+        if let Some(field) = frames.iter().find_map(|frame| self.fixed(frame)) {
             let text = format!("`{field}` is constant in frames of `{name}`, so it cannot end the set");
             let help =
                 format!("take the constant of `{field}` out of `match`, of the access and of the addressing modes");
@@ -216,7 +217,7 @@ impl Checker<'_> {
 
     /// Returns the places where a constant of a field can stand for frames of the set.
     fn constants(&self, member: &Message, field: &str) -> Vec<Path> {
-        let accesses = self.message.accesses.iter().map(|access| &self.protocol.accesses[access.access].doc.path);
+        let accesses = self.message.exchanges.iter().map(|exchange| &self.protocol[exchange.access].doc.path);
         let of_access = accesses.flat_map(|path| [path.key("request"), path.key("reply")]);
         let of_messages = [&self.message.doc.path, &member.doc.path].map(|path| path.key("match"));
         let of_modes = self.protocol.modes.iter().map(|mode| &mode.doc.path);
@@ -224,28 +225,22 @@ impl Checker<'_> {
         of_access.chain(of_messages).chain(of_modes).map(|path| path.key(field)).collect()
     }
 
-    fn is_of_set(&self, member: &Message, shape: &Shape) -> bool {
-        member.accesses[shape.access].set == Some(self.index)
-    }
-
     /// Returns the name of the field that ends the set if it has one value only.
-    fn fixed(&self, shape: &Shape) -> Option<&str> {
+    fn fixed(&self, frame: &FrameLayout) -> Option<&str> {
         let continuation = self.protocol.continuation()?;
-        let is_constant = |(index, _): &(usize, u64)| self.protocol.selectors[*index].place == continuation.place;
+        let constant = frame.constants.iter().find(|constant| constant.place == continuation.place);
         let SelectorPlace::Identifier(field) = continuation.place else {
-            let mut constants = shape.constants.iter().filter(|known| is_constant(known));
-            let selector = |(index, _): &(usize, u64)| &self.protocol.selectors[*index];
-            return constants.next().map(selector).map(|known: &Selector| known.name.as_str());
+            return constant.map(|Constant { selector, .. }| self.protocol[*selector].name.as_str());
         };
-        let field = &self.protocol.identifier.fields[field];
-        let is_fixed =
-            field.constant.is_some() || self.is_addressed(field.mask()) || shape.constants.iter().any(is_constant);
+        let field = &self.protocol[field];
+        let is_fixed = field.constant.is_some() || self.is_addressed(field.mask()) || constant.is_some();
         is_fixed.then_some(field.name.as_str())
     }
 
     /// Tests whether an addressing mode of the set has a constant in a field.
     fn is_addressed(&self, field: u32) -> bool {
-        let answers = self.message.accesses.iter().flat_map(|access| self.protocol.modes.iter().zip(&access.answers));
+        let answers = self.message.exchanges.iter();
+        let answers = answers.flat_map(|exchange| self.protocol.modes.iter().zip(&exchange.answers));
         let patterns = answers.filter_map(|(mode, who)| Some([mode.request.as_ref(), mode.reply((*who)?)]));
         patterns.flatten().flatten().any(|pattern| pattern.mask & field != 0)
     }

@@ -1,20 +1,19 @@
 #![doc = include_str!("../rules/unreachable.md")]
 
-use super::ambiguous::{Ranges, accepted, patterns};
+use super::ambiguous::{Ranges, accepted};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{AddressPattern, Foreign, IdentifierField, Message, Protocol, SelectorPlace, Shape};
+use crate::model::{AddressPattern, FieldId, Foreign, FrameLayout, IdentifierField, Message, Protocol, Table};
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
-        let frames: Vec<_> = message
-            .shapes
-            .iter()
-            .flat_map(|shape| patterns(protocol, (message, shape)).into_iter().map(move |pattern| (shape, pattern)))
+        let frames: Vec<_> = protocol
+            .frames_of(message)
+            .flat_map(|frame| protocol.patterns_of(frame).map(move |(_, pattern)| (frame, pattern)))
             .collect();
         if frames.is_empty() && message.set.is_none() {
             diagnostics.push(without_mode(message));
         }
-        let mut owners = frames.iter().map(|(shape, pattern)| owner(protocol, shape, pattern));
+        let mut owners = frames.iter().map(|(frame, pattern)| owner(protocol, frame, pattern));
         if let Some(Some(first)) = owners.next()
             && owners.all(|owner| owner.is_some())
         {
@@ -36,10 +35,10 @@ fn claimed(message: &Message, foreign: &Foreign) -> Diagnostic {
     diagnostic.other(foreign.doc.path.key("match").at_key(), "this claims them first")
 }
 
-/// Finds who claims all frames of a shape that an addressing pattern allows.
-fn owner<'a>(protocol: &'a Protocol, shape: &Shape, pattern: &AddressPattern) -> Option<&'a Foreign> {
-    let fields = protocol.identifier.fields.iter().enumerate();
-    let values: Vec<_> = fields.map(|(index, field)| values(protocol, shape, pattern, (index, field))).collect();
+/// Finds who claims all frames of a kind that an addressing pattern allows.
+fn owner<'a>(protocol: &'a Protocol, frame: &FrameLayout, pattern: &AddressPattern) -> Option<&'a Foreign> {
+    let fields = protocol.identifier.fields.entries();
+    let values: Table<FieldId, _> = fields.map(|field| values(protocol, frame, pattern, field)).collect();
     protocol.foreign.iter().find(|foreign| {
         foreign.ranges.iter().all(|(field, first, last)| {
             let ranges = field.map_or_else(|| vec![whole(protocol, &values)], |field| values[field].clone());
@@ -51,21 +50,19 @@ fn owner<'a>(protocol: &'a Protocol, shape: &Shape, pattern: &AddressPattern) ->
 /// Returns the values that a field of the identifier can have.
 fn values(
     protocol: &Protocol,
-    shape: &Shape,
+    frame: &FrameLayout,
     pattern: &AddressPattern,
-    (index, field): (usize, &IdentifierField),
+    (id, field): (FieldId, &IdentifierField),
 ) -> Ranges {
-    let is_here = |selector: usize| matches!(protocol.selectors[selector].place, SelectorPlace::Identifier(place) if place == index);
-    let chosen = shape.constants.iter().find(|(selector, _)| is_here(*selector));
-    let chosen = chosen.and_then(|(_, value)| u32::try_from(*value).ok());
+    let chosen = frame.identifier().find(|(field, _)| *field == id).map(|(_, value)| value);
     match field.constant.or(chosen) {
         Some(value) => vec![(value, value)],
-        None => accepted(protocol, pattern, index),
+        None => accepted(protocol, pattern, id),
     }
 }
 
 /// Returns the least and the greatest identifier.
-fn whole(protocol: &Protocol, values: &[Ranges]) -> (u32, u32) {
+fn whole(protocol: &Protocol, values: &Table<FieldId, Ranges>) -> (u32, u32) {
     let fixed = protocol.identifier.value;
     let fields = protocol.identifier.fields.iter().zip(values);
     fields.fold((fixed, fixed), |(low, high), (field, ranges)| {

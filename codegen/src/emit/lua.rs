@@ -8,8 +8,7 @@ use addressing::{address_type, constants, direction, foreign, mode, who};
 use signal::{names, place, signal, wide};
 use table::Value;
 
-use crate::interpret::coverage;
-use crate::model::{IdentifierField, Message, Protocol, Selector, SelectorPlace, Shape};
+use crate::model::{FrameLayout, IdentifierField, Message, Protocol, Selector, SelectorPlace};
 
 /// The Lua that is the same for every protocol, in the order in which its parts need each other.
 const INTERPRETER: [&str; 3] =
@@ -46,7 +45,7 @@ fn identifier(protocol: &Protocol) -> Value {
 }
 
 fn identifier_field(protocol: &Protocol, field: &IdentifierField) -> Value {
-    let enumeration = field.enumeration.map(|index| &protocol.enumerations[index]);
+    let enumeration = field.enumeration.map(|id| &protocol[id]);
     Value::record()
         .with("name", Value::text(&field.name))
         .maybe("title", field.doc.title.as_deref().map(Value::text))
@@ -61,7 +60,7 @@ fn selector(protocol: &Protocol, selector: &Selector) -> Value {
         .with("name", Value::text(&selector.name))
         .maybe("title", selector.doc.title.as_deref().map(Value::text));
     let SelectorPlace::Payload(known) = selector.place else { return record };
-    let enumeration = selector.enumeration.map(|index| &protocol.enumerations[index]);
+    let enumeration = selector.enumeration.map(|id| &protocol[id]);
     record
         .with("place", place(known))
         .maybe("normal", selector.normal.map(|normal| wide(normal, known.width())))
@@ -70,53 +69,44 @@ fn selector(protocol: &Protocol, selector: &Selector) -> Value {
 
 fn message(protocol: &Protocol, message: &Message) -> Value {
     let refusals = (!message.refusals.is_empty())
-        .then(|| Value::list(&message.refusals, |refusal| shape(protocol, message, refusal)));
-    let models = (!message.models.is_empty()).then(|| Value::list(&message.models, |model| Value::index(*model)));
+        .then(|| Value::list(&message.refusals, |refusal| frame(protocol, message, refusal)));
+    let models = (!message.models.is_empty()).then(|| Value::list(&message.models, |model| Value::id(*model)));
     Value::record()
         .with("name", Value::text(&message.name))
         .with("length", Value::number(message.length))
         .maybe("models", models)
         .with("signals", Value::list(&message.signals, |known| signal(protocol, known)))
-        .with("shapes", Value::list(&message.shapes, |known| shape(protocol, message, known)))
+        .with("shapes", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
         .maybe("refusals", refusals)
 }
 
-fn shape(protocol: &Protocol, message: &Message, shape: &Shape) -> Value {
-    let access = &message.accesses[shape.access];
-    let answers = protocol.modes.iter().zip(&access.answers);
+fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
+    let answers = protocol.modes.iter().zip(&message[frame.exchange].answers);
     let answers = answers.filter_map(|(mode, answer)| Some((Value::text(&mode.name), Value::text(who((*answer)?)))));
-    let payload = shape.selectors.iter().filter(|index| is_in_data(protocol, **index));
-    let covered = coverage(protocol, message, shape);
     Value::record()
-        .with("access", Value::text(&protocol.accesses[access.access].name))
-        .with("kind", Value::text(shape.kind.name()))
-        .with("in_identifier", in_identifier(protocol, shape))
-        .with("in_data", in_data(protocol, shape))
-        .with("selectors", Value::list(payload, |index| Value::index(*index)))
-        .with("signals", Value::list(&shape.signals, |index| Value::index(*index)))
-        .with("reserved", Value::integer_of_64_bits(!covered))
+        .with("access", Value::text(&protocol[frame.access].name))
+        .with("kind", Value::text(frame.kind.name()))
+        .with("in_identifier", in_identifier(frame))
+        .with("in_data", in_data(frame))
+        .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
+        .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))
+        .with("reserved", Value::integer_of_64_bits(!frame.covered))
         .with("answers", Value::map(answers))
 }
 
-fn is_in_data(protocol: &Protocol, selector: usize) -> bool {
-    matches!(protocol.selectors[selector].place, SelectorPlace::Payload(_))
+/// Returns the constants of the identifier that choose a kind of frame.
+fn in_identifier(frame: &FrameLayout) -> Value {
+    Value::list(frame.identifier(), |(field, value)| {
+        Value::record().with("field", Value::id(field)).with("value", Value::hexadecimal(value))
+    })
 }
 
-/// Returns the constants of the identifier that choose a shape.
-fn in_identifier(protocol: &Protocol, shape: &Shape) -> Value {
-    let constants = shape.constants.iter().filter_map(|(selector, value)| {
-        let SelectorPlace::Identifier(field) = protocol.selectors[*selector].place else { return None };
-        Some(Value::record().with("field", Value::index(field)).with("value", Value::hexadecimal(*value)))
-    });
-    Value::List(constants.collect())
-}
-
-/// Returns the constants of the data bytes that choose a shape.
-fn in_data(protocol: &Protocol, shape: &Shape) -> Value {
-    let constants = shape.constants.iter().filter_map(|(selector, value)| {
-        let SelectorPlace::Payload(place) = protocol.selectors[*selector].place else { return None };
-        let value = wide(*value, place.width());
-        Some(Value::record().with("selector", Value::index(*selector)).with("value", value))
+/// Returns the constants of the data bytes that choose a kind of frame.
+fn in_data(frame: &FrameLayout) -> Value {
+    let constants = frame.constants.iter().filter_map(|constant| {
+        let (place, value) = constant.in_payload()?;
+        let value = wide(value, place.width());
+        Some(Value::record().with("selector", Value::id(constant.selector)).with("value", value))
     });
     Value::List(constants.collect())
 }

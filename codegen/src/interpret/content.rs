@@ -1,12 +1,12 @@
 //! What was decoded, as what encodes it.
 
 use super::{Content, Decoded, Form, Frame, Input, Value};
-use crate::model::{Encoding, Example, Message, Protocol, SelectorPlace, Signal};
+use crate::model::{Encoding, Example, FrameLayout, Message, Protocol, Signal};
 
 impl Frame {
     /// Returns the frame of an example; one printed without data has those bytes alone that choose its message.
     pub fn of(protocol: &Protocol, example: &Example) -> Self {
-        let message = example.message.map(|index| &protocol.messages[index]);
+        let message = example.message.map(|id| &protocol[id]);
         let data = example.data.clone().unwrap_or_else(|| {
             let length = message.map_or(8, |message| message.length);
             let constants = message.map_or([0; 8], |message| constants(protocol, message, example));
@@ -16,32 +16,32 @@ impl Frame {
     }
 }
 
-/// Returns the data bytes that choose a kind of frame of a message.
+/// Returns the data bytes that choose the frame of an example.
 fn constants(protocol: &Protocol, message: &Message, example: &Example) -> [u8; 8] {
+    let frame = protocol.frames_of(message).find(|frame| frame.kind == example.kind);
+    frame.map_or([0; 8], constant_data)
+}
+
+/// Returns the data bytes of a kind of frame in which nothing but its constants is set.
+pub fn constant_data(frame: &FrameLayout) -> [u8; 8] {
     let mut data = [0; 8];
-    let shape = message.shapes.iter().find(|shape| shape.kind == example.kind);
-    for (selector, value) in shape.iter().flat_map(|shape| &shape.constants) {
-        if let SelectorPlace::Payload(place) = protocol.selectors[*selector].place {
-            place.put(&mut data, *value);
-        }
-    }
+    frame.payload().for_each(|(place, value)| place.put(&mut data, value));
     data
 }
 
 impl Content {
     /// Takes over what a frame was decoded to, so that encoding gives the same frame.
     pub fn of(protocol: &Protocol, decoded: &Decoded) -> Self {
-        let message = &protocol.messages[decoded.message];
+        let message = &protocol[decoded.message];
         let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
-        let selectors =
-            decoded.selectors.iter().map(|(index, value)| (protocol.selectors[*index].name.clone(), *value));
+        let selectors = decoded.selectors.iter().map(|(id, value)| (protocol[*id].name.clone(), *value));
         let signals = decoded.signals.iter().map(|reading| {
-            let signal = &message.signals[reading.signal];
+            let signal = &message[reading.signal];
             (signal.name.clone(), Input::of(protocol, signal, &reading.value, reading.bits))
         });
         Self {
             message: message.name.clone(),
-            access: Some(protocol.accesses[decoded.access].name.clone()),
+            access: Some(protocol[decoded.access].name.clone()),
             kind: Some(decoded.kind),
             identifier: fields.map(|(field, value)| (field.name.clone(), u64::from(*value))).collect(),
             selectors: selectors.collect(),
@@ -60,8 +60,8 @@ impl Input {
             Value::Number(value) => Self::Number(*value),
             Value::Name(text) | Value::Text(text) => Self::Text(text.clone()),
             Value::Status { set, unknown } => {
-                let Encoding::Status(index) = signal.encoding else { return Self::Raw(bits.into()) };
-                let names = protocol.status_words[index].bits.iter().filter(|bit| set.contains(&bit.bit));
+                let Encoding::Status(word) = signal.encoding else { return Self::Raw(bits.into()) };
+                let names = protocol[word].bits.iter().filter(|bit| set.contains(&bit.bit));
                 Self::Status { set: names.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
             }
         }

@@ -3,10 +3,13 @@
 use std::cmp::Reverse;
 
 use super::value::{extended, float, in_range, named, physical};
-use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal, mode_name};
-use crate::model::{AddressPattern, Direction, Encoding, Kind, Message, Protocol, SelectorPlace, Shape, Signal, Who};
+use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
+use crate::model::{
+    AddressPattern, Direction, Encoding, FieldId, FrameId, FrameLayout, Kind, Message, ModelId, Protocol, SelectorId,
+    SelectorPlace, Signal, Table, Travel, Who,
+};
 
-/// Decodes a frame that goes to a device `model`, an index into [`Protocol::models`], or comes from one.
+/// Decodes a frame that goes to a device model, or comes from one.
 ///
 /// Without a model, messages that look the same are decoded as the first one listed, and limits that depend on the model
 /// do not count.
@@ -15,23 +18,16 @@ use crate::model::{AddressPattern, Direction, Encoding, Kind, Message, Protocol,
 ///
 /// Says why a frame is not recognised; the tests come in the order of [`Problem`]'s variants, except that a sub-command is
 /// looked for after the length is known to be right.
-pub fn decode(protocol: &Protocol, model: Option<usize>, frame: &Frame) -> Result<Decoded, Unrecognised> {
-    Decoder { protocol, model, frame, data: padded(&frame.data) }.decode()
+pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Decoded, Unrecognised> {
+    Decoder { protocol, model, frame, data: frame.padded() }.decode()
 }
 
-/// Returns the data bytes, filled up with zeros.
-fn padded(bytes: &[u8]) -> [u8; 8] {
-    let mut data = [0; 8];
-    data.iter_mut().zip(bytes).for_each(|(byte, given)| *byte = *given);
-    data
-}
-
-/// A message and one of its frames.
-type Candidate<'a> = (usize, &'a Message, &'a Shape);
+/// A kind of frame that it can be.
+type Candidate<'a> = (FrameId, &'a FrameLayout);
 
 struct Decoder<'a> {
     protocol: &'a Protocol,
-    model: Option<usize>,
+    model: Option<ModelId>,
     frame: &'a Frame,
     data: [u8; 8],
 }
@@ -50,7 +46,7 @@ enum Fit {
 struct Addressing<'a> {
     fit: Fit,
     constants: usize,
-    mode: Option<(usize, &'a AddressPattern)>,
+    travel: Option<(Travel, &'a AddressPattern)>,
 }
 
 impl<'a> Decoder<'a> {
@@ -66,7 +62,7 @@ impl<'a> Decoder<'a> {
         let candidates = self.by_identifier(&candidates)?;
         let candidates = self.by_length(&candidates)?;
         let (best, candidates) = self.by_payload(&candidates)?;
-        let mut decoded = self.decoded(best.0, best.2);
+        let mut decoded = self.decoded(best);
         decoded.notes.extend(self.model_note(best, &candidates));
         Ok(decoded)
     }
@@ -81,7 +77,7 @@ impl<'a> Decoder<'a> {
     }
 
     fn foreign(&self) -> Option<String> {
-        let within = |(field, first, last): &(Option<usize>, u32, u32)| {
+        let within = |(field, first, last): &(Option<FieldId>, u32, u32)| {
             let value = field.map_or(self.frame.id, |field| self.field(field));
             (*first..=*last).contains(&value)
         };
@@ -93,8 +89,8 @@ impl<'a> Decoder<'a> {
         })
     }
 
-    fn field(&self, index: usize) -> u32 {
-        self.protocol.identifier.fields[index].get(self.frame.id)
+    fn field(&self, id: FieldId) -> u32 {
+        self.protocol[id].get(self.frame.id)
     }
 
     /// Tests the identifier's width and fixed bits, and whether it shows its direction.
@@ -143,19 +139,11 @@ impl<'a> Decoder<'a> {
 
     /// Returns every frame of this direction.
     fn candidates(&self, to_module: bool) -> Vec<Candidate<'a>> {
-        let messages = self.protocol.messages.iter().enumerate();
-        messages
-            .flat_map(|(index, message)| message.shapes.iter().map(move |shape| (index, message, shape)))
-            .filter(|(_, _, shape)| (shape.kind == Kind::Request) == to_module)
-            .collect()
+        self.protocol.frames.entries().filter(|(_, frame)| (frame.kind == Kind::Request) == to_module).collect()
     }
 
     fn by_identifier(&self, candidates: &[Candidate<'a>]) -> Result<Vec<Candidate<'a>>, Unrecognised> {
-        let fits = |constant: &&(usize, u64)| match self.protocol.selectors[constant.0].place {
-            SelectorPlace::Identifier(field) => u64::from(self.field(field)) == constant.1,
-            SelectorPlace::Payload(_) => true,
-        };
-        let chosen = |(_, _, shape): &Candidate| shape.constants.iter().all(|constant| fits(&constant));
+        let chosen = |(_, frame): &Candidate| frame.identifier().all(|(field, value)| self.field(field) == value);
         let left: Vec<_> = candidates.iter().copied().filter(chosen).collect();
         if left.is_empty() {
             let text = match self.identifier_selectors(candidates).as_str() {
@@ -169,9 +157,9 @@ impl<'a> Decoder<'a> {
 
     /// Shows the values of the identifier's selectors.
     fn identifier_selectors(&self, candidates: &[Candidate]) -> String {
-        let selectors = self.protocol.selectors.iter().enumerate().filter(|(index, _)| chooses(candidates, *index));
-        let texts = selectors.filter_map(|(index, selector)| match selector.place {
-            SelectorPlace::Identifier(field) => Some(self.selector_text((index, self.field(field).into()))),
+        let selectors = self.protocol.selectors.entries().filter(|(id, _)| chooses(candidates, *id));
+        let texts = selectors.filter_map(|(id, selector)| match selector.place {
+            SelectorPlace::Identifier(field) => Some(self.selector_text((id, self.field(field).into()))),
             SelectorPlace::Payload(_) => None,
         });
         texts.collect::<Vec<_>>().join(", ")
@@ -180,9 +168,9 @@ impl<'a> Decoder<'a> {
     fn by_length(&self, candidates: &[Candidate<'a>]) -> Result<Vec<Candidate<'a>>, Unrecognised> {
         let length = self.frame.data.len();
         let left: Vec<_> =
-            candidates.iter().copied().filter(|(_, message, _)| usize::from(message.length) == length).collect();
+            candidates.iter().copied().filter(|(_, frame)| usize::from(frame.length) == length).collect();
         if left.is_empty() {
-            let wanted = candidates.iter().map(|(_, message, _)| message.length).max().unwrap_or(8);
+            let wanted = candidates.iter().map(|(_, frame)| frame.length).max().unwrap_or(8);
             let bytes = if length == 1 { "byte" } else { "bytes" };
             let text = format!("{length} data {bytes} instead of {wanted}");
             return Err(self.unrecognised(Problem::Length, text, true, candidates));
@@ -192,15 +180,11 @@ impl<'a> Decoder<'a> {
 
     /// Returns the candidate that fits best, and all that have the frame's constants.
     fn by_payload(&self, candidates: &[Candidate<'a>]) -> Result<(Candidate<'a>, Vec<Candidate<'a>>), Unrecognised> {
-        let fits = |(selector, value): &(usize, u64)| match self.protocol.selectors[*selector].place {
-            SelectorPlace::Identifier(_) => true,
-            SelectorPlace::Payload(place) => place.get(&self.data) == *value,
-        };
-        let left: Vec<_> =
-            candidates.iter().copied().filter(|(_, _, shape)| shape.constants.iter().all(fits)).collect();
+        let chosen = |(_, frame): &Candidate| frame.payload().all(|(place, value)| place.get(&self.data) == value);
+        let left: Vec<_> = candidates.iter().copied().filter(chosen).collect();
         let Some(best) = left.iter().min_by_key(|candidate| self.rank(candidate)).copied() else {
             let mut selectors = self.selectors(candidates);
-            selectors.retain(|(index, _)| chooses(candidates, *index));
+            selectors.retain(|(id, _)| chooses(candidates, *id));
             let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
             let text = format!("no {} has {}", kinds(candidates), shown.join(", "));
             return Err(self.unrecognised(Problem::UnknownMessage, text, true, candidates));
@@ -209,41 +193,46 @@ impl<'a> Decoder<'a> {
     }
 
     /// Puts a candidate that the device model has first, then one whose addresses fit better.
-    fn rank(&self, (_, message, shape): &Candidate) -> (Reverse<bool>, Fit, Reverse<usize>) {
-        let addressing = self.addressing(message, shape);
-        let is_of_model = self.model.is_none_or(|model| message.is_of(model));
+    fn rank(&self, (_, frame): &Candidate) -> (Reverse<bool>, Fit, Reverse<usize>) {
+        let addressing = self.addressing(frame);
+        let is_of_model = self.model.is_none_or(|model| self.protocol[frame.message].is_of(model));
         (Reverse(is_of_model), addressing.fit, Reverse(addressing.constants))
     }
 
     /// Says that the device model has no such message, or that the frame may be another message on another model.
     fn model_note(&self, best: Candidate, candidates: &[Candidate]) -> Option<Note> {
-        let (_, message, _) = best;
+        let message = self.message(best);
         let text = match self.model {
             Some(model) if message.is_of(model) => return None,
-            Some(model) => format!("{} has no message `{}`", self.protocol.models[model].name, message.name),
+            Some(model) => format!("{} has no message `{}`", self.protocol[model].name, message.name),
             None => {
-                let is_equal =
-                    |other: &&Candidate| message.is_apart_from(other.1) && self.rank(other) == self.rank(&best);
-                let (_, other, _) = candidates.iter().find(is_equal)?;
-                let models = other.models.iter().map(|model| self.protocol.models[*model].name.as_str());
+                let is_equal = |other: &&Candidate| {
+                    message.is_apart_from(self.message(**other)) && self.rank(other) == self.rank(&best)
+                };
+                let other = self.message(*candidates.iter().find(is_equal)?);
+                let models = other.models.iter().map(|model| self.protocol[*model].name.as_str());
                 format!("it is `{}` if the model is {}", other.name, models.collect::<Vec<_>>().join(" or "))
             }
         };
         Some(Note { rule: "model_dependent", text })
     }
 
-    fn selector_text(&self, (index, value): (usize, u64)) -> String {
-        format!("{} {}", self.protocol.selectors[index].name, self.protocol.selector_value(index, value))
+    fn message(&self, (_, frame): Candidate) -> &'a Message {
+        &self.protocol[frame.message]
+    }
+
+    fn selector_text(&self, (id, value): (SelectorId, u64)) -> String {
+        format!("{} {}", self.protocol[id].name, self.protocol.selector_value(id, value))
     }
 
     /// Returns the payload selectors of the candidates, as far as the frame has the bytes.
-    fn selectors(&self, candidates: &[Candidate]) -> Vec<(usize, u64)> {
-        let present = |index: &usize| candidates.iter().any(|(_, _, shape)| shape.selectors.contains(index));
-        let places = (0..self.protocol.selectors.len()).filter(present);
+    fn selectors(&self, candidates: &[Candidate]) -> Vec<(SelectorId, u64)> {
+        let present = |id: &SelectorId| candidates.iter().any(|(_, frame)| frame.selectors.contains(id));
+        let places = self.protocol.selectors.ids().filter(present);
         places
-            .filter_map(|index| match self.protocol.selectors[index].place {
+            .filter_map(|id| match self.protocol[id].place {
                 SelectorPlace::Payload(place) if covered(place.mask(), self.frame.data.len()) => {
-                    Some((index, place.get(&self.data)))
+                    Some((id, place.get(&self.data)))
                 }
                 _ => None,
             })
@@ -251,39 +240,38 @@ impl<'a> Decoder<'a> {
     }
 
     fn unrecognised(&self, problem: Problem, text: String, split: bool, candidates: &[Candidate]) -> Unrecognised {
-        let identifier = if split { self.identifier() } else { Vec::new() };
+        let identifier = if split { self.identifier() } else { Table::default() };
         Unrecognised { problem, text, identifier, selectors: self.selectors(candidates) }
     }
 
-    fn identifier(&self) -> Vec<u32> {
-        (0..self.protocol.identifier.fields.len()).map(|index| self.field(index)).collect()
+    fn identifier(&self) -> Table<FieldId, u32> {
+        self.protocol.identifier.fields.map(|field| field.get(self.frame.id))
     }
 
     /// Finds the mode that fits best: documented addresses, then tolerated ones, then modes the message does not have.
-    fn addressing(&self, message: &Message, shape: &Shape) -> Addressing<'a> {
-        let answers = &message.accesses[shape.access].answers;
-        let patterns = self.protocol.modes.iter().enumerate().flat_map(|(index, mode)| {
-            let request = mode.request.iter().map(move |pattern| (index, pattern, None));
-            let replies = [Who::One, Who::Each, Who::Coordinator];
-            let replies = replies.into_iter().filter_map(move |who| Some((index, mode.reply(who)?, Some(who))));
-            let wanted = shape.kind == Kind::Request;
-            request.filter(move |_| wanted).chain(replies.filter(move |_| !wanted))
-        });
-        let fitting = patterns.filter_map(|(index, pattern, who)| {
-            let tolerated = self.fits(pattern)?;
-            let has = match who {
-                None => answers[index].is_some(),
-                Some(who) => answers[index] == Some(who),
+    fn addressing(&self, frame: &FrameLayout) -> Addressing<'a> {
+        let patterns = self.protocol.modes.entries().flat_map(|(mode, known)| {
+            let senders: &[_] = match frame.kind {
+                Kind::Request => &[Who::Nobody],
+                Kind::Reply | Kind::Report => &[Who::One, Who::Each, Who::Coordinator],
             };
-            let fit = match (has, tolerated) {
+            senders.iter().filter_map(move |who| Some((Travel { mode, who: *who }, known.pattern(frame.kind, *who)?)))
+        });
+        let fitting = patterns.filter_map(|(shown, pattern)| {
+            let tolerated = self.fits(pattern)?;
+            let is_shown =
+                |own: &&Travel| own.mode == shown.mode && (frame.kind == Kind::Request || own.who == shown.who);
+            let own = frame.travels.iter().find(is_shown);
+            let fit = match (own.is_some(), tolerated) {
                 (true, false) => Fit::Documented,
                 (true, true) => Fit::Tolerated,
                 (false, false) => Fit::DocumentedElsewhere,
                 (false, true) => Fit::ToleratedElsewhere,
             };
-            Some(Addressing { fit, constants: pattern.constants, mode: Some((index, pattern)) })
+            let travel = own.copied().unwrap_or(shown);
+            Some(Addressing { fit, constants: pattern.constants, travel: Some((travel, pattern)) })
         });
-        let none = Addressing { fit: Fit::None, constants: 0, mode: None };
+        let none = Addressing { fit: Fit::None, constants: 0, travel: None };
         fitting.min_by_key(|known| (known.fit, Reverse(known.constants))).unwrap_or(none)
     }
 
@@ -293,7 +281,7 @@ impl<'a> Decoder<'a> {
             return None;
         }
         pattern.addresses.iter().try_fold(false, |tolerated, address| {
-            let address_type = &self.protocol.address_types[address.address_type];
+            let address_type = &self.protocol[address.address_type];
             let raw = self.field(address.field);
             let excluded = || address.excluded.iter().any(|(first, last)| (*first..=*last).contains(&raw));
             match address_type.documents(raw) {
@@ -304,34 +292,31 @@ impl<'a> Decoder<'a> {
         })
     }
 
-    fn decoded(&self, index: usize, shape: &Shape) -> Decoded {
-        let message = &self.protocol.messages[index];
-        let addressing = self.addressing(message, shape);
-        let signals: Vec<_> = shape
-            .signals
-            .iter()
-            .map(|index| {
-                let signal = &message.signals[*index];
-                let bits = signal.place.get(&self.data);
-                Reading { signal: *index, bits, value: physical(self.protocol, signal, bits) }
-            })
-            .collect();
-        let selectors = self.selectors(&[(index, message, shape)]);
-        let reserved = self.reserved(message, shape);
-        let mut notes = self.error_notes(shape, &selectors);
-        notes.extend(self.address_notes(message, shape, &addressing));
-        let note = |reading: &Reading| signal_note(&message.signals[reading.signal], self.model, reading);
+    fn decoded(&self, (id, frame): Candidate) -> Decoded {
+        let message = self.message((id, frame));
+        let addressing = self.addressing(frame);
+        let readings = self.protocol.signals_of(frame).map(|(id, signal)| {
+            let bits = signal.place.get(&self.data);
+            Reading { signal: id, bits, value: physical(self.protocol, signal, bits) }
+        });
+        let signals: Vec<_> = readings.collect();
+        let selectors = self.selectors(&[(id, frame)]);
+        let reserved = self.reserved(frame);
+        let mut notes = self.error_notes(frame, &selectors);
+        notes.extend(self.address_notes(message, frame, &addressing));
+        let note = |reading: &Reading| signal_note(&message[reading.signal], self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         if reserved != [0; 8] {
             let bits = hex(&reserved[..self.frame.data.len()]);
             notes.push(Note { rule: "reserved_bit", text: format!("bits are set that no field has: 0x{bits}") });
         }
         Decoded {
-            message: index,
-            access: message.accesses[shape.access].access,
-            kind: shape.kind,
-            set: message.accesses[shape.access].set,
-            addressing: addressing.mode.map(|(mode, _)| mode),
+            frame: id,
+            message: frame.message,
+            access: frame.access,
+            kind: frame.kind,
+            set: frame.set,
+            addressing: addressing.travel.map(|(travel, _)| travel),
             identifier: self.identifier(),
             selectors,
             signals,
@@ -342,25 +327,24 @@ impl<'a> Decoder<'a> {
     }
 
     /// Returns the set bits that no signal and no selector covers.
-    fn reserved(&self, message: &Message, shape: &Shape) -> [u8; 8] {
-        let covered = coverage(self.protocol, message, shape);
-        (u64::from_be_bytes(self.data) & !covered).to_be_bytes()
+    fn reserved(&self, frame: &FrameLayout) -> [u8; 8] {
+        (u64::from_be_bytes(self.data) & !frame.covered).to_be_bytes()
     }
 
-    fn error_notes(&self, shape: &Shape, selectors: &[(usize, u64)]) -> Vec<Note> {
+    fn error_notes(&self, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) -> Vec<Note> {
         let fields = self.protocol.identifier.fields.iter().filter_map(|field| {
             let value = u64::from(field.get(self.frame.id));
             Some((&field.name, value, field.normal.filter(|normal| u64::from(*normal) != value)?, field.enumeration))
         });
-        let payload = selectors.iter().filter(|_| shape.kind != Kind::Request).filter_map(|(index, value)| {
-            let selector = &self.protocol.selectors[*index];
+        let payload = selectors.iter().filter(|_| frame.kind != Kind::Request).filter_map(|(id, value)| {
+            let selector = &self.protocol[*id];
             let normal = selector.normal.filter(|normal| normal != value)?;
             Some((&selector.name, *value, u32::try_from(normal).unwrap_or(0), selector.enumeration))
         });
         let wrong = fields.chain(payload);
         wrong
             .map(|(name, value, _, enumeration)| {
-                let named = enumeration.and_then(|index| named(&self.protocol.enumerations[index], value));
+                let named = enumeration.and_then(|id| named(&self.protocol[id], value));
                 let text = match named {
                     Some(meaning) => format!("{name} {value}: {}", meaning.name),
                     None => format!("{name} {value}, which the document does not name"),
@@ -370,22 +354,22 @@ impl<'a> Decoder<'a> {
             .collect()
     }
 
-    fn address_notes(&self, message: &Message, shape: &Shape, addressing: &Addressing) -> Vec<Note> {
+    fn address_notes(&self, message: &Message, frame: &FrameLayout, addressing: &Addressing) -> Vec<Note> {
         let mut notes = Vec::new();
-        let Some((mode, pattern)) = addressing.mode else {
-            let text = format!("no addressing mode of this protocol fits a {}", shape.kind.name());
+        let Some((travel, pattern)) = addressing.travel else {
+            let text = format!("no addressing mode of this protocol fits a {}", frame.kind.name());
             return vec![Note { rule: "addressing", text }];
         };
         if addressing.fit >= Fit::DocumentedElsewhere {
-            let text = format!("`{}` is not addressed by `{}`", message.name, mode_name(self.protocol, mode));
+            let text = format!("`{}` is not addressed by `{}`", message.name, self.protocol[travel.mode].name);
             notes.push(Note { rule: "addressing", text });
         }
         for address in &pattern.addresses {
-            let address_type = &self.protocol.address_types[address.address_type];
+            let address_type = &self.protocol[address.address_type];
             let raw = self.field(address.field);
             if !address_type.documents(raw) {
                 let (first, last) = address_type.raw_range();
-                let field = &self.protocol.identifier.fields[address.field].name;
+                let field = &self.protocol[address.field].name;
                 let range = format!("{}..{}", hexadecimal(first), hexadecimal(last));
                 let text = format!("{field} {} is outside {range} of `{}`", hexadecimal(raw), address_type.name);
                 notes.push(Note { rule: "address", text });
@@ -395,7 +379,7 @@ impl<'a> Decoder<'a> {
     }
 }
 
-fn signal_note(signal: &Signal, model: Option<usize>, reading: &Reading) -> Option<Note> {
+fn signal_note(signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
     let name = &signal.name;
     let note = |rule, text| Some(Note { rule, text });
     match (&signal.encoding, &reading.value) {
@@ -415,7 +399,7 @@ fn signal_note(signal: &Signal, model: Option<usize>, reading: &Reading) -> Opti
     }
 }
 
-fn range_note(signal: &Signal, model: Option<usize>, value: f64) -> Option<Note> {
+fn range_note(signal: &Signal, model: Option<ModelId>, value: f64) -> Option<Note> {
     let range = signal.range_for(model).filter(|range| !in_range(signal, range, value))?;
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let text = format!("{} {value}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
@@ -424,31 +408,16 @@ fn range_note(signal: &Signal, model: Option<usize>, value: f64) -> Option<Note>
 
 /// Names the kinds of these frames, for texts.
 fn kinds(candidates: &[Candidate]) -> String {
-    let is_there = |kind: &Kind| candidates.iter().any(|(_, _, shape)| shape.kind == *kind);
+    let is_there = |kind: &Kind| candidates.iter().any(|(_, frame)| frame.kind == *kind);
     Kind::ALL.into_iter().filter(is_there).map(Kind::name).collect::<Vec<_>>().join(" or ")
 }
 
 /// Tests whether a selector takes part in the choice among these frames.
-fn chooses(candidates: &[Candidate], index: usize) -> bool {
-    candidates.iter().any(|(_, _, shape)| shape.constants.iter().any(|known| known.0 == index))
+fn chooses(candidates: &[Candidate], id: SelectorId) -> bool {
+    candidates.iter().any(|(_, frame)| frame.constants.iter().any(|known| known.selector == id))
 }
 
 /// Tests whether all bits of a mask lie in the first bytes.
 fn covered(mask: [u8; 8], length: usize) -> bool {
     mask.iter().skip(length).all(|byte| *byte == 0)
-}
-
-/// Returns the payload bits that a frame's signals and selectors cover, byte 0 highest.
-pub fn coverage(protocol: &Protocol, message: &Message, shape: &Shape) -> u64 {
-    let signals = shape.signals.iter().map(|index| &message.signals[*index]).map(signal_mask);
-    let selectors = shape.selectors.iter().filter_map(|index| match protocol.selectors[*index].place {
-        SelectorPlace::Payload(place) => Some(u64::from_be_bytes(place.mask())),
-        SelectorPlace::Identifier(_) => None,
-    });
-    signals.chain(selectors).fold(0, |mask, bits| mask | bits)
-}
-
-/// Returns the payload bits of a signal, byte 0 highest.
-fn signal_mask(signal: &Signal) -> u64 {
-    u64::from_be_bytes(signal.place.mask())
 }

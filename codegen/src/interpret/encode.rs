@@ -1,36 +1,35 @@
 //! From a message with its values to a frame.
 
-use super::decode::coverage;
 use super::value::{Limits, raw_of};
-use super::{Content, Decoded, Form, Frame, Refusal, decode};
-use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape};
+use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
+use crate::model::{FrameLayout, Kind, Message, MessageId, ModelId, Protocol, SelectorPlace};
 
 /// Notes that a request does not get: it is refused.
 const FORBIDDEN: [&str; 3] = ["address", "addressing", "model_dependent"];
 
-/// Makes the frame that shows `content`, for a device `model` (an index into [`Protocol::models`]) or for any.
+/// Makes the frame that shows `content`, for a device model or for any.
 ///
 /// # Errors
 ///
 /// Refuses unknown names, missing and superfluous fields and signals, values that do not fit, a message that contradicts the
 /// identifier or the selectors, foreign identifiers; in requests also values outside their range, messages that the model
 /// does not have, and addresses and addressing modes that the document does not have.
-pub fn encode(protocol: &Protocol, model: Option<usize>, content: &Content) -> Result<Frame, Refusal> {
-    let message = find_message(protocol, &content.message)?;
+pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) -> Result<Frame, Refusal> {
+    let (_, message) = find_message(protocol, &content.message)?;
     let id = identifier(protocol, content)?;
-    let shape = shape(protocol, message, content, id)?;
-    let limits = Limits::of(shape.kind, model);
-    let data = payload(protocol, message, shape, content, limits)?;
+    let layout = layout(protocol, message, content, id)?;
+    let limits = Limits::of(layout.kind, model);
+    let data = payload(protocol, message, layout, content, limits)?;
     let frame = frame(protocol, message, id, data);
     let one_that_has_it = model.or_else(|| message.models.first().copied());
     let decoded = decode(protocol, one_that_has_it, &frame).map_err(|problem| refuse(message, &problem.text))?;
-    confirm(protocol, message, shape, &decoded, model)?;
+    confirm(protocol, message, layout, &decoded, model)?;
     Ok(frame)
 }
 
 /// Finds a message by name.
-pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<&'a Message, Refusal> {
-    protocol.messages.iter().find(|message| message.name == name).ok_or_else(|| {
+pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<(MessageId, &'a Message), Refusal> {
+    protocol.messages.entries().find(|(_, message)| message.name == name).ok_or_else(|| {
         let names = protocol.messages.iter().map(|message| (strsim::jaro_winkler(&message.name, name), &message.name));
         let near = names.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
         let hint = near.map_or_else(String::new, |(_, near)| format!("; did you mean `{near}`?"));
@@ -43,8 +42,8 @@ pub fn refuse(message: &Message, why: &str) -> Refusal {
 }
 
 /// Refuses a message that a device model does not have.
-pub fn not_of(protocol: &Protocol, message: &Message, model: usize) -> Refusal {
-    refuse(message, &format!("{} has no such message", protocol.models[model].name))
+pub fn not_of(protocol: &Protocol, message: &Message, model: ModelId) -> Refusal {
+    refuse(message, &format!("{} has no such message", protocol[model].name))
 }
 
 /// Returns a frame of a message.
@@ -72,29 +71,34 @@ fn identifier(protocol: &Protocol, content: &Content) -> Result<u32, Refusal> {
             let wanted = field.constant.map_or_else(|| format!("0..{greatest}"), |constant| constant.to_string());
             Refusal(format!("{}: the identifier's {} is {value}, not {wanted}", content.message, field.name))
         })?;
-        Ok(id | value << field.shift)
+        Ok(field.put(id, value))
     })
 }
 
 /// Finds the frame whose constants the identifier and the selectors show.
-fn shape<'a>(protocol: &Protocol, message: &'a Message, content: &Content, id: u32) -> Result<&'a Shape, Refusal> {
-    let access = |shape: &Shape| &protocol.accesses[message.accesses[shape.access].access].name;
-    let named = |shape: &&Shape| {
-        content.access.as_ref().is_none_or(|name| access(shape) == name)
-            && content.kind.is_none_or(|kind| shape.kind == kind)
+fn layout<'a>(
+    protocol: &'a Protocol,
+    message: &'a Message,
+    content: &Content,
+    id: u32,
+) -> Result<&'a FrameLayout, Refusal> {
+    let access = |frame: &FrameLayout| &protocol[frame.access].name;
+    let named = |frame: &&FrameLayout| {
+        content.access.as_ref().is_none_or(|name| access(frame) == name)
+            && content.kind.is_none_or(|kind| frame.kind == kind)
     };
-    let shows = |shape: &&Shape| {
-        shape.constants.iter().all(|(selector, value)| {
-            let selector = &protocol.selectors[*selector];
-            match selector.place {
-                SelectorPlace::Identifier(field) => u64::from(protocol.identifier.fields[field].get(id)) == *value,
-                SelectorPlace::Payload(_) => content.selectors.contains(&(selector.name.clone(), *value)),
+    let shows = |frame: &&FrameLayout| {
+        frame.constants.iter().all(|constant| match constant.place {
+            SelectorPlace::Identifier(field) => u64::from(protocol[field].get(id)) == constant.value,
+            SelectorPlace::Payload(_) => {
+                let name = &protocol[constant.selector].name;
+                content.selectors.iter().any(|(known, value)| known == name && *value == constant.value)
             }
         })
     };
-    let mut fitting = message.shapes.iter().filter(named).filter(shows);
+    let mut fitting = protocol.frames_of(message).filter(named).filter(shows);
     let first = fitting.next().ok_or_else(|| {
-        let known = |name: &&String| message.shapes.iter().any(|shape| access(shape) == *name);
+        let known = |name: &&String| protocol.frames_of(message).any(|frame| access(frame) == *name);
         let unknown = content.access.as_ref().filter(|name| !known(name));
         let other = || "the identifier and the selectors are not those of this message".to_owned();
         refuse(message, &unknown.map_or_else(other, |name| format!("it has no access `{name}`")))
@@ -106,36 +110,36 @@ fn shape<'a>(protocol: &Protocol, message: &'a Message, content: &Content, id: u
         Frame { id, extended: protocol.identifier.extended, data: vec![0; message.length.into()], form: Form::Data };
     let kind = decode(protocol, None, &bare).map(|decoded| decoded.kind);
     let all = std::iter::once(first).chain(fitting).collect::<Vec<_>>();
-    Ok(all.iter().find(|shape| Ok(shape.kind) == kind).copied().unwrap_or(first))
+    Ok(all.iter().find(|frame| Ok(frame.kind) == kind).copied().unwrap_or(first))
 }
 
 fn payload(
     protocol: &Protocol,
     message: &Message,
-    shape: &Shape,
+    layout: &FrameLayout,
     content: &Content,
     limits: Limits,
 ) -> Result<[u8; 8], Refusal> {
     let mut data = [0; 8];
-    put_selectors(protocol, message, shape, content, &mut data)?;
-    put_signals(protocol, message, shape, content, limits, &mut data)?;
-    put_reserved(protocol, message, shape, content, &mut data)?;
+    put_selectors(protocol, message, layout, content, &mut data)?;
+    put_signals(protocol, message, layout, content, limits, &mut data)?;
+    put_reserved(message, layout, content, &mut data)?;
     Ok(data)
 }
 
 fn put_selectors(
     protocol: &Protocol,
     message: &Message,
-    shape: &Shape,
+    layout: &FrameLayout,
     content: &Content,
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
-    let present = |name: &str| shape.selectors.iter().find(|index| protocol.selectors[**index].name == name);
+    let present = |name: &str| layout.selectors.iter().find(|id| protocol[**id].name == name);
     if let Some((name, _)) = content.selectors.iter().find(|(name, _)| present(name).is_none()) {
         return Err(refuse(message, &format!("it has no selector `{name}`")));
     }
-    for index in &shape.selectors {
-        let selector = &protocol.selectors[*index];
+    for id in &layout.selectors {
+        let selector = &protocol[*id];
         let SelectorPlace::Payload(place) = selector.place else { continue };
         let given = content.selectors.iter().find(|(name, _)| *name == selector.name);
         let (_, value) =
@@ -152,17 +156,17 @@ fn put_selectors(
 fn put_signals(
     protocol: &Protocol,
     message: &Message,
-    shape: &Shape,
+    layout: &FrameLayout,
     content: &Content,
     limits: Limits,
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
-    let carried = |name: &str| shape.signals.iter().any(|index| message.signals[*index].name == name);
+    let carried = |name: &str| layout.signals.iter().any(|id| message[*id].name == name);
     if let Some((name, _)) = content.signals.iter().find(|(name, _)| !carried(name)) {
-        return Err(refuse(message, &format!("a {} has no signal `{name}`", shape.kind.name())));
+        return Err(refuse(message, &format!("a {} has no signal `{name}`", layout.kind.name())));
     }
-    for index in &shape.signals {
-        let signal = &message.signals[*index];
+    for id in &layout.signals {
+        let signal = &message[*id];
         let given = content.signals.iter().find(|(name, _)| *name == signal.name);
         let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;
         let bits = raw_of(protocol, message, signal, input, limits)?;
@@ -171,13 +175,7 @@ fn put_signals(
     Ok(())
 }
 
-fn put_reserved(
-    protocol: &Protocol,
-    message: &Message,
-    shape: &Shape,
-    content: &Content,
-    data: &mut [u8; 8],
-) -> Result<(), Refusal> {
+fn put_reserved(message: &Message, layout: &FrameLayout, content: &Content, data: &mut [u8; 8]) -> Result<(), Refusal> {
     if content.reserved.is_empty() {
         return Ok(());
     }
@@ -185,9 +183,8 @@ fn put_reserved(
         let text = format!("`reserved` has {} bytes instead of {}", content.reserved.len(), message.length);
         return Err(refuse(message, &text));
     }
-    let mut bytes = [0; 8];
-    bytes.iter_mut().zip(&content.reserved).for_each(|(byte, given)| *byte = *given);
-    if u64::from_be_bytes(bytes) & coverage(protocol, message, shape) != 0 {
+    let bytes = padded(&content.reserved);
+    if u64::from_be_bytes(bytes) & layout.covered != 0 {
         return Err(refuse(message, "`reserved` has bits that belong to a signal"));
     }
     data.iter_mut().zip(bytes).for_each(|(byte, bits)| *byte |= bits);
@@ -199,19 +196,16 @@ fn put_reserved(
 fn confirm(
     protocol: &Protocol,
     message: &Message,
-    shape: &Shape,
+    layout: &FrameLayout,
     decoded: &Decoded,
-    model: Option<usize>,
+    model: Option<ModelId>,
 ) -> Result<(), Refusal> {
-    let shown = &protocol.messages[decoded.message];
+    let shown = &protocol[decoded.message];
     if let Some(model) = model.filter(|model| shown.name != message.name && !message.is_of(*model)) {
         return Err(not_of(protocol, message, model));
     }
-    if shown.name != message.name
-        || decoded.kind != shape.kind
-        || decoded.access != message.accesses[shape.access].access
-    {
-        let (found, wanted) = (decoded.kind.name(), shape.kind.name());
+    if decoded.message != layout.message || decoded.kind != layout.kind || decoded.access != layout.access {
+        let (found, wanted) = (decoded.kind.name(), layout.kind.name());
         let text = format!("the identifier and the selectors show a {found} of `{}`, not this {wanted}", shown.name);
         return Err(refuse(message, &text));
     }

@@ -1,9 +1,12 @@
 //! A request by name: `set_output` to `module:3`.
 
+use super::content::constant_data;
 use super::encode::{find_message, frame, not_of, refuse};
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
-use crate::model::{AddressType, Encoding, Kind, Message, Mode, Protocol, SelectorPlace, Set, Shape, Signal};
+use crate::model::{
+    AddressType, Encoding, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, SelectorPlace, Set, Signal,
+};
 use crate::number::Rational;
 
 /// Whom a request goes to.
@@ -32,7 +35,7 @@ impl Target {
     }
 }
 
-/// Makes the frames of a request to a device `model` (an index into [`Protocol::models`]) or to any: one, or as many as a
+/// Makes the frames of a request to a device model or to any: one, or as many as a
 /// set has members. A signal that is left out takes its default.
 ///
 /// # Errors
@@ -40,16 +43,16 @@ impl Target {
 /// As [`request`].
 pub fn requests(
     protocol: &Protocol,
-    model: Option<usize>,
+    model: Option<ModelId>,
     access: Option<&str>,
     message: &str,
     target: &Target,
     source: Option<i64>,
     signals: &[(String, String)],
 ) -> Result<Vec<Frame>, Refusal> {
-    let known = find_message(protocol, message)?;
+    let (id, known) = find_message(protocol, message)?;
     match known.set.as_ref().filter(|set| set.kinds.contains(&Kind::Request)) {
-        Some(set) => of_members(protocol, model, (known, set), access, (target, source), signals),
+        Some(set) => of_members(protocol, model, (id, set), access, (target, source), signals),
         None => Ok(vec![request(protocol, model, access, message, target, source, signals)?]),
     }
 }
@@ -57,13 +60,14 @@ pub fn requests(
 /// Makes one request for each member of a set; all but the last say that more follow.
 fn of_members(
     protocol: &Protocol,
-    model: Option<usize>,
-    (message, set): (&Message, &Set),
+    model: Option<ModelId>,
+    (id, set): (MessageId, &Set),
     access: Option<&str>,
     to: (&Target, Option<i64>),
     signals: &[(String, String)],
 ) -> Result<Vec<Frame>, Refusal> {
-    let name = message.accesses.first().map(|known| protocol.accesses[known.access].name.as_str());
+    let message = &protocol[id];
+    let name = message.exchanges.first().map(|exchange| protocol[exchange.access].name.as_str());
     if let Some(other) = access.filter(|access| Some(*access) != name) {
         return Err(refuse(message, &format!("it has no request of the access `{other}`")));
     }
@@ -71,13 +75,10 @@ fn of_members(
         return Err(refuse(message, &format!("there is no signal `{name}` to send; it has none")));
     }
     let mut frames = Vec::new();
-    for member in set.members.iter().map(|member| &protocol.messages[*member]) {
-        let is_of_set = |shape: &&Shape| {
-            shape.kind == Kind::Request
-                && member.accesses[shape.access].set.is_some_and(|set| protocol.messages[set].name == message.name)
-        };
-        let shape = member.shapes.iter().find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))?;
-        frames.push(made(protocol, model, (member, shape), to, signals)?);
+    for member in set.members.iter().map(|member| &protocol[*member]) {
+        let is_of_set = |frame: &&FrameLayout| frame.kind == Kind::Request && frame.set == Some(id);
+        let layout = protocol.frames_of(member).find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))?;
+        frames.push(made(protocol, model, (member, layout), to, signals)?);
     }
     if let Some((_, others)) = frames.split_last_mut() {
         for frame in others {
@@ -93,18 +94,17 @@ fn continue_after(protocol: &Protocol, frame: &mut Frame) {
     match continuation.place {
         SelectorPlace::Identifier(field) => {
             let raw = u32::try_from(continuation.raw).unwrap_or(0);
-            frame.id = replaced(frame.id, &protocol.identifier.fields[field], raw);
+            frame.id = protocol[field].put(frame.id, raw);
         }
         SelectorPlace::Payload(place) => {
-            let mut data = [0; 8];
-            data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
+            let mut data = frame.padded();
             place.put(&mut data, continuation.raw);
             frame.data = data.into_iter().take(frame.data.len()).collect();
         }
     }
 }
 
-/// Makes the frame of a request to a device `model` (an index into [`Protocol::models`]) or to any; a signal that is left
+/// Makes the frame of a request to a device model or to any; a signal that is left
 /// out takes its default.
 ///
 /// # Errors
@@ -112,53 +112,51 @@ fn continue_after(protocol: &Protocol, frame: &mut Frame) {
 /// Refuses what [`super::encode()`] refuses in requests, and a signal that has neither a value nor a default.
 pub fn request(
     protocol: &Protocol,
-    model: Option<usize>,
+    model: Option<ModelId>,
     access: Option<&str>,
     message: &str,
     target: &Target,
     source: Option<i64>,
     signals: &[(String, String)],
 ) -> Result<Frame, Refusal> {
-    let message = find_message(protocol, message)?;
-    let shape = request_shape(protocol, message, access)?;
-    made(protocol, model, (message, shape), (target, source), signals)
+    let (_, message) = find_message(protocol, message)?;
+    let layout = request_layout(protocol, message, access)?;
+    made(protocol, model, (message, layout), (target, source), signals)
 }
 
 fn made(
     protocol: &Protocol,
-    model: Option<usize>,
-    (message, shape): (&Message, &Shape),
+    model: Option<ModelId>,
+    (message, layout): (&Message, &FrameLayout),
     (target, source): (&Target, Option<i64>),
     signals: &[(String, String)],
 ) -> Result<Frame, Refusal> {
     if let Some(model) = model.filter(|model| !message.is_of(*model)) {
         return Err(not_of(protocol, message, model));
     }
-    let mode = mode(protocol, message, shape, target)?;
-    let id = identifier(protocol, message, shape, mode, target, source)?;
-    let mut data = [0; 8];
-    for (selector, value) in &shape.constants {
-        if let SelectorPlace::Payload(place) = protocol.selectors[*selector].place {
-            place.put(&mut data, *value);
-        }
-    }
-    put_signals(protocol, message, shape, signals, model, &mut data)?;
+    let mode = mode(protocol, message, layout, target)?;
+    let id = identifier(protocol, message, layout, mode, target, source)?;
+    let mut data = constant_data(layout);
+    put_signals(protocol, message, layout, signals, model, &mut data)?;
     let frame = frame(protocol, message, id, data);
     decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
     Ok(frame)
 }
 
-fn request_shape<'a>(protocol: &Protocol, message: &'a Message, access: Option<&str>) -> Result<&'a Shape, Refusal> {
-    let name = |shape: &Shape| protocol.accesses[message.accesses[shape.access].access].name.as_str();
-    let requests = message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
-    let is_meant = |shape: &Shape| access.is_none_or(|access| name(shape) == access);
-    let is_own = |shape: &Shape| message.accesses[shape.access].set.is_none();
-    let has_own = requests.clone().any(|shape| is_own(shape) && is_meant(shape));
-    let requests: Vec<_> = requests.filter(|shape| is_own(shape) || !has_own).collect();
-    let names: Vec<_> = requests.iter().map(|shape| format!("`{}`", name(shape))).collect();
-    let fitting: Vec<_> = requests.into_iter().filter(|shape| is_meant(shape)).collect();
+fn request_layout<'a>(
+    protocol: &'a Protocol,
+    message: &'a Message,
+    access: Option<&str>,
+) -> Result<&'a FrameLayout, Refusal> {
+    let name = |frame: &FrameLayout| protocol[frame.access].name.as_str();
+    let requests = protocol.frames_of(message).filter(|frame| frame.kind == Kind::Request);
+    let is_meant = |frame: &FrameLayout| access.is_none_or(|access| name(frame) == access);
+    let has_own = requests.clone().any(|frame| frame.set.is_none() && is_meant(frame));
+    let requests: Vec<_> = requests.filter(|frame| frame.set.is_none() || !has_own).collect();
+    let names: Vec<_> = requests.iter().map(|frame| format!("`{}`", name(frame))).collect();
+    let fitting: Vec<_> = requests.into_iter().filter(|frame| is_meant(frame)).collect();
     match (fitting.as_slice(), access) {
-        ([shape], _) => Ok(shape),
+        ([layout], _) => Ok(layout),
         ([], Some(access)) if !names.is_empty() => {
             Err(refuse(message, &format!("it has no request of the access `{access}`; it has {}", names.join(", "))))
         }
@@ -167,16 +165,14 @@ fn request_shape<'a>(protocol: &Protocol, message: &'a Message, access: Option<&
     }
 }
 
-/// Returns the short name of a mode's target: the address type that only this mode leaves open, else the mode.
-fn target_name<'a>(protocol: &'a Protocol, mode: &'a Mode) -> &'a str {
-    let alone = |index: &usize| protocol.modes.iter().filter(|other| other.target == Some(*index)).count() == 1;
-    mode.target.filter(alone).map_or(mode.name.as_str(), |index| protocol.address_types[index].name.as_str())
-}
-
-fn mode<'a>(protocol: &'a Protocol, message: &Message, shape: &Shape, target: &Target) -> Result<&'a Mode, Refusal> {
-    let answers = &message.accesses[shape.access].answers;
-    let allowed = || protocol.modes.iter().zip(answers).filter(|(_, answer)| answer.is_some()).map(|(mode, _)| mode);
-    let is_meant = |mode: &&Mode| mode.name == target.name || target_name(protocol, mode) == target.name;
+fn mode<'a>(
+    protocol: &'a Protocol,
+    message: &Message,
+    layout: &FrameLayout,
+    target: &Target,
+) -> Result<&'a Mode, Refusal> {
+    let allowed = || layout.travels.iter().map(|travel| &protocol[travel.mode]);
+    let is_meant = |mode: &&Mode| mode.name == target.name || protocol.target_name(mode) == target.name;
     if let Some(mode) = allowed().find(is_meant) {
         return Ok(mode);
     }
@@ -188,30 +184,20 @@ fn mode<'a>(protocol: &'a Protocol, message: &Message, shape: &Shape, target: &T
 
 /// Shows how a target is written.
 fn written(protocol: &Protocol, mode: &Mode) -> String {
-    let name = target_name(protocol, mode);
+    let name = protocol.target_name(mode);
     if mode.target.is_some() { format!("{name}:N") } else { name.to_owned() }
 }
 
 fn identifier(
     protocol: &Protocol,
     message: &Message,
-    shape: &Shape,
+    layout: &FrameLayout,
     mode: &Mode,
     target: &Target,
     source: Option<i64>,
 ) -> Result<u32, Refusal> {
-    let fields = &protocol.identifier.fields;
-    let mut id = protocol.identifier.value;
-    for field in fields {
-        id |= field.send.or(field.normal).unwrap_or(0) << field.shift;
-    }
     let Some(pattern) = &mode.request else { return Err(refuse(message, "this mode has no request")) };
-    for (selector, value) in &shape.constants {
-        if let SelectorPlace::Identifier(field) = protocol.selectors[*selector].place {
-            id = replaced(id, &fields[field], u32::try_from(*value).unwrap_or(0));
-        }
-    }
-    id = id & !pattern.mask | pattern.value;
+    let mut id = protocol.base_identifier(layout, pattern);
     if mode.target.is_some() != target.number.is_some() {
         return Err(refuse(message, &format!("write the target as `{}`", written(protocol, mode))));
     }
@@ -219,17 +205,13 @@ fn identifier(
         return Err(refuse(message, &format!("the mode `{}` has no address for a source", mode.name)));
     }
     for address in &pattern.addresses {
-        let address_type = &protocol.address_types[address.address_type];
+        let address_type = &protocol[address.address_type];
         let number =
             if Some(address.address_type) == mode.target { target.number } else { source.or(address_type.send) };
         let raw = raw_address(message, address_type, number)?;
-        id = replaced(id, &fields[address.field], raw);
+        id = protocol[address.field].put(id, raw);
     }
     Ok(id)
-}
-
-fn replaced(id: u32, field: &crate::model::IdentifierField, value: u32) -> u32 {
-    id & !field.mask() | value << field.shift
 }
 
 fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64>) -> Result<u32, Refusal> {
@@ -245,15 +227,15 @@ fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64
 fn put_signals(
     protocol: &Protocol,
     message: &Message,
-    shape: &Shape,
+    layout: &FrameLayout,
     given: &[(String, String)],
-    model: Option<usize>,
+    model: Option<ModelId>,
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
-    let carried: Vec<_> = shape.signals.iter().map(|index| &message.signals[*index]).collect();
+    let carried: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| signal).collect();
     for (index, (name, _)) in given.iter().enumerate() {
         if carried.iter().all(|signal| signal.name != *name) {
-            return Err(refuse(message, &not_carried(protocol, message, shape, name)));
+            return Err(refuse(message, &not_carried(protocol, message, layout, name)));
         }
         if given[..index].iter().any(|(earlier, _)| earlier == name) {
             return Err(refuse(message, &format!("the signal `{name}` is given twice")));
@@ -274,17 +256,17 @@ fn put_signals(
 }
 
 /// Says why a request has no place for a value.
-fn not_carried(protocol: &Protocol, message: &Message, shape: &Shape, name: &str) -> String {
-    let access = |shape: &Shape| &protocol.accesses[message.accesses[shape.access].access].name;
-    let carries = |shape: &&Shape| shape.signals.iter().any(|index| message.signals[*index].name == name);
-    let senders = message.shapes.iter().filter(|shape| shape.kind == Kind::Request).filter(carries);
-    let senders: Vec<_> = senders.map(|shape| format!("`{}`", access(shape))).collect();
-    let sent: Vec<_> = shape.signals.iter().map(|index| format!("`{}`", message.signals[*index].name)).collect();
+fn not_carried(protocol: &Protocol, message: &Message, layout: &FrameLayout, name: &str) -> String {
+    let access = &protocol[layout.access].name;
+    let carries = |frame: &&FrameLayout| protocol.signals_of(frame).any(|(_, signal)| signal.name == name);
+    let senders = protocol.frames_of(message).filter(|frame| frame.kind == Kind::Request).filter(carries);
+    let senders: Vec<_> = senders.map(|frame| format!("`{}`", protocol[frame.access].name)).collect();
+    let sent: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| format!("`{}`", signal.name)).collect();
     match (message.signals.iter().any(|signal| signal.name == name), sent.is_empty()) {
-        (true, _) if senders.is_empty() => format!("`{name}` is read only: `{}` asks for it", access(shape)),
-        (true, _) => format!("`{}` does not send `{name}`; {} does", access(shape), senders.join(", ")),
-        (false, true) => format!("there is no signal `{name}`; `{}` sends none", access(shape)),
-        (false, false) => format!("there is no signal `{name}`; `{}` sends {}", access(shape), sent.join(", ")),
+        (true, _) if senders.is_empty() => format!("`{name}` is read only: `{access}` asks for it"),
+        (true, _) => format!("`{access}` does not send `{name}`; {} does", senders.join(", ")),
+        (false, true) => format!("there is no signal `{name}`; `{access}` sends none"),
+        (false, false) => format!("there is no signal `{name}`; `{access}` sends {}", sent.join(", ")),
     }
 }
 

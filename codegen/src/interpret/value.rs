@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use canspec_runtime::{Scale, nearest};
 
 use super::{Input, Refusal, Value};
-use crate::model::{Encoding, Enumeration, Kind, Message, NamedValue, Protocol, Range, Signal, raw_limits};
+use crate::model::{Encoding, Enumeration, Kind, Message, ModelId, NamedValue, Protocol, Range, Signal, raw_limits};
 use crate::number::Rational;
 use crate::texts::{parse_packed, raw_of_bits, text_bits, text_of_bits, unnamed, write_packed};
 
@@ -24,12 +24,12 @@ pub fn physical(protocol: &Protocol, signal: &Signal, bits: u64) -> Value {
             let value = float(bits);
             if value.is_finite() { Value::Number(value.into()) } else { Value::None }
         }
-        Encoding::Named(index) => {
-            let named = named(&protocol.enumerations[*index], bits);
+        Encoding::Named(id) => {
+            let named = named(&protocol[*id], bits);
             named.map_or(Value::None, |value| Value::Name(value.name.clone()))
         }
-        Encoding::Status(index) => {
-            let word = &protocol.status_words[*index];
+        Encoding::Status(id) => {
+            let word = &protocol[*id];
             let set = word.bits.iter().map(|bit| bit.bit).filter(|bit| bits >> bit & 1 == 1);
             Value::Status { set: set.collect(), unknown: bits & !word.known() }
         }
@@ -83,13 +83,13 @@ pub fn in_range(signal: &Signal, range: &Range, value: f64) -> bool {
 pub enum Limits {
     /// What the bits hold, as in a reply.
     Bits,
-    /// The range too, as in a request: that of a device model (an index into [`Protocol::models`]), if one is chosen.
-    Range(Option<usize>),
+    /// The range too, as in a request: that of a device model, if one is chosen.
+    Range(Option<ModelId>),
 }
 
 impl Limits {
     /// Returns what holds in a kind of frame.
-    pub fn of(kind: Kind, model: Option<usize>) -> Self {
+    pub fn of(kind: Kind, model: Option<ModelId>) -> Self {
         if kind == Kind::Request { Self::Range(model) } else { Self::Bits }
     }
 }
@@ -130,9 +130,9 @@ impl Encoder<'_> {
             (Encoding::Number { signed, .. }, Input::Raw(raw)) => self.raw_number(*raw, *signed),
             (Encoding::Number { signed, scale, offset }, input) => self.number(*signed, *scale, *offset, input),
             (_, Input::Raw(raw)) => self.bits(*raw, false),
-            (Encoding::Named(index), Input::Text(name)) => self.name(&self.protocol.enumerations[*index], name),
-            (Encoding::Status(index), Input::Status { set, unknown }) => {
-                let word = &self.protocol.status_words[*index];
+            (Encoding::Named(id), Input::Text(name)) => self.name(&self.protocol[*id], name),
+            (Encoding::Status(id), Input::Status { set, unknown }) => {
+                let word = &self.protocol[*id];
                 let named = raw_of_bits(word, set)?;
                 if unknown & word.known() != 0 {
                     return Err(format!("`unknown` has bits {:#X} that have a name", unknown & word.known()));

@@ -1,6 +1,6 @@
 //! Addresses, addressing modes, and how an identifier shows its direction.
 
-use crate::model::{Doc, Who};
+use crate::model::{AddressTypeId, Doc, FieldId, Kind, Who};
 
 /// A kind of address: a range of numbers in a field of the identifier.
 #[derive(Clone, Debug)]
@@ -63,8 +63,8 @@ pub struct Mode {
     pub each: Option<AddressPattern>,
     /// What the identifier of a reply or report shows if one module sends it for all.
     pub coordinator: Option<AddressPattern>,
-    /// The address type that the caller chooses in a request: index into [`Protocol::address_types`](crate::model::Protocol::address_types).
-    pub target: Option<usize>,
+    /// The address type that the caller chooses in a request.
+    pub target: Option<AddressTypeId>,
 }
 
 impl Mode {
@@ -75,6 +75,14 @@ impl Mode {
             Who::Each => self.each.as_ref(),
             Who::Coordinator => self.coordinator.as_ref(),
             Who::Nobody => None,
+        }
+    }
+
+    /// Returns the pattern of a kind of frame, of requests that `who` answers, and of others that `who` sends.
+    pub fn pattern(&self, kind: Kind, who: Who) -> Option<&AddressPattern> {
+        match kind {
+            Kind::Request => self.request.as_ref(),
+            Kind::Reply | Kind::Report => self.reply(who),
         }
     }
 }
@@ -97,10 +105,10 @@ pub struct AddressPattern {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Address {
-    /// Index into [`Identifier::fields`](crate::model::Identifier::fields).
-    pub field: usize,
-    /// Index into [`Protocol::address_types`](crate::model::Protocol::address_types).
-    pub address_type: usize,
+    /// The field.
+    pub field: FieldId,
+    /// The kind of address.
+    pub address_type: AddressTypeId,
     /// Raw ranges that belong to somebody else; the other undocumented ones are tolerated, unless the type is strict.
     pub excluded: Vec<(u32, u32)>,
 }
@@ -117,8 +125,8 @@ pub struct Direction {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FieldTest {
-    /// Index into [`Identifier::fields`](crate::model::Identifier::fields).
-    pub field: usize,
+    /// The field.
+    pub field: FieldId,
     /// Inclusive raw ranges.
     pub ranges: Vec<(u32, u32)>,
     /// The value lies in one of the ranges, rather than in none.

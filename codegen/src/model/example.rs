@@ -1,6 +1,6 @@
 //! The document's frames and what they mean.
 
-use crate::model::{Doc, Kind, Signal};
+use crate::model::{Doc, Kind, MessageId, ModelId, Signal, SignalId};
 use crate::syntax::tree::Path;
 
 /// A frame of the document and what it means.
@@ -17,11 +17,11 @@ pub struct Example {
     pub extended: bool,
     /// `None` where the document prints an identifier alone.
     pub data: Option<Vec<u8>>,
-    /// Index into [`Protocol::messages`](crate::model::Protocol::messages); `None` for a frame that is none of them.
-    pub message: Option<usize>,
-    /// Index into [`Protocol::models`](crate::model::Protocol::models): the device model that the frame is of.
-    pub model: Option<usize>,
-    /// Raw values of the message's signals (indices into [`Message::signals`](crate::model::Message::signals)), and the text that says so.
+    /// The message that it carries; `None` for a frame that is none of them.
+    pub message: Option<MessageId>,
+    /// The device model that the frame is of.
+    pub model: Option<ModelId>,
+    /// Raw values of the message's signals, and the text that says so.
     pub means: Vec<Meaning>,
     /// Rules of the notes that decoding must report.
     pub notes: Vec<String>,
@@ -37,8 +37,8 @@ pub struct Example {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Meaning {
-    /// Index into [`Message::signals`](crate::model::Message::signals).
-    pub signal: usize,
+    /// The signal.
+    pub signal: SignalId,
     /// As written in the spec.
     pub text: String,
     /// The raw bits, or why the text is no value of the signal.

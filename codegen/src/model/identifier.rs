@@ -2,7 +2,7 @@
 
 use canspec_runtime::Place;
 
-use crate::model::Doc;
+use crate::model::{Doc, EnumerationId, FieldId, Table};
 
 /// The identifier's layout.
 #[derive(Clone, Debug)]
@@ -11,7 +11,7 @@ pub struct Identifier {
     /// 29 bits rather than 11.
     pub extended: bool,
     /// Fields from the most to the least significant bit.
-    pub fields: Vec<IdentifierField>,
+    pub fields: Table<FieldId, IdentifierField>,
     /// Bits with a fixed value: constant fields, `ones` and `zeros`.
     pub mask: u32,
     /// Values of these bits.
@@ -38,8 +38,8 @@ pub struct IdentifierField {
     pub normal: Option<u32>,
     /// The value that says that more frames of a set follow.
     pub continues: Option<u32>,
-    /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
-    pub enumeration: Option<usize>,
+    /// Names of its values.
+    pub enumeration: Option<EnumerationId>,
 }
 
 impl IdentifierField {
@@ -47,6 +47,16 @@ impl IdentifierField {
     pub fn mask(&self) -> u32 {
         let ones = u32::MAX >> (32 - self.width);
         ones << self.shift
+    }
+
+    /// Returns what is sent in the field where nothing else chooses its value.
+    pub fn sent(&self) -> u32 {
+        self.constant.or(self.send).or(self.normal).unwrap_or(0)
+    }
+
+    /// Returns an identifier with another value in the field.
+    pub fn put(&self, identifier: u32, value: u32) -> u32 {
+        identifier & !self.mask() | value << self.shift
     }
 
     /// Returns the field's value in an identifier.
@@ -69,16 +79,16 @@ pub struct Selector {
     pub normal: Option<u64>,
     /// The value that says that more frames of a set follow.
     pub continues: Option<u64>,
-    /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
-    pub enumeration: Option<usize>,
+    /// Names of its values.
+    pub enumeration: Option<EnumerationId>,
 }
 
 /// Where a selector stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SelectorPlace {
-    /// Index into [`Identifier::fields`].
-    Identifier(usize),
+    /// In a field of the identifier.
+    Identifier(FieldId),
     /// In the data bytes.
     Payload(Place),
 }
@@ -91,6 +101,6 @@ pub struct Foreign {
     pub name: String,
     /// What the spec says beside it.
     pub doc: Doc,
-    /// Inclusive ranges of raw values, all of which must hold: `None` is the identifier as a whole, else an index into [`Identifier::fields`].
-    pub ranges: Vec<(Option<usize>, u32, u32)>,
+    /// Inclusive ranges of raw values, all of which must hold: of a field, or of the identifier as a whole.
+    pub ranges: Vec<(Option<FieldId>, u32, u32)>,
 }

@@ -1,6 +1,11 @@
 //! Messages, how they travel, and the frames that exist of them.
 
-use crate::model::{Doc, Set, Signal};
+use canspec_runtime::Place;
+
+use crate::model::{
+    AccessId, Doc, ExchangeId, FieldId, FrameId, MessageId, ModeId, ModelId, SelectorId, SelectorPlace, Set, Signal,
+    SignalId, Table, TimingId,
+};
 
 /// What a frame is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -40,6 +45,9 @@ pub enum Who {
     Nobody,
 }
 
+/// Who answers a request, by addressing mode; `None` where the mode is not allowed.
+pub type Answers = Table<ModeId, Option<Who>>;
+
 /// How a message travels.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -52,10 +60,10 @@ pub struct Access {
     pub kinds: Vec<Kind>,
     /// The kinds of frames that carry the message's signals.
     pub carries: Vec<Kind>,
-    /// Who answers, by [`Protocol::modes`](crate::model::Protocol::modes); `None` where the mode is not allowed.
-    pub answers: Vec<Option<Who>>,
-    /// Index into [`Protocol::timing`](crate::model::Protocol::timing): how often a report comes.
-    pub every: Option<usize>,
+    /// Who answers; `None` where the mode is not allowed.
+    pub answers: Answers,
+    /// How often a report comes.
+    pub every: Option<TimingId>,
 }
 
 /// A message.
@@ -69,28 +77,27 @@ pub struct Message {
     /// Data bytes of its frames.
     pub length: u8,
     /// Signals by first byte, then as written.
-    pub signals: Vec<Signal>,
-    /// What chooses each of its frames, whatever the access: selectors (index into
-    /// [`Protocol::selectors`](crate::model::Protocol::selectors)) and their values.
-    pub constants: Vec<(usize, u64)>,
-    /// Accesses by which it travels.
-    pub accesses: Vec<MessageAccess>,
-    /// The frames that exist: one for each access and kind.
-    pub shapes: Vec<Shape>,
-    /// The frames that refuse its requests in place of a reply, one for each access that has them: replies of another message.
-    pub refusals: Vec<Shape>,
-    /// Index into [`Protocol::timing`](crate::model::Protocol::timing): how often its report comes, if not as its access says.
-    pub every: Option<usize>,
-    /// The only device models that have it, by [`Protocol::models`](crate::model::Protocol::models); empty if every
-    /// model has it.
-    pub models: Vec<usize>,
+    pub signals: Table<SignalId, Signal>,
+    /// What chooses each of its frames, whatever the access.
+    pub constants: Vec<Constant>,
+    /// How it travels: one exchange for each of its accesses, alone or as a member of a set.
+    pub exchanges: Table<ExchangeId, Exchange>,
+    /// The frames that exist of it: one for each exchange and kind.
+    pub frames: Vec<FrameId>,
+    /// The frames that refuse its requests in place of a reply, one for each exchange that has them: replies of another
+    /// message.
+    pub refusals: Vec<FrameLayout>,
+    /// How often its report comes, if not as its access says.
+    pub every: Option<TimingId>,
+    /// The only device models that have it; empty if every model has it.
+    pub models: Vec<ModelId>,
     /// What it consists of, if it travels as several frames.
     pub set: Option<Set>,
 }
 
 impl Message {
     /// Tests whether a device model has the message.
-    pub fn is_of(&self, model: usize) -> bool {
+    pub fn is_of(&self, model: ModelId) -> bool {
         self.models.is_empty() || self.models.contains(&model)
     }
 
@@ -100,31 +107,98 @@ impl Message {
     }
 }
 
-/// An access as one message has it.
+/// How a message travels by one of its accesses.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct MessageAccess {
-    /// Index into [`Protocol::accesses`](crate::model::Protocol::accesses).
-    pub access: usize,
-    /// Who answers, by [`Protocol::modes`](crate::model::Protocol::modes); `None` where the mode is not allowed.
-    pub answers: Vec<Option<Who>>,
-    /// Index into [`Protocol::messages`](crate::model::Protocol::messages): the set as a member of which the message
-    /// travels so.
-    pub set: Option<usize>,
+pub struct Exchange {
+    /// The access.
+    pub access: AccessId,
+    /// Who answers the message's requests.
+    pub answers: Answers,
+    /// The set as whose member the message travels so.
+    pub set: Option<MessageId>,
 }
 
-/// One kind of frame of one message.
+/// A value that a selector must have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Constant {
+    /// The selector.
+    pub selector: SelectorId,
+    /// Where it stands.
+    pub place: SelectorPlace,
+    /// Its value.
+    pub value: u64,
+}
+
+impl Constant {
+    /// Returns the field of the identifier and its value, if it stands there.
+    pub fn in_identifier(&self) -> Option<(FieldId, u32)> {
+        match self.place {
+            SelectorPlace::Identifier(field) => Some((field, u32::try_from(self.value).unwrap_or(u32::MAX))),
+            SelectorPlace::Payload(_) => None,
+        }
+    }
+
+    /// Returns the bits of the payload and their value, if it stands there.
+    pub fn in_payload(&self) -> Option<(Place, u64)> {
+        match self.place {
+            SelectorPlace::Identifier(_) => None,
+            SelectorPlace::Payload(place) => Some((place, self.value)),
+        }
+    }
+}
+
+/// One kind of frame of one message: all that an engine or an emitter needs of it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Shape {
-    /// Index into [`Message::accesses`].
-    pub access: usize,
+pub struct FrameLayout {
+    /// The message that it carries.
+    pub message: MessageId,
+    /// The exchange of the message to which it belongs.
+    pub exchange: ExchangeId,
+    /// The access of that exchange.
+    pub access: AccessId,
+    /// The set of that exchange, if there is one.
+    pub set: Option<MessageId>,
     /// What the frame is for.
     pub kind: Kind,
-    /// What chooses this frame: selectors (index into [`Protocol::selectors`](crate::model::Protocol::selectors)) and their values.
-    pub constants: Vec<(usize, u64)>,
+    /// Number of data bytes.
+    pub length: u8,
+    /// What chooses this frame, in identifier and payload.
+    pub constants: Vec<Constant>,
     /// Payload selectors that this frame has, constants included.
-    pub selectors: Vec<usize>,
-    /// Signals that this frame carries: indices into [`Message::signals`].
-    pub signals: Vec<usize>,
+    pub selectors: Vec<SelectorId>,
+    /// Signals of the message that this frame carries.
+    pub signals: Vec<SignalId>,
+    /// Payload bits of selectors and signals, byte 0 highest.
+    pub covered: u64,
+    /// The addressing modes by which it is sent, and who answers, or sends it.
+    pub travels: Vec<Travel>,
+}
+
+impl FrameLayout {
+    /// Returns the constants of the identifier.
+    pub fn identifier(&self) -> impl Iterator<Item = (FieldId, u32)> {
+        self.constants.iter().filter_map(Constant::in_identifier)
+    }
+
+    /// Returns the constants of the payload.
+    pub fn payload(&self) -> impl Iterator<Item = (Place, u64)> {
+        self.constants.iter().filter_map(Constant::in_payload)
+    }
+
+    /// Tests whether another frame belongs to the same access, alone or of the same set.
+    pub fn is_exchanged_with(&self, other: &Self) -> bool {
+        (self.access, self.set) == (other.access, other.set)
+    }
+}
+
+/// A way in which a frame is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Travel {
+    /// The addressing mode.
+    pub mode: ModeId,
+    /// Who answers a request, or sends a reply or report.
+    pub who: Who,
 }

@@ -1,17 +1,17 @@
 //! Sets: messages that travel as several frames.
 
-use crate::model::{Kind, MessageAccess, Mode, Protocol, SelectorPlace, Who};
+use crate::model::{AddressTypeId, Constant, Exchange, Kind, MessageId, Mode, Protocol, SelectorPlace, Who};
 
 /// What a message consists of that travels as several frames.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Set {
-    /// Messages of which one travels in each frame, in order: indices into [`Protocol::messages`].
-    pub members: Vec<usize>,
+    /// Messages of which one travels in each frame, in order.
+    pub members: Vec<MessageId>,
     /// Kinds of frames of which there is one for each member.
     pub kinds: Vec<Kind>,
-    /// What each reply shows, whatever it carries: selectors (index into [`Protocol::selectors`]) and their values.
-    pub replies: Vec<(usize, u64)>,
+    /// What each reply shows, whatever it carries.
+    pub replies: Vec<Constant>,
 }
 
 /// The field that says whether more frames of a set follow.
@@ -27,7 +27,7 @@ pub struct Continuation {
 impl Protocol {
     /// Returns the field that says whether more frames of a set follow, if there is one.
     pub fn continuation(&self) -> Option<Continuation> {
-        let fields = self.identifier.fields.iter().enumerate();
+        let fields = self.identifier.fields.entries();
         let mut in_identifier = fields.filter_map(|(index, field)| {
             Some(Continuation { place: SelectorPlace::Identifier(index), raw: field.continues?.into() })
         });
@@ -40,10 +40,10 @@ impl Protocol {
 }
 
 impl Protocol {
-    /// Returns the kind of address that shows which node sends a reply, an index into [`Protocol::address_types`];
-    /// `None` if some reply does not show it, or replies show different kinds.
-    pub fn answering(&self, access: &MessageAccess) -> Option<usize> {
-        let answers = self.modes.iter().zip(&access.answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
+    /// Returns the kind of address that shows which node sends a reply; `None` if some reply does not show it, or replies
+    /// show different kinds.
+    pub fn answering(&self, exchange: &Exchange) -> Option<AddressTypeId> {
+        let answers = self.modes.iter().zip(&exchange.answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
         let mut patterns = answers.filter(|(_, who)| *who != Who::Nobody).map(|(mode, who)| self.sender(mode, who));
         let first = patterns.next()??;
         patterns.all(|other| other == Some(first)).then_some(first)
@@ -51,11 +51,11 @@ impl Protocol {
 
     /// Returns the kind of address of whoever answers: that of the one addressed, or else the only one that nobody sends
     /// by default.
-    fn sender(&self, mode: &Mode, who: Who) -> Option<usize> {
+    fn sender(&self, mode: &Mode, who: Who) -> Option<AddressTypeId> {
         let types = || mode.reply(who).into_iter().flat_map(|pattern| &pattern.addresses);
         let types = || types().map(|address| address.address_type);
         let addressed = types().find(|known| Some(*known) == mode.target);
-        let mut free = types().filter(|known| self.address_types[*known].send.is_none());
+        let mut free = types().filter(|known| self[*known].send.is_none());
         let alone = free.next().filter(|_| free.next().is_none());
         addressed.or(alone)
     }

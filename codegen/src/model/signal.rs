@@ -2,7 +2,7 @@
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, Kind};
+use crate::model::{Doc, EnumerationId, Kind, ModelId, PartId, StatusWordId, Table};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -123,8 +123,8 @@ pub struct Signal {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct OfModel<T> {
-    /// Index into [`Protocol::models`](crate::model::Protocol::models).
-    pub model: usize,
+    /// The model.
+    pub model: ModelId,
     /// What it has.
     pub value: T,
     /// Place in the spec.
@@ -133,12 +133,12 @@ pub struct OfModel<T> {
 
 impl Signal {
     /// Returns the physical limits that hold for a device model, or where none is chosen.
-    pub fn range_for(&self, model: Option<usize>) -> Option<Range> {
+    pub fn range_for(&self, model: Option<ModelId>) -> Option<Range> {
         own(&self.model_ranges, model).or(self.range)
     }
 
     /// Returns the raw value that a device model starts with, or a device of which the model is not known.
-    pub fn default_for(&self, model: Option<usize>) -> Option<i128> {
+    pub fn default_for(&self, model: Option<ModelId>) -> Option<i128> {
         own(&self.model_defaults, model).or(self.default)
     }
 
@@ -163,7 +163,7 @@ pub fn raw_limits(width: u8, signed: bool) -> (i128, i128) {
 }
 
 /// Returns what a device model has of its own.
-fn own<T: Copy>(known: &[OfModel<T>], model: Option<usize>) -> Option<T> {
+fn own<T: Copy>(known: &[OfModel<T>], model: Option<ModelId>) -> Option<T> {
     known.iter().find(|own| Some(own.model) == model).map(|own| own.value)
 }
 
@@ -182,10 +182,10 @@ pub enum Encoding {
     },
     /// IEEE 754 single precision.
     Float,
-    /// Index into [`Protocol::enumerations`](crate::model::Protocol::enumerations).
-    Named(usize),
-    /// Index into [`Protocol::status_words`](crate::model::Protocol::status_words).
-    Status(usize),
+    /// Values with names.
+    Named(EnumerationId),
+    /// Conditions, one a bit.
+    Status(StatusWordId),
     /// ASCII, the first character at the most significant byte of the place.
     Text,
     /// One text made of several parts.
@@ -193,7 +193,7 @@ pub enum Encoding {
         /// What the text consists of, in order.
         pieces: Vec<Piece>,
         /// Bits of the payload that the pieces name.
-        parts: Vec<Signal>,
+        parts: Table<PartId, Signal>,
     },
 }
 
@@ -218,8 +218,8 @@ pub enum Piece {
     Literal(String),
     /// The text or the number of a part.
     Part {
-        /// Index into the parts of the packed value.
-        part: usize,
+        /// The part.
+        part: PartId,
         /// To how many digits a number is filled with zeros.
         digits: Option<usize>,
     },
@@ -282,7 +282,7 @@ impl Signal {
     /// Returns the remarks of the signal and of its parts.
     pub(super) fn docs(&self) -> Vec<&Doc> {
         let parts = match &self.encoding {
-            Encoding::Packed { parts, .. } => parts.as_slice(),
+            Encoding::Packed { parts, .. } => &**parts,
             _ => &[],
         };
         std::iter::once(&self.doc).chain(parts.iter().map(|part| &part.doc)).collect()

@@ -3,19 +3,24 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Access, Kind, Mode, Timing, Who};
+use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Table, Timing, TimingId, Who};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 use crate::words::ANSWERS;
 
+/// The addressing modes.
+pub type Modes = Table<ModeId, Mode>;
+/// The times that the document states.
+pub type Times = Table<TimingId, Timing>;
+
 impl Resolver<'_> {
-    pub fn accesses(&mut self, modes: &[Mode], timing: &[Timing]) -> Vec<Access> {
+    pub fn accesses(&mut self, modes: &Modes, timing: &Times) -> Table<AccessId, Access> {
         let root = Path::default().key("access");
         let spec = self.spec;
         spec.access.iter().map(|(name, access)| self.access(&root.key(name), name, access, modes, timing)).collect()
     }
 
-    fn access(&mut self, path: &Path, name: &str, access: &ast::Access, modes: &[Mode], timing: &[Timing]) -> Access {
+    fn access(&mut self, path: &Path, name: &str, access: &ast::Access, modes: &Modes, timing: &Times) -> Access {
         self.check_name(path, name);
         let kinds: Vec<_> = Kind::ALL.into_iter().filter(|kind| pattern_of(access, *kind).is_some()).collect();
         if kinds.is_empty() {
@@ -43,22 +48,17 @@ impl Resolver<'_> {
     }
 
     /// Reads `{mode: who}`, by the modes of the protocol.
-    pub fn answers(
-        &mut self,
-        path: &Path,
-        answers: &ast::Map<String>,
-        modes: &[Mode],
-        kinds: &[Kind],
-    ) -> Vec<Option<Who>> {
-        let mut resolved = vec![None; modes.len()];
+    pub fn answers(&mut self, path: &Path, answers: &ast::Map<String>, modes: &Modes, kinds: &[Kind]) -> Answers {
+        let mut resolved = modes.map(|_| None);
         for (name, who) in answers {
             let at = path.key(name);
-            let names = modes.iter().map(|mode| mode.name.as_str());
-            let Some(index) = self.lookup_key(&at, "addressing mode", name, names) else { continue };
+            let Some(mode) = self.lookup_key_in(&at, "addressing mode", name, modes, |mode| &mode.name) else {
+                continue;
+            };
             let words = ANSWERS.iter().map(|(word, _)| *word);
             let Some(word) = self.lookup(&at, "way to answer", who, words) else { continue };
-            resolved[index] = Some(ANSWERS[word].1);
-            self.check_answer(&at, &modes[index], ANSWERS[word], kinds);
+            resolved[mode] = Some(ANSWERS[word].1);
+            self.check_answer(&at, &modes[mode], ANSWERS[word], kinds);
         }
         resolved
     }
@@ -82,11 +82,11 @@ impl Resolver<'_> {
     }
 
     /// Finds the time of a cyclic report.
-    pub fn every(&mut self, path: &Path, name: Option<&str>, timing: &[Timing]) -> Option<usize> {
+    pub fn every(&mut self, path: &Path, name: Option<&str>, timing: &Times) -> Option<TimingId> {
         let name = name?;
         let names = self.spec.timing.keys().map(String::as_str);
         self.lookup_or(&path.key("every"), "timing", name, names, "add the time to `timing` and write its name")?;
-        timing.iter().position(|known| known.name == name)
+        timing.position(|known| known.name == name)
     }
 }
 

@@ -4,15 +4,21 @@ use super::Resolver;
 use super::keys::{Role, written};
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Address, AddressPattern, AddressType, Direction, FieldTest, Identifier, IdentifierField, Mode};
+use crate::model::{
+    Address, AddressPattern, AddressType, AddressTypeId, Direction, FieldId, FieldTest, Identifier, IdentifierField,
+    Mode, ModeId, Table,
+};
 use crate::number::Rational;
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
 use crate::words::OUTSIDE;
 
+/// The kinds of addresses.
+type AddressTypes = Table<AddressTypeId, AddressType>;
+
 impl Resolver<'_> {
     /// Reads the types that addressing patterns name.
-    pub fn address_types(&mut self) -> Vec<AddressType> {
+    pub fn address_types(&mut self) -> Table<AddressTypeId, AddressType> {
         let spec = self.spec;
         let types = spec.types.iter().filter(|(name, _)| is_address_type(spec, name));
         types.filter_map(|(name, field)| self.address_type(name, field)).collect()
@@ -88,7 +94,7 @@ impl Resolver<'_> {
         }
     }
 
-    pub fn modes(&mut self, identifier: &Identifier, types: &[AddressType]) -> Vec<Mode> {
+    pub fn modes(&mut self, identifier: &Identifier, types: &AddressTypes) -> Table<ModeId, Mode> {
         let root = Path::default().key("addressing");
         let spec = self.spec;
         spec.addressing.iter().map(|(name, mode)| self.mode(&root.key(name), name, mode, identifier, types)).collect()
@@ -100,7 +106,7 @@ impl Resolver<'_> {
         name: &str,
         mode: &ast::Mode,
         identifier: &Identifier,
-        types: &[AddressType],
+        types: &AddressTypes,
     ) -> Mode {
         self.check_name(path, name);
         let mut pattern = |key: &'static str, pattern: &Option<Pattern>| {
@@ -127,14 +133,14 @@ impl Resolver<'_> {
         request: bool,
         pattern: &Pattern,
         identifier: &Identifier,
-        types: &[AddressType],
+        types: &AddressTypes,
     ) -> AddressPattern {
         let mut resolved = AddressPattern::default();
         for (name, what) in pattern {
             let at = path.key(name);
-            let names = identifier.fields.iter().map(|field| field.name.as_str());
-            let Some(index) = self.lookup_key(&at, "identifier field", name, names) else { continue };
-            let field = &identifier.fields[index];
+            let found = self.lookup_key_in(&at, "identifier field", name, &identifier.fields, |field| &field.name);
+            let Some(id) = found else { continue };
+            let field = &identifier.fields[id];
             if what.starts_with(|digit: char| digit.is_ascii_digit()) {
                 if let Some(value) = self.integer(&at, what, 0, field.mask() >> field.shift) {
                     resolved.mask |= field.mask();
@@ -144,14 +150,21 @@ impl Resolver<'_> {
             } else if let Some(address_type) = self.lookup_address_type(&at, what, types) {
                 self.check_address_width(&at, &types[address_type], field);
                 let excluded = self.excluded(request, name, identifier, types);
-                resolved.addresses.push(Address { field: index, address_type, excluded });
+                resolved.addresses.push(Address { field: id, address_type, excluded });
             }
         }
         resolved
     }
 
     /// Warns of a reply that does not show whether the module that was asked sends it.
-    fn check_answerer(&mut self, path: &Path, mode: &str, target: usize, one: &AddressPattern, types: &[AddressType]) {
+    fn check_answerer(
+        &mut self,
+        path: &Path,
+        mode: &str,
+        target: AddressTypeId,
+        one: &AddressPattern,
+        types: &AddressTypes,
+    ) {
         if one.addresses.iter().any(|address| address.address_type == target) {
             return;
         }
@@ -165,7 +178,7 @@ impl Resolver<'_> {
     }
 
     /// Finds an address type; nothing is said of one that was refused before.
-    fn lookup_address_type(&mut self, at: &Path, name: &str, types: &[AddressType]) -> Option<usize> {
+    fn lookup_address_type(&mut self, at: &Path, name: &str, types: &AddressTypes) -> Option<AddressTypeId> {
         let spec = self.spec;
         if !spec.types.contains_key(name) {
             let offered =
@@ -173,11 +186,11 @@ impl Resolver<'_> {
             let offered: Vec<_> = offered.map(|(name, _)| name.as_str()).collect();
             self.report_name(at.at_value(), "address type", name, &offered, Some("write a number for a constant"));
         }
-        types.iter().position(|known| known.name == name)
+        types.position(|known| known.name == name)
     }
 
     /// Returns the raw values of a field that belong to somebody else: those of strict types, and constants of the same direction.
-    fn excluded(&self, request: bool, field: &str, identifier: &Identifier, types: &[AddressType]) -> Vec<(u32, u32)> {
+    fn excluded(&self, request: bool, field: &str, identifier: &Identifier, types: &AddressTypes) -> Vec<(u32, u32)> {
         let mut excluded = claimed(self.spec, field, types);
         let width = identifier.fields.iter().find(|known| known.name == field).map_or(32, |known| known.width);
         let same = patterns(self.spec).filter(|(key, _)| (*key == "request") == request);
@@ -191,7 +204,7 @@ impl Resolver<'_> {
     }
 
     /// Returns the address that a request leaves to the caller.
-    fn target(&mut self, path: &Path, request: &AddressPattern, types: &[AddressType]) -> Option<usize> {
+    fn target(&mut self, path: &Path, request: &AddressPattern, types: &AddressTypes) -> Option<AddressTypeId> {
         let free = request.addresses.iter().filter(|address| types[address.address_type].send.is_none());
         let free: Vec<_> = free.map(|address| address.address_type).collect();
         if free.len() > 1 {
@@ -226,7 +239,7 @@ fn could_be_address(field: &ast::Field) -> bool {
 }
 
 /// Returns the raw ranges of the strict types that some pattern puts into this field.
-fn claimed(spec: &ast::Spec, field: &str, types: &[AddressType]) -> Vec<(u32, u32)> {
+fn claimed(spec: &ast::Spec, field: &str, types: &AddressTypes) -> Vec<(u32, u32)> {
     let strict = types.iter().filter(|known| known.strict);
     let used = strict.filter(|known| patterns(spec).any(|(_, pattern)| pattern.get(field) == Some(&known.name)));
     let mut ranges: Vec<_> = used.map(AddressType::raw_range).collect();
@@ -238,7 +251,11 @@ fn claimed(spec: &ast::Spec, field: &str, types: &[AddressType]) -> Vec<(u32, u3
 /// Works out what identifiers show of their direction: towards a module, towards the controller.
 ///
 /// A constant counts only where the other direction has another constant in the same field, so that an unknown device number does not hide the direction.
-pub fn directions(identifier: &Identifier, types: &[AddressType], modes: &[Mode]) -> (Direction, Direction) {
+pub fn directions(
+    identifier: &Identifier,
+    types: &AddressTypes,
+    modes: &Table<ModeId, Mode>,
+) -> (Direction, Direction) {
     let requests: Vec<_> = modes.iter().filter_map(|mode| mode.request.as_ref()).collect();
     let replies: Vec<_> =
         modes.iter().flat_map(|mode| [&mode.one, &mode.each, &mode.coordinator]).filter_map(Option::as_ref).collect();
@@ -260,20 +277,20 @@ fn direction_tests(
     pattern: &AddressPattern,
     others: &[&AddressPattern],
     identifier: &Identifier,
-    types: &[AddressType],
-    modes: &[Mode],
+    types: &AddressTypes,
+    modes: &Table<ModeId, Mode>,
 ) -> Vec<FieldTest> {
     let mut tests = Vec::new();
-    for (index, field) in identifier.fields.iter().enumerate() {
-        let address = pattern.addresses.iter().find(|address| address.field == index);
-        let claimed = strict_ranges(index, types, modes);
+    for (id, field) in identifier.fields.entries() {
+        let address = pattern.addresses.iter().find(|address| address.field == id);
+        let claimed = strict_ranges(id, types, modes);
         if let Some(address) = address.filter(|address| types[address.address_type].strict) {
-            tests.push(FieldTest { field: index, ranges: vec![types[address.address_type].raw_range()], inside: true });
+            tests.push(FieldTest { field: id, ranges: vec![types[address.address_type].raw_range()], inside: true });
         } else if pattern.mask & field.mask() != 0 && others.iter().all(|other| differs(pattern, other, field.mask())) {
             let value = field.get(pattern.value);
-            tests.push(FieldTest { field: index, ranges: vec![(value, value)], inside: true });
+            tests.push(FieldTest { field: id, ranges: vec![(value, value)], inside: true });
         } else if (address.is_some() || pattern.mask & field.mask() != 0) && !claimed.is_empty() {
-            tests.push(FieldTest { field: index, ranges: claimed, inside: false });
+            tests.push(FieldTest { field: id, ranges: claimed, inside: false });
         }
     }
     tests
@@ -284,7 +301,7 @@ fn differs(one: &AddressPattern, other: &AddressPattern, field: u32) -> bool {
     other.mask & field != 0 && (one.value ^ other.value) & field != 0
 }
 
-fn strict_ranges(field: usize, types: &[AddressType], modes: &[Mode]) -> Vec<(u32, u32)> {
+fn strict_ranges(field: FieldId, types: &AddressTypes, modes: &Table<ModeId, Mode>) -> Vec<(u32, u32)> {
     let patterns = modes.iter().flat_map(|mode| [&mode.request, &mode.one, &mode.each, &mode.coordinator]);
     let addresses = patterns.flatten().flat_map(|pattern| &pattern.addresses).filter(|address| address.field == field);
     let strict = addresses.map(|address| &types[address.address_type]).filter(|known| known.strict);

@@ -3,7 +3,9 @@
 use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
-use crate::model::{DeviceModel, Document, Erratum, Procedure, Quantity, Timing, TypeOfModel, Unit};
+use crate::model::{
+    DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, Timing, TimingId, TypeOfModel, Unit,
+};
 use crate::number::Rational;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -48,7 +50,7 @@ impl Resolver<'_> {
             .collect()
     }
 
-    pub fn timing(&mut self) -> Vec<Timing> {
+    pub fn timing(&mut self) -> Table<TimingId, Timing> {
         let root = Path::default().key("timing");
         let entries = self.spec.timing.iter();
         entries.filter_map(|(name, timing)| self.one_timing(&root.key(name), name, timing)).collect()
@@ -111,7 +113,7 @@ impl Resolver<'_> {
         }
     }
 
-    pub fn models(&mut self) -> Vec<DeviceModel> {
+    pub fn models(&mut self) -> Table<ModelId, DeviceModel> {
         let root = Path::default().key("models");
         let spec = self.spec;
         spec.models.iter().map(|(name, model)| self.model(&root.key(name), name, model)).collect()
@@ -136,8 +138,8 @@ impl Resolver<'_> {
     }
 
     /// Finds a device model by name.
-    pub fn device_model(&mut self, path: &Path, name: &str) -> Option<usize> {
-        self.lookup(path, "model", name, self.spec.models.keys().map(String::as_str))
+    pub fn device_model(&mut self, path: &Path, name: &str) -> Option<ModelId> {
+        self.lookup(path, "model", name, self.spec.models.keys().map(String::as_str)).map(ModelId::new)
     }
 
     fn facts(&mut self, path: &Path, facts: &ast::Map<String>) -> Vec<(String, Quantity)> {

@@ -8,11 +8,17 @@ use super::signals::first_byte;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::NOTES;
-use crate::model::{Doc, Encoding, Example, Failure, Identifier, Kind, Meaning, Message, Misfit, Signal, ValueExample};
+use crate::model::{
+    Doc, Encoding, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, Signal, SignalId,
+    Table, ValueExample,
+};
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;
 use crate::texts::raw_of_text;
 use crate::words::ORIGINS;
+
+/// The messages of the protocol.
+type Messages = Table<MessageId, Message>;
 
 /// A frame as an example prints it.
 struct Printed {
@@ -22,16 +28,16 @@ struct Printed {
 }
 
 impl Resolver<'_> {
-    pub fn examples(&mut self, identifier: &Identifier, messages: &[Message]) -> Vec<Example> {
+    pub fn examples(&mut self, identifier: &Identifier, messages: &Messages) -> Vec<Example> {
         let spec = self.spec;
         let root = Path::default();
         let mut examples = Vec::new();
-        for (index, (name, message)) in spec.messages.iter().enumerate() {
+        for ((name, message), id) in spec.messages.iter().zip(messages.ids()) {
             let path = root.key("messages").key(name).key("examples");
             for (position, example) in message.examples.iter().enumerate() {
                 let at = path.index(position);
-                let of = self.message_in(&at, example, index, messages);
-                examples.extend(self.example(&at, position, example, of, &messages[index].doc, messages));
+                let of = self.message_in(&at, example, id, messages);
+                examples.extend(self.example(&at, position, example, of, &messages[id].doc, messages));
             }
         }
         for (name, sequence) in &spec.examples {
@@ -57,7 +63,13 @@ impl Resolver<'_> {
     }
 
     /// Finds the message of an example that stands in a message: that one, or a member that it names.
-    fn message_in(&mut self, path: &Path, example: &ast::Example, outer: usize, messages: &[Message]) -> Option<usize> {
+    fn message_in(
+        &mut self,
+        path: &Path,
+        example: &ast::Example,
+        outer: MessageId,
+        messages: &Messages,
+    ) -> Option<MessageId> {
         let Some(name) = &example.message else { return Some(outer) };
         let at = path.key("message");
         let Some(set) = &messages[outer].set else {
@@ -71,7 +83,7 @@ impl Resolver<'_> {
     }
 
     /// Finds the message that an example of a sequence names.
-    fn message_of(&mut self, path: &Path, example: &ast::Example) -> Option<usize> {
+    fn message_of(&mut self, path: &Path, example: &ast::Example) -> Option<MessageId> {
         let Some(name) = &example.message else {
             if !matches!(example.fails.as_deref(), Some("identifier" | "foreign" | "unknown_message")) {
                 let text = "an example of a sequence needs its message".to_owned();
@@ -80,7 +92,7 @@ impl Resolver<'_> {
             return None;
         };
         let spec = self.spec;
-        self.lookup(&path.key("message"), "message", name, spec.messages.keys().map(String::as_str))
+        self.lookup(&path.key("message"), "message", name, spec.messages.keys().map(String::as_str)).map(MessageId::new)
     }
 
     fn example(
@@ -88,9 +100,9 @@ impl Resolver<'_> {
         path: &Path,
         position: usize,
         example: &ast::Example,
-        message: Option<usize>,
+        message: Option<MessageId>,
         outer: &Doc,
-        messages: &[Message],
+        messages: &Messages,
     ) -> Option<Example> {
         let (kind, text) = self.printed_kind(path, example)?;
         let printed = self.printed(&path.key(kind.name()), text)?;
@@ -188,7 +200,7 @@ impl Resolver<'_> {
             }
             Some(_) if self.given_up(message).is_some_and(|names| !names.is_empty()) => Vec::new(),
             Some(means) => {
-                let [signal] = message.signals.as_slice() else {
+                let [signal] = &*message.signals else {
                     if message.signals.is_empty() {
                         self.nothing_to_mean(path, message);
                         return Vec::new();
@@ -198,7 +210,7 @@ impl Resolver<'_> {
                     self.error_with_help("example", path.at_key(), text, help);
                     return Vec::new();
                 };
-                self.meaning(path, 0, signal, means).into_iter().collect()
+                self.meaning(path, SignalId::new(0), signal, means).into_iter().collect()
             }
         }
     }
@@ -207,9 +219,9 @@ impl Resolver<'_> {
         if self.given_up(message).is_some_and(|names| names.contains(name)) {
             return None;
         }
-        let position = message.signals.iter().position(|signal| signal.name == name);
-        let index = position.or_else(|| self.no_signal(path, name, message))?;
-        self.meaning(path, index, &message.signals[index], means)
+        let found = message.signals.position(|signal| signal.name == name);
+        let id = found.or_else(|| self.no_signal(path, name, message))?;
+        self.meaning(path, id, &message[id], means)
     }
 
     /// Reports a message without fields of which an example says a value.
@@ -221,10 +233,10 @@ impl Resolver<'_> {
     }
 
     /// Reports a name that no field has.
-    fn no_signal(&mut self, path: &Path, name: &str, message: &Message) -> Option<usize> {
+    fn no_signal(&mut self, path: &Path, name: &str, message: &Message) -> Option<SignalId> {
         let known = message.signals.iter().map(|signal| &signal.name);
         let names: Vec<_> = known.chain(self.given_up(message).into_iter().flatten()).cloned().collect();
-        self.lookup_key(path, "signal", name, names.iter().map(String::as_str))
+        self.lookup_key(path, "signal", name, names.iter().map(String::as_str)).map(SignalId::new)
     }
 
     /// Returns the names of a message's fields that have an error of their own.
@@ -232,7 +244,7 @@ impl Resolver<'_> {
         self.tables.given_up.get(&message.name)
     }
 
-    fn meaning(&mut self, path: &Path, index: usize, signal: &Signal, means: &Means) -> Option<Meaning> {
+    fn meaning(&mut self, path: &Path, id: SignalId, signal: &Signal, means: &Means) -> Option<Meaning> {
         let (text, raw) = match means {
             Means::Value(text) => (text.clone(), raw_of_text(&self.tables.enumerations, signal, text, true)),
             Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?),
@@ -242,7 +254,7 @@ impl Resolver<'_> {
                 return None;
             }
         };
-        Some(Meaning { signal: index, text, raw, path: path.clone() })
+        Some(Meaning { signal: id, text, raw, path: path.clone() })
     }
 
     fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
@@ -301,7 +313,7 @@ impl Resolver<'_> {
         let signal = self.signal(name, &merged, Place::bytes(0, last), outer.clone(), "")?;
         let raw = raw_of_text(&self.tables.enumerations, &signal, &example.means, true);
         debug_assert_eq!(first_byte(signal.place), 0);
-        let meaning = Meaning { signal: 0, text: example.means.clone(), raw, path: path.key("means") };
+        let meaning = Meaning { signal: SignalId::new(0), text: example.means.clone(), raw, path: path.key("means") };
         Some(ValueExample { doc, signal, data, meaning })
     }
 }

@@ -4,7 +4,7 @@ use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
-use crate::model::{Identifier, IdentifierField};
+use crate::model::{Identifier, IdentifierField, Table};
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{Field, IdentifierEntry};
 use crate::syntax::tree::Path;
@@ -36,7 +36,7 @@ impl Resolver<'_> {
     pub fn identifier(&mut self) -> Option<Identifier> {
         let root = Path::default().key("identifier");
         let spec = self.spec;
-        let mut identifier = Identifier { extended: false, fields: Vec::new(), mask: 0, value: 0 };
+        let mut identifier = Identifier { extended: false, fields: Table::default(), mask: 0, value: 0 };
         let entries = spec.identifier.iter();
         let runs: Vec<_> =
             entries.map(|(name, entry)| self.entry(&root.key(name), name, entry, &mut identifier)).collect();

@@ -1,22 +1,43 @@
 //! Messages: their signals, and the frames that exist of each.
 
 use super::Resolver;
-use super::access::pattern_of;
-use super::patterns::Constant;
+use super::access::{Modes, Times, pattern_of};
 use super::signals::Leaves;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Access, Doc, Identifier, Kind, Message, MessageAccess, Mode, SelectorPlace, Shape, Signal, Timing};
+use crate::model::{
+    Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
+    Message, MessageId, ModelId, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel,
+};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
 /// What messages refer to.
 pub struct Surroundings<'a> {
     pub identifier: &'a Identifier,
-    modes: &'a [Mode],
-    pub accesses: &'a [Access],
-    timing: &'a [Timing],
+    modes: &'a Modes,
+    pub accesses: &'a Accesses,
+    timing: &'a Times,
     length: u8,
+}
+
+/// The accesses of the protocol.
+type Accesses = Table<AccessId, Access>;
+
+/// A message and the frames that exist of it.
+pub struct Draft {
+    pub message: Message,
+    pub frames: Vec<FrameLayout>,
+    pub choice: Choice,
+}
+
+/// The exchange of a message whose frames are made.
+pub struct Owner<'a> {
+    pub message: MessageId,
+    pub id: ExchangeId,
+    pub exchange: &'a Exchange,
+    pub length: u8,
+    pub signals: &'a Table<SignalId, Signal>,
 }
 
 /// What chooses the frames of a message, whatever its access.
@@ -33,34 +54,40 @@ impl Resolver<'_> {
     pub fn messages(
         &mut self,
         identifier: &Identifier,
-        modes: &[Mode],
-        accesses: &[Access],
-        timing: &[Timing],
-    ) -> Vec<Message> {
+        modes: &Modes,
+        accesses: &Accesses,
+        timing: &Times,
+    ) -> (Table<MessageId, Message>, Table<FrameId, FrameLayout>) {
         let spec = self.spec;
         let length = self.integer(&Path::default().key("length"), &spec.length, 0, 8).unwrap_or(8);
         let surroundings = Surroundings { identifier, modes, accesses, timing, length };
         let root = Path::default().key("messages");
-        let entries = spec.messages.iter();
-        let resolved = entries.map(|(name, message)| self.message(&root.key(name), name, message, &surroundings));
-        let (mut messages, choices): (Vec<_>, Vec<_>) = resolved.unzip();
-        self.sets(&choices, &surroundings, &mut messages);
+        let entries = spec.messages.iter().enumerate();
+        let mut drafts: Table<MessageId, Draft> = entries
+            .map(|(place, (name, message))| {
+                self.message(MessageId::new(place), &root.key(name), name, message, &surroundings)
+            })
+            .collect();
+        self.sets(&surroundings, &mut drafts);
+        let (messages, frames) = self.complete(drafts, modes);
         self.check_travel(&messages);
-        messages
+        (messages, frames)
     }
 
     fn message(
         &mut self,
+        id: MessageId,
         path: &Path,
         name: &str,
         message: &ast::Message,
         surroundings: &Surroundings,
-    ) -> (Message, Choice) {
+    ) -> Draft {
         self.check_name(path, name);
         let doc = remarks!(message).doc(path, None);
         let leaves = self.contents(path, name, message, &doc);
         let length = message.length.as_ref().and_then(|text| self.integer(&path.key("length"), text, 0, 8));
-        let accesses = self.message_accesses(path, message, surroundings);
+        let length = length.unwrap_or(surroundings.length);
+        let exchanges = self.exchanges(path, message, surroundings);
         let matched = self.constants(&path.key("match"), &message.pattern, surroundings.identifier);
         let fixed: Vec<_> = leaves.constants.into_iter().map(|(signal, value)| self.fixed(signal, value)).collect();
         let replies = self.reply_constants(&leaves.replies, surroundings.identifier);
@@ -68,36 +95,72 @@ impl Resolver<'_> {
         let set = self.set(path, message);
         self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
         let split = set.as_ref().map_or(&[][..], |set| &set.kinds);
-        let mut shapes = Vec::new();
-        for (index, access) in accesses.iter().enumerate() {
-            let known = &surroundings.accesses[access.access];
-            for kind in known.kinds.iter().filter(|kind| !split.contains(kind)) {
-                let travel = self.access_constants(access.access, *kind, surroundings);
-                let shape = self.shape(index, *kind, &choice, &travel, (&leaves.signals, known));
-                self.check_constants(path, &shape.constants, (access.access, *kind));
-                shapes.push(shape);
+        let signals = leaves.signals.into_iter().collect();
+        let (mut frames, mut refusals) = (Vec::new(), Vec::new());
+        for (exchange_id, exchange) in exchanges.entries() {
+            let owner = Owner { message: id, id: exchange_id, exchange, length, signals: &signals };
+            for kind in surroundings.accesses[exchange.access].kinds.iter().filter(|kind| !split.contains(kind)) {
+                let travel = self.access_constants(exchange.access, *kind, surroundings);
+                let frame = self.layout(&owner, *kind, &choice, &travel, surroundings);
+                self.check_constants(path, &frame);
+                frames.push(frame);
             }
+            refusals.extend(self.refusal(path, &owner, &choice.matched, surroundings));
         }
-        let refused = accesses.iter().enumerate();
-        let refusals = refused
-            .filter_map(|(index, access)| self.refusal(path, index, &choice.matched, access, surroundings))
-            .collect();
         let always = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| *constant);
         let constants = choice.matched.iter().copied().chain(always).collect();
         let every = self.every(path, message.every.as_deref(), surroundings.timing);
-        let length = length.unwrap_or(surroundings.length);
         let models = self.message_models(&path.key("models"), &message.models);
         let name = name.to_owned();
-        let signals = leaves.signals;
-        let message = Message { name, doc, length, signals, constants, accesses, shapes, refusals, every, models, set };
-        (message, choice)
+        let message = Message {
+            name,
+            doc,
+            length,
+            signals,
+            constants,
+            exchanges,
+            frames: Vec::new(),
+            refusals,
+            every,
+            models,
+            set,
+        };
+        Draft { message, frames, choice }
+    }
+
+    /// Numbers the frames, and adds what follows from the whole of them.
+    fn complete(
+        &self,
+        drafts: Table<MessageId, Draft>,
+        modes: &Modes,
+    ) -> (Table<MessageId, Message>, Table<FrameId, FrameLayout>) {
+        let (mut messages, mut frames) = (Table::default(), Table::default());
+        for Draft { mut message, frames: drafted, .. } in drafts {
+            for mut frame in drafted {
+                frame.covered = self.covered(&message, &frame);
+                frame.travels = travels(modes, frame.kind, &message[frame.exchange].answers);
+                message.frames.push(frames.push(frame));
+            }
+            messages.push(message);
+        }
+        (messages, frames)
+    }
+
+    /// Returns the payload bits of a frame's selectors and signals, byte 0 highest.
+    fn covered(&self, message: &Message, frame: &FrameLayout) -> u64 {
+        let signals = frame.signals.iter().map(|signal| message[*signal].place);
+        let selectors = frame.selectors.iter().filter_map(|selector| match self.tables.selectors[*selector].place {
+            SelectorPlace::Payload(place) => Some(place),
+            SelectorPlace::Identifier(_) => None,
+        });
+        signals.chain(selectors).fold(0, |mask, place| mask | u64::from_be_bytes(place.mask()))
     }
 
     /// Tests that every message has an access, or is a member of a set.
-    fn check_travel(&mut self, messages: &[Message]) {
+    fn check_travel(&mut self, messages: &Table<MessageId, Message>) {
         let spec = self.spec;
         let lacking = messages.iter().zip(spec.messages.values()).filter(|(_, written)| written.access.is_empty());
-        for (message, _) in lacking.filter(|(message, _)| message.set.is_some() || message.accesses.is_empty()) {
+        for (message, _) in lacking.filter(|(message, _)| message.set.is_some() || message.exchanges.is_empty()) {
             let text = format!("`{}` has no access, so it has no frames", message.name);
             let known = spec.access.keys().next().map_or("read", String::as_str);
             let help = format!("name at least one access, for instance `access: [{known}]`");
@@ -106,7 +169,7 @@ impl Resolver<'_> {
     }
 
     /// Finds the device models that have a message.
-    fn message_models(&mut self, path: &Path, names: &[String]) -> Vec<usize> {
+    fn message_models(&mut self, path: &Path, names: &[String]) -> Vec<ModelId> {
         let mut models = Vec::new();
         for (index, name) in names.iter().enumerate() {
             let at = path.index(index);
@@ -154,23 +217,24 @@ impl Resolver<'_> {
     /// Makes a selector of a constant field; it is in the kinds of frames that the field names.
     fn fixed(&mut self, signal: Signal, value: u64) -> (Constant, Vec<Kind>) {
         let kinds = signal.kinds.clone();
-        ((self.add_selector(signal, None), value), kinds)
+        let place = SelectorPlace::Payload(signal.place);
+        (Constant { selector: self.add_selector(signal, None), place, value }, kinds)
     }
 
-    fn message_accesses(
+    fn exchanges(
         &mut self,
         path: &Path,
         message: &ast::Message,
         surroundings: &Surroundings,
-    ) -> Vec<MessageAccess> {
-        let mut accesses: Vec<MessageAccess> = Vec::new();
+    ) -> Table<ExchangeId, Exchange> {
+        let mut exchanges: Table<ExchangeId, Exchange> = Table::default();
         for (index, name) in message.access.iter().enumerate() {
-            let names = surroundings.accesses.iter().map(|access| access.name.as_str());
-            let Some(access) = self.lookup(&path.key("access").index(index), "access", name, names) else { continue };
-            if accesses.iter().any(|earlier| earlier.access == access) {
+            let at = path.key("access").index(index);
+            let found = self.lookup_in(&at, "access", name, surroundings.accesses, |access| &access.name);
+            let Some(access) = found else { continue };
+            if exchanges.iter().any(|earlier| earlier.access == access) {
                 let text = format!("the access `{name}` is named twice");
-                let at = path.key("access").index(index).at_value();
-                self.error_with_help("access", at, text, "take one of the two out");
+                self.error_with_help("access", at.at_value(), text, "take one of the two out");
                 continue;
             }
             let known = &surroundings.accesses[access];
@@ -179,89 +243,98 @@ impl Resolver<'_> {
             } else {
                 self.answers(&path.key("answers"), &message.answers, surroundings.modes, &known.kinds)
             };
-            accesses.push(MessageAccess { access, answers, set: None });
+            exchanges.push(Exchange { access, answers, set: None });
         }
-        accesses
+        exchanges
     }
 
     /// Returns what a kind of frame shows because of its access.
-    pub fn access_constants(&mut self, access: usize, kind: Kind, surroundings: &Surroundings) -> Vec<Constant> {
+    pub fn access_constants(&mut self, access: AccessId, kind: Kind, surroundings: &Surroundings) -> Vec<Constant> {
         let spec = self.spec;
-        let Some((name, access)) = spec.access.get_index(access) else { return Vec::new() };
+        let Some((name, access)) = spec.access.get_index(access.place()) else { return Vec::new() };
         let Some(pattern) = pattern_of(access, kind) else { return Vec::new() };
         let path = Path::default().key("access").key(name).key(kind.name());
         self.constants(&path, pattern, surroundings.identifier)
     }
 
     /// Makes the frame of one kind of a message; `travel` is what it shows because of its access.
-    pub fn shape(
+    pub fn layout(
         &self,
-        index: usize,
+        owner: &Owner,
         kind: Kind,
         choice: &Choice,
         travel: &[Constant],
-        (signals, access): (&[Signal], &Access),
-    ) -> Shape {
-        let carries = access.carries.contains(&kind);
+        surroundings: &Surroundings,
+    ) -> FrameLayout {
+        let carries = surroundings.accesses[owner.exchange.access].carries.contains(&kind);
         let present = |kinds: &[Kind]| if kinds.is_empty() { carries } else { kinds.contains(&kind) };
         let mut constants = [&choice.matched, travel].concat();
         if kind == Kind::Reply {
             constants.extend(&choice.replies);
         }
-        let header = constants.iter().any(|(selector, _)| self.is_payload(*selector));
+        let header = constants.iter().any(|constant| constant.in_payload().is_some());
         let fixed = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty() || kinds.contains(&kind));
         constants.extend(fixed.map(|(constant, _)| *constant));
         let mut selectors = if header { self.header() } else { Vec::new() };
-        selectors.extend(constants.iter().map(|(selector, _)| *selector).filter(|selector| self.is_payload(*selector)));
+        let payload = constants.iter().filter(|constant| constant.in_payload().is_some());
+        selectors.extend(payload.map(|constant| constant.selector));
         selectors.sort_unstable();
         selectors.dedup();
-        let signals = signals.iter().enumerate().filter(|(_, signal)| present(&signal.kinds));
-        Shape { access: index, kind, constants, selectors, signals: signals.map(|(index, _)| index).collect() }
+        let signals = owner.signals.entries().filter(|(_, signal)| present(&signal.kinds));
+        FrameLayout {
+            message: owner.message,
+            exchange: owner.id,
+            access: owner.exchange.access,
+            set: owner.exchange.set,
+            kind,
+            length: owner.length,
+            constants,
+            selectors,
+            signals: signals.map(|(id, _)| id).collect(),
+            covered: 0,
+            travels: Vec::new(),
+        }
     }
 
     /// Returns the frame that refuses a request of the message; it carries none of the message's fields.
     fn refusal(
         &mut self,
         path: &Path,
-        index: usize,
+        owner: &Owner,
         matched: &[Constant],
-        access: &MessageAccess,
         surroundings: &Surroundings,
-    ) -> Option<Shape> {
+    ) -> Option<FrameLayout> {
         let spec = self.spec;
-        let (name, known) = spec.access.get_index(access.access)?;
+        let (name, known) = spec.access.get_index(owner.exchange.access.place())?;
         let pattern = known.refusal.as_ref()?;
         let path_of_pattern = Path::default().key("access").key(name).key("refusal");
         let travel = self.constants(&path_of_pattern, pattern, surroundings.identifier);
         let choice = Choice { matched: matched.to_vec(), replies: Vec::new(), fixed: Vec::new() };
-        let known = &surroundings.accesses[access.access];
-        let shape = self.shape(index, Kind::Reply, &choice, &travel, (&[], known));
-        self.check_constants(path, &shape.constants, (access.access, Kind::Reply));
-        Some(shape)
-    }
-
-    fn is_payload(&self, selector: usize) -> bool {
-        matches!(self.tables.selectors[selector].place, SelectorPlace::Payload(_))
+        let bare = Owner { signals: &Table::default(), ..*owner };
+        let frame = self.layout(&bare, Kind::Reply, &choice, &travel, surroundings);
+        self.check_constants(path, &frame);
+        Some(frame)
     }
 
     /// Returns the selectors that the header declares.
-    pub fn header(&self) -> Vec<usize> {
+    pub fn header(&self) -> Vec<SelectorId> {
         let root = Path::default().key("header");
-        let selectors = self.tables.selectors.iter().enumerate();
+        let selectors = self.tables.selectors.entries();
         selectors
             .filter(|(_, selector)| selector.doc.path.ancestors().any(|outer| *outer == root))
-            .map(|(index, _)| index)
+            .map(|(id, _)| id)
             .collect()
     }
 
     /// Tests that no selector has two values.
-    fn check_constants(&mut self, path: &Path, constants: &[Constant], (access, kind): (usize, Kind)) {
-        let access = self.spec.access.get_index(access).map_or("", |(name, _)| name.as_str());
-        for (index, (selector, value)) in constants.iter().enumerate() {
-            let twice = constants[..index].iter().find(|(known, other)| known == selector && other != value);
-            if let Some((_, other)) = twice {
+    fn check_constants(&mut self, path: &Path, frame: &FrameLayout) {
+        let access = self.spec.access.get_index(frame.access.place()).map_or("", |(name, _)| name.as_str());
+        for (index, Constant { selector, value, .. }) in frame.constants.iter().enumerate() {
+            let twice =
+                frame.constants[..index].iter().find(|known| known.selector == *selector && known.value != *value);
+            if let Some(Constant { value: other, .. }) = twice {
                 let name = &self.tables.selectors[*selector].name;
-                let kind = kind.name();
+                let kind = frame.kind.name();
                 let message =
                     format!("in a {kind} by `{access}`, `{name}` would have to be both {other:#04X} and {value:#04X}");
                 let pattern = Path::default().key("access").key(access).key(kind).key(name);
@@ -271,4 +344,10 @@ impl Resolver<'_> {
             }
         }
     }
+}
+
+/// Returns the ways in which a kind of frame is sent.
+fn travels(modes: &Modes, kind: Kind, answers: &Answers) -> Vec<Travel> {
+    let ways = answers.entries().filter_map(|(mode, who)| Some(Travel { mode, who: (*who)? }));
+    ways.filter(|Travel { mode, who }| modes[*mode].pattern(kind, *who).is_some()).collect()
 }

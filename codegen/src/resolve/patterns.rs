@@ -2,12 +2,9 @@
 
 use super::Resolver;
 use super::texts::remarks;
-use crate::model::{Doc, Foreign, Identifier, Selector, SelectorPlace, Signal};
+use crate::model::{Constant, Doc, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
-
-/// A selector (index into the table) and the value it must have.
-pub type Constant = (usize, u64);
 
 impl Resolver<'_> {
     /// Makes a selector of every field of the header.
@@ -35,17 +32,16 @@ impl Resolver<'_> {
     }
 
     /// Adds a payload selector.
-    pub fn add_selector(&mut self, signal: Signal, normal: Option<u64>) -> usize {
+    pub fn add_selector(&mut self, signal: Signal, normal: Option<u64>) -> SelectorId {
         let enumeration = match signal.encoding {
             crate::model::Encoding::Named(index) => Some(index),
             _ => None,
         };
         let place = SelectorPlace::Payload(signal.place);
-        let known = self.tables.selectors.iter().position(|known| known.name == signal.name && known.place == place);
+        let known = self.tables.selectors.position(|known| known.name == signal.name && known.place == place);
         known.unwrap_or_else(|| {
             let Signal { name, doc, .. } = signal;
-            self.tables.selectors.push(Selector { name, doc, place, normal, continues: None, enumeration });
-            self.tables.selectors.len() - 1
+            self.tables.selectors.push(Selector { name, doc, place, normal, continues: None, enumeration })
         })
     }
 
@@ -57,31 +53,32 @@ impl Resolver<'_> {
 
     fn constant(&mut self, path: &Path, name: &str, text: &str, identifier: &Identifier) -> Option<Constant> {
         let selector = self.selector(path, name, identifier)?;
-        let greatest = match self.tables.selectors[selector].place {
+        let place = self.tables.selectors[selector].place;
+        let greatest = match place {
             SelectorPlace::Identifier(field) => u64::from(u32::MAX >> (32 - identifier.fields[field].width)),
             SelectorPlace::Payload(place) => place.max(),
         };
-        Some((selector, self.integer(path, text, 0, greatest)?))
+        Some(Constant { selector, place, value: self.integer(path, text, 0, greatest)? })
     }
 
     /// Finds a selector by name; a field of the identifier becomes one when it is first used.
-    fn selector(&mut self, path: &Path, name: &str, identifier: &Identifier) -> Option<usize> {
-        if let Some(index) = self.tables.selectors.iter().position(|known| known.name == name) {
-            return Some(index);
+    fn selector(&mut self, path: &Path, name: &str, identifier: &Identifier) -> Option<SelectorId> {
+        if let Some(id) = self.tables.selectors.position(|known| known.name == name) {
+            return Some(id);
         }
         let header = self.tables.selectors.iter().map(|known| &known.name).chain(&self.tables.given_up_header);
         let names: Vec<_> = identifier.fields.iter().map(|field| &field.name).chain(header).cloned().collect();
-        let index = self.lookup_key(path, "identifier or header field", name, names.iter().map(String::as_str))?;
-        let field = identifier.fields.get(index)?;
-        self.tables.selectors.push(Selector {
+        let found = self.lookup_key(path, "identifier or header field", name, names.iter().map(String::as_str))?;
+        let id = FieldId::new(found);
+        let field = identifier.fields.get(id)?;
+        Some(self.tables.selectors.push(Selector {
             name: field.name.clone(),
             doc: field.doc.clone(),
-            place: SelectorPlace::Identifier(index),
+            place: SelectorPlace::Identifier(id),
             normal: None,
             continues: None,
             enumeration: field.enumeration,
-        });
-        Some(self.tables.selectors.len() - 1)
+        }))
     }
 
     pub fn foreign(&mut self, identifier: &Identifier) -> Vec<Foreign> {
@@ -102,7 +99,7 @@ impl Resolver<'_> {
         path: &Path,
         pattern: &Pattern,
         identifier: &Identifier,
-    ) -> Vec<(Option<usize>, u32, u32)> {
+    ) -> Vec<(Option<FieldId>, u32, u32)> {
         let entries = pattern.iter();
         entries.filter_map(|(name, text)| self.foreign_range(&path.key(name), name, text, identifier)).collect()
     }
@@ -113,9 +110,9 @@ impl Resolver<'_> {
         name: &str,
         text: &str,
         identifier: &Identifier,
-    ) -> Option<(Option<usize>, u32, u32)> {
+    ) -> Option<(Option<FieldId>, u32, u32)> {
         let names = std::iter::once("identifier").chain(identifier.fields.iter().map(|field| field.name.as_str()));
-        let field = self.lookup_key(path, "identifier field", name, names)?.checked_sub(1);
+        let field = self.lookup_key(path, "identifier field", name, names)?.checked_sub(1).map(FieldId::new);
         let width = field.map_or(if identifier.extended { 29 } else { 11 }, |field| identifier.fields[field].width);
         let (first, last) = text.split_once("..").unwrap_or((text, text));
         let greatest = u32::MAX >> (32 - width);

@@ -1,10 +1,9 @@
 //! Sets: messages whose frames carry a member each. A member travels as part of the set as it does by an access.
 
 use super::Resolver;
-use super::messages::{Choice, Surroundings};
-use super::patterns::Constant;
+use super::messages::{Draft, Owner, Surroundings};
 use crate::diagnostic::Diagnostic;
-use crate::model::{Kind, Message, MessageAccess, Set};
+use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -32,30 +31,30 @@ impl Resolver<'_> {
     }
 
     /// Finds the members of each set, and gives them the frames in which they travel as part of it.
-    pub fn sets(&mut self, choices: &[Choice], surroundings: &Surroundings, messages: &mut [Message]) {
-        for index in 0..messages.len() {
-            let Some(mut set) = messages[index].set.clone() else { continue };
-            set.members = self.members(&messages[index], messages);
-            for access in messages[index].accesses.clone() {
+    pub fn sets(&mut self, surroundings: &Surroundings, drafts: &mut Table<MessageId, Draft>) {
+        for id in drafts.ids() {
+            let Some(mut set) = drafts[id].message.set.clone() else { continue };
+            set.members = self.members(&drafts[id].message, drafts);
+            for exchange in drafts[id].message.exchanges.clone() {
                 for member in &set.members {
-                    self.join((index, &set.kinds), *member, &access, choices, surroundings, messages);
+                    self.join((id, &set.kinds), *member, &exchange, surroundings, drafts);
                 }
-                let travel = self.access_constants(access.access, Kind::Reply, surroundings);
-                set.replies = distinct([&choices[index].matched, &travel[..]].concat());
+                let travel = self.access_constants(exchange.access, Kind::Reply, surroundings);
+                set.replies = distinct([&drafts[id].choice.matched, &travel[..]].concat());
             }
-            messages[index].set = Some(set);
+            drafts[id].message.set = Some(set);
         }
     }
 
     /// Finds the members of a set.
-    fn members(&mut self, set: &Message, messages: &[Message]) -> Vec<usize> {
+    fn members(&mut self, set: &Message, drafts: &Table<MessageId, Draft>) -> Vec<MessageId> {
         let spec = self.spec;
         let written = spec.messages.get(&set.name).map_or(&[][..], |set| &set.members);
         let mut members = Vec::new();
         for (index, name) in written.iter().enumerate() {
             let at = set.doc.path.key("members").index(index);
-            let Some(member) = spec.messages.get_index_of(name) else {
-                let offered = messages.iter().filter(|message| message.set.is_none());
+            let Some(member) = spec.messages.get_index_of(name).map(MessageId::new) else {
+                let offered = drafts.iter().map(|draft| &draft.message).filter(|message| message.set.is_none());
                 let offered: Vec<_> = offered.map(|message| message.name.as_str()).collect();
                 self.report_name(at.at_value(), "message", name, &offered, None);
                 continue;
@@ -63,7 +62,7 @@ impl Resolver<'_> {
             if members.contains(&member) {
                 let text = format!("the member `{name}` is named twice");
                 self.error_with_help("set", at.at_value(), text, "take one of the two out");
-            } else if messages[member].set.is_some() {
+            } else if drafts[member].message.set.is_some() {
                 let help = "name its members instead";
                 self.error_with_help("set", at.at_value(), format!("`{name}` is a set of frames itself"), help);
             } else {
@@ -76,42 +75,45 @@ impl Resolver<'_> {
     /// Lets a member travel as part of a set.
     fn join(
         &mut self,
-        (set, kinds): (usize, &[Kind]),
-        member: usize,
-        access: &MessageAccess,
-        choices: &[Choice],
+        (set, kinds): (MessageId, &[Kind]),
+        member: MessageId,
+        exchange: &Exchange,
         surroundings: &Surroundings,
-        messages: &mut [Message],
+        drafts: &mut Table<MessageId, Draft>,
     ) {
-        let known = &surroundings.accesses[access.access];
-        let index = messages[member].accesses.len();
-        messages[member].accesses.push(MessageAccess { set: Some(set), ..access.clone() });
-        for kind in known.kinds.iter().filter(|kind| kinds.contains(kind)) {
-            let travel = self.access_constants(access.access, *kind, surroundings);
-            let travel = [&choices[set].matched, &travel[..]].concat();
-            let mut shape = self.shape(index, *kind, &choices[member], &travel, (&messages[member].signals, known));
-            self.check_member(&messages[set], &messages[member].name, &shape.constants);
-            shape.constants = distinct(shape.constants);
-            shape.selectors.extend(self.continuing_header());
-            shape.selectors.sort_unstable();
-            shape.selectors.dedup();
-            messages[member].shapes.push(shape);
+        let exchange = Exchange { set: Some(set), ..exchange.clone() };
+        let id = drafts[member].message.exchanges.push(exchange.clone());
+        for kind in surroundings.accesses[exchange.access].kinds.iter().filter(|kind| kinds.contains(kind)) {
+            let travel = self.access_constants(exchange.access, *kind, surroundings);
+            let travel = [&drafts[set].choice.matched, &travel[..]].concat();
+            let Draft { message: known, choice, .. } = &drafts[member];
+            let owner =
+                Owner { message: member, id, exchange: &exchange, length: known.length, signals: &known.signals };
+            let mut frame = self.layout(&owner, *kind, choice, &travel, surroundings);
+            self.check_member(&drafts[set].message, &known.name, &frame.constants);
+            frame.constants = distinct(frame.constants);
+            frame.selectors.extend(self.continuing_header());
+            frame.selectors.sort_unstable();
+            frame.selectors.dedup();
+            drafts[member].frames.push(frame);
         }
     }
 
     /// Returns the header if it says whether more frames follow; every frame of a set has it then.
-    fn continuing_header(&self) -> Vec<usize> {
+    fn continuing_header(&self) -> Vec<SelectorId> {
         let is_in_header = self.tables.selectors.iter().any(|selector| selector.continues.is_some());
         if is_in_header { self.header() } else { Vec::new() }
     }
 
     /// Tests that no selector has one value for the set and another one for its member.
     fn check_member(&mut self, set: &Message, member: &str, constants: &[Constant]) {
-        let differs =
-            |(selector, value): &&Constant| constants.iter().any(|(known, other)| known == selector && other != value);
-        let Some((selector, value)) = constants.iter().find(differs) else { return };
-        let other = constants.iter().find(|(known, other)| known == selector && other != value);
-        let (name, other) = (&self.tables.selectors[*selector].name, other.map_or(0, |(_, other)| *other));
+        let other = |one: &Constant| {
+            let others = constants.iter().filter(|other| other.selector == one.selector && other.value != one.value);
+            others.map(|other| other.value).next()
+        };
+        let contrary = constants.iter().find_map(|one| Some((one, other(one)?)));
+        let Some((Constant { selector, value, .. }, other)) = contrary else { return };
+        let name = &self.tables.selectors[*selector].name;
         let text =
             format!("in a frame of `{}`, `{name}` would have to be both {value:#04X} and {other:#04X}", set.name);
         let position =

@@ -7,7 +7,9 @@ use super::keys::Role;
 use super::texts::remarks;
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
-use crate::model::{DeviceModel, Doc, Encoding, Kind, Misfit, OfModel, Piece, Signal, TypeOfModel};
+use crate::model::{
+    DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, OfModel, PartId, Piece, Signal, Table, TypeOfModel,
+};
 use crate::number::Rational;
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
@@ -244,7 +246,7 @@ impl Resolver<'_> {
     fn add_what_models_change(&mut self, merged: &Merged, signal: &mut Signal) {
         self.warn_of_hidden(merged, "range", |known| known.range.is_some());
         self.warn_of_hidden(merged, "default", |known| known.default.is_some());
-        for model in 0..self.tables.models.len() {
+        for model in self.tables.models.ids() {
             if let Some(known) = self.changed(merged, model, "range", |known| known.range.is_some()) {
                 let path = known.doc.path.key("range");
                 signal.model_ranges.extend(known.range.map(|value| OfModel { model, value, path }));
@@ -262,7 +264,7 @@ impl Resolver<'_> {
     fn changed(
         &self,
         merged: &Merged,
-        model: usize,
+        model: ModelId,
         key: &str,
         has: impl Fn(&TypeOfModel) -> bool,
     ) -> Option<TypeOfModel> {
@@ -299,9 +301,9 @@ impl Resolver<'_> {
         key: &str,
         has: impl Fn(&TypeOfModel) -> bool + Copy,
     ) -> Vec<&DeviceModel> {
-        let models = self.tables.models.iter().enumerate();
+        let models = self.tables.models.entries();
         let changing = models.filter(|(_, model)| model.types.iter().any(|known| known.name == name && has(known)));
-        let hidden = changing.filter(|(index, _)| self.changed(merged, *index, key, has).is_none());
+        let hidden = changing.filter(|(id, _)| self.changed(merged, *id, key, has).is_none());
         hidden.map(|(_, model)| model).collect()
     }
 
@@ -379,7 +381,7 @@ impl Resolver<'_> {
     fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
         let fields = merged.path(self.diagnostics, "fields");
         let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), Outer { doc: &doc, ..outer });
-        let parts = Some(leaves.signals).filter(|_| leaves.given_up.is_empty())?;
+        let parts: Table<PartId, Signal> = leaves.given_up.is_empty().then(|| leaves.signals.into_iter().collect())?;
         let format = merged.field.format.clone()?;
         let at = merged.path(self.diagnostics, "format");
         let pieces = self.pieces(&at, &format, &parts)?;
@@ -406,7 +408,7 @@ impl Resolver<'_> {
     }
 
     /// Reads `{number:12}{letter}`.
-    fn pieces(&mut self, path: &Path, format: &str, parts: &[Signal]) -> Option<Vec<Piece>> {
+    fn pieces(&mut self, path: &Path, format: &str, parts: &Table<PartId, Signal>) -> Option<Vec<Piece>> {
         let mut pieces = Vec::new();
         let mut rest = format;
         while let Some((literal, after)) = rest.split_once('{') {
@@ -419,7 +421,7 @@ impl Resolver<'_> {
                 pieces.push(Piece::Literal(literal.to_owned()));
             }
             let (part, digits) = inside.split_once(':').map_or((inside, None), |(part, digits)| (part, Some(digits)));
-            let part = self.lookup(path, "part", part, parts.iter().map(|part| part.name.as_str()))?;
+            let part = self.lookup_in(path, "part", part, parts, |part| &part.name)?;
             let digits = match digits {
                 Some(digits) => Some(usize::from(self.integer(path, digits, 1_u8, 20)?)),
                 None => None,
@@ -434,9 +436,9 @@ impl Resolver<'_> {
     }
 
     /// Tests that a text shows every part once.
-    fn check_pieces(&mut self, path: &Path, pieces: &[Piece], parts: &[Signal]) {
-        for (index, part) in parts.iter().enumerate() {
-            let shows = |piece: &&Piece| matches!(piece, Piece::Part { part, .. } if *part == index);
+    fn check_pieces(&mut self, path: &Path, pieces: &[Piece], parts: &Table<PartId, Signal>) {
+        for (id, part) in parts.entries() {
+            let shows = |piece: &&Piece| matches!(piece, Piece::Part { part, .. } if *part == id);
             let times = pieces.iter().filter(shows).count();
             if times != 1 {
                 let message = match times {

@@ -6,7 +6,7 @@ use canspec_runtime::Place;
 
 use super::Resolver;
 use crate::diagnostic::At;
-use crate::model::{Doc, Kind, Quantity, Range, Unit};
+use crate::model::{Doc, Id, Kind, Quantity, Range, Table, Unit};
 use crate::multiples;
 use crate::number::Rational;
 use crate::syntax::ast::{Field, Names};
@@ -167,6 +167,30 @@ impl Resolver<'_> {
         names: impl Iterator<Item = &'n str> + Clone,
     ) -> Option<usize> {
         self.find(path.at_value(), what, name, names, None)
+    }
+
+    /// Finds the row whose name stands at `path` as a value.
+    pub fn lookup_in<I: Id, T>(
+        &mut self,
+        path: &Path,
+        what: &str,
+        name: &str,
+        table: &Table<I, T>,
+        name_of: impl Fn(&T) -> &str + Clone,
+    ) -> Option<I> {
+        self.find(path.at_value(), what, name, table.iter().map(name_of), None).map(I::new)
+    }
+
+    /// Finds the row whose name stands at `path` as a key.
+    pub fn lookup_key_in<I: Id, T>(
+        &mut self,
+        path: &Path,
+        what: &str,
+        name: &str,
+        table: &Table<I, T>,
+        name_of: impl Fn(&T) -> &str + Clone,
+    ) -> Option<I> {
+        self.find(path.at_key(), what, name, table.iter().map(name_of), None).map(I::new)
     }
 
     /// Finds the name that stands at `path` as a value; `otherwise` says what else can be written.

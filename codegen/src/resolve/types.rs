@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Doc, Enumeration, NamedValue, StatusBit, StatusWord, raw_limits};
+use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, StatusBit, StatusWord, StatusWordId, raw_limits};
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
@@ -164,21 +164,20 @@ impl Resolver<'_> {
     }
 
     /// Finds or makes the named values of a field, if it has any.
-    pub fn enumeration(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> Option<usize> {
+    pub fn enumeration(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> Option<EnumerationId> {
         if merged.field.values.is_empty() {
             return None;
         }
         let (name, source) = self.type_name(merged, "values", otherwise);
         let made = |known: &Enumeration| known.name == name && known.doc.path == source;
-        if let Some(index) = self.tables.enumerations.iter().position(made) {
+        if let Some(index) = self.tables.enumerations.position(made) {
             let known = &mut self.tables.enumerations[index];
             known.width = known.width.max(width);
             return Some(index);
         }
         let values = self.values(&merged.path(self.diagnostics, "values"), &merged.field.values, width, false);
         let doc = self.type_doc(&name, &source, doc);
-        self.tables.enumerations.push(Enumeration { name, doc, width, values });
-        Some(self.tables.enumerations.len() - 1)
+        Some(self.tables.enumerations.push(Enumeration { name, doc, width, values }))
     }
 
     /// Reads `{raw: name}`.
@@ -240,10 +239,10 @@ impl Resolver<'_> {
     }
 
     /// Finds or makes the status word of a field.
-    pub fn status_word(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> usize {
+    pub fn status_word(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> StatusWordId {
         let (name, source) = self.type_name(merged, "status", otherwise);
         let made = |known: &StatusWord| known.name == name && known.doc.path == source;
-        if let Some(index) = self.tables.status_words.iter().position(made) {
+        if let Some(index) = self.tables.status_words.position(made) {
             let known = &mut self.tables.status_words[index];
             known.width = known.width.max(width);
             return index;
@@ -256,8 +255,7 @@ impl Resolver<'_> {
             entries.filter_map(|(name, bit)| self.status_bit(&path.key(name), name, bit, widest, &doc)).collect();
         self.check_status_bits(&bits);
         bits.sort_by_key(|bit| bit.bit);
-        self.tables.status_words.push(StatusWord { name, doc, width, bits });
-        self.tables.status_words.len() - 1
+        self.tables.status_words.push(StatusWord { name, doc, width, bits })
     }
 
     /// Tests that not several bits lie beyond the end of the word, where rather the place of the word is wrong.

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Decoded, Form, Frame, Problem, Refusal, Target, Value, decode, request};
-use canspec_codegen::model::Protocol;
+use canspec_codegen::model::{ModelId, Protocol};
 use canspec_codegen::source::Source;
 use canspec_codegen::{Outcome, compile};
 
@@ -36,9 +36,9 @@ fn protocol(path: &str) -> Protocol {
     protocol.unwrap_or_else(|| panic!("{}", diagnostics.concise()))
 }
 
-/// Returns the index of a device model.
-fn model(protocol: &Protocol, name: &str) -> usize {
-    protocol.models.iter().position(|model| model.name == name).expect("the device model exists")
+/// Returns a device model.
+fn model(protocol: &Protocol, name: &str) -> ModelId {
+    protocol.models.position(|model| model.name == name).expect("the device model exists")
 }
 
 /// Reads a frame as documents print it.
@@ -67,7 +67,7 @@ fn problem(protocol: &Protocol, text: &str) -> Option<Problem> {
 }
 
 /// Returns the name of the message that a frame carries for a device model.
-fn message<'a>(protocol: &'a Protocol, model: Option<usize>, text: &str) -> &'a str {
+fn message<'a>(protocol: &'a Protocol, model: Option<ModelId>, text: &str) -> &'a str {
     let decoded = decode(protocol, model, &frame(text)).expect("a frame of the protocol");
     &protocol.messages[decoded.message].name
 }
@@ -87,7 +87,7 @@ fn notes(protocol: &Protocol, text: &str) -> Vec<&'static str> {
 /// Makes a request of texts as a person types them.
 fn requested(
     protocol: &Protocol,
-    model: Option<usize>,
+    model: Option<ModelId>,
     message: &str,
     to: &str,
     signals: &[(&str, &str)],

@@ -76,12 +76,12 @@ fn set_bits_that_nothing_covers_are_reserved() {
 #[test]
 fn a_frame_shows_its_addressing_mode() {
     let levels = feature("addressing");
-    let mode = |text| decoded(&levels, text).addressing.map(|mode| levels.modes[mode].name.as_str());
+    let mode = |text| decoded(&levels, text).addressing.map(|travel| levels[travel.mode].name.as_str());
     assert_eq!(mode("004303F0#3200000000000000"), Some("single"));
     assert_eq!(mode("008307F0#3200000000000000"), Some("group"));
     assert_eq!(mode("00433FF0#3200000000000000"), Some("all"));
     assert_eq!(mode("00C303F0#3200000000000000"), None);
-    assert_eq!(decoded(&levels, "0083F103#3200000000000000").identifier, [0, 2, 3, 0xF1, 3]);
+    assert_eq!(*decoded(&levels, "0083F103#3200000000000000").identifier, [0, 2, 3, 0xF1, 3]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use can_dbc::MessageId;
 use canspec_codegen::emit::{self, Dbc, Float, Options, Switch};
 use canspec_codegen::interpret::{Content, Frame, decode, encode};
-use canspec_codegen::model::{Kind, Protocol};
+use canspec_codegen::model::{Kind, ModelId, Protocol};
 
 use super::names;
 use crate::{Frames, models};
@@ -46,7 +46,7 @@ fn number(id: MessageId, extended: bool) -> u32 {
 
 /// Tests that frames which nobody may refuse encode to what they were.
 fn frames(protocol: &Protocol) {
-    if protocol.modes.is_empty() || protocol.messages.iter().all(|message| message.shapes.is_empty()) {
+    if protocol.modes.is_empty() || protocol.frames.is_empty() {
         return;
     }
     let mut random = Frames::new(protocol, 0xF0);
@@ -58,7 +58,7 @@ fn frames(protocol: &Protocol) {
     }
 }
 
-fn comes_back(protocol: &Protocol, model: Option<usize>, frame: &Frame) {
+fn comes_back(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) {
     let Ok(decoded) = decode(protocol, model, frame) else { return };
     if decoded.kind != Kind::Request {
         let encoded = encode(protocol, model, &Content::of(protocol, &decoded));

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use canspec_codegen::interpret::{Form, Frame, Input, Limits, decode, raw_of};
-use canspec_codegen::model::{Message, Protocol, Signal};
+use canspec_codegen::model::{Id, Message, ModelId, Protocol, Signal, SignalId};
 use fastrand::Rng;
 
 use crate::engines::{candidates, compare_decoding, compare_encoding};
@@ -63,8 +63,8 @@ impl Case {
         &ENGINES[usize::from(self.protocol) % ENGINES.len()]
     }
 
-    fn model(&self, protocol: &Protocol) -> Option<usize> {
-        Some(usize::from(self.model)).filter(|model| *model < protocol.models.len())
+    fn model(&self, protocol: &Protocol) -> Option<ModelId> {
+        protocol.models.ids().nth(self.model.into())
     }
 
     fn frame(&self, protocol: &Protocol) -> Frame {
@@ -113,7 +113,7 @@ fn examples(number: u8, protocol: &Protocol) -> impl Iterator<Item = Case> {
         data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
         Case {
             protocol: number,
-            model: example.model.and_then(|model| u8::try_from(model).ok()).unwrap_or(u8::MAX),
+            model: example.model.and_then(|model| u8::try_from(model.place()).ok()).unwrap_or(u8::MAX),
             other_width: u8::from(frame.extended != protocol.identifier.extended),
             length: u8::try_from(frame.data.len()).unwrap_or(u8::MAX),
             id: frame.id,
@@ -165,5 +165,5 @@ fn to_a_candidate(case: &mut Case, random: &mut Rng) {
 fn signal(case: &Case, random: &mut Rng) -> Option<(&'static Message, &'static Signal)> {
     let message = case.message()?;
     let count = message.signals.len();
-    (count > 0).then(|| (message, &message.signals[random.usize(..count)]))
+    (count > 0).then(|| (message, &message[SignalId::new(random.usize(..count))]))
 }

@@ -11,7 +11,7 @@ use super::repair::{self, Repair};
 use super::shown;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{Frame, Reading, decode};
-use crate::model::{Encoding, Meaning, Protocol, Signal, StatusBit};
+use crate::model::{Encoding, Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
 use crate::syntax::tree::{Content, Path};
 
 /// Most examples that are shown beside a field.
@@ -75,9 +75,9 @@ fn nibbles(data: [u8; 8]) -> impl Iterator<Item = u8> {
 /// Blames the fields that are rather wrong than their examples; returns the places of what these say, which is thereby explained.
 pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path> {
     let mut explained = HashSet::new();
-    for ((message, index), evidence) in &collect(protocol) {
+    for ((message, signal), evidence) in &collect(protocol) {
         let message = &protocol.messages[*message];
-        let field = Field { protocol, message: &message.name, signal: &message.signals[*index], evidence };
+        let field = Field { protocol, message: &message.name, signal: &message[*signal], evidence };
         if let Some(diagnostic) = field.blamed(diagnostics) {
             diagnostics.push_first(diagnostic);
             explained.extend(field.denials().map(|denial| denial.meaning.path.clone()));
@@ -87,13 +87,12 @@ pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path
 }
 
 /// Collects what the examples that must hold say of each field, by message and signal.
-fn collect(protocol: &Protocol) -> IndexMap<(usize, usize), Vec<Evidence<'_>>> {
+fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evidence<'_>>> {
     let mut fields: IndexMap<_, Vec<_>> = IndexMap::new();
     for example in protocol.examples.iter().filter(|example| example.fails.is_none() && example.data.is_some()) {
         let frame = Frame::of(protocol, example);
         let Ok(decoded) = decode(protocol, example.model, &frame) else { continue };
-        let mut data = [0; 8];
-        data.iter_mut().zip(&frame.data).for_each(|(byte, given)| *byte = *given);
+        let data = frame.padded();
         for meaning in example.means.iter().filter(|_| example.message == Some(decoded.message)) {
             let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == meaning.signal) else {
                 continue;

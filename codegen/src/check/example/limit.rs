@@ -5,7 +5,7 @@
 use super::shown;
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Decoded, Reading, Value};
-use crate::model::{Example, Protocol, Range, Signal};
+use crate::model::{Example, MessageId, Protocol, Range, Signal};
 use crate::syntax::tree::Path;
 
 /// The range of the field whose value lies outside it, or nearest to one of its ends.
@@ -40,8 +40,8 @@ pub fn report(protocol: &Protocol, example: &Example, decoded: &Decoded, place: 
     Some(Diagnostic::error("example", at.at_value(), text).help(help).other(place, said))
 }
 
-fn limit<'a>(protocol: &'a Protocol, example: &Example, message: usize, reading: &Reading) -> Option<Limit<'a>> {
-    let signal = &protocol.messages[message].signals[reading.signal];
+fn limit<'a>(protocol: &'a Protocol, example: &Example, message: MessageId, reading: &Reading) -> Option<Limit<'a>> {
+    let signal = &protocol[message][reading.signal];
     let range = signal.range_for(example.model)?;
     let of_model = signal.model_ranges.iter().find(|own| Some(own.model) == example.model);
     let number = match reading.value {

@@ -4,14 +4,14 @@ use indexmap::IndexMap;
 
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, decode};
-use crate::model::{Example, Message, Protocol};
+use crate::model::{Example, Message, MessageId, Protocol};
 use crate::syntax::tree::Path;
 
 /// Most examples that are shown beside a message.
 const SHOWN: usize = 3;
 
 /// Finds the messages of which at least two examples speak and none can be read, with the places of these frames.
-pub fn find(protocol: &Protocol) -> IndexMap<usize, Vec<Path>> {
+pub fn find(protocol: &Protocol) -> IndexMap<MessageId, Vec<Path>> {
     let mut unread: IndexMap<_, Vec<_>> = IndexMap::new();
     let mut read = Vec::new();
     for example in protocol.examples.iter().filter(|example| example.fails.is_none()) {

@@ -7,13 +7,14 @@ use indexmap::IndexMap;
 use super::file::Frame;
 use super::text::{self, ascii, remarks};
 use super::tree::{self, Candidate, Tree};
-use crate::model::{Address, AddressPattern, Kind, Message, Protocol, SelectorPlace, Shape};
+use crate::model::{Address, AddressPattern, FrameId, FrameLayout, Kind, Message, ModeId, Protocol};
 
 /// One frame of one message in one addressing mode.
 pub struct Sent<'a> {
     pub message: &'a Message,
-    pub shape: &'a Shape,
-    mode: usize,
+    pub id_of_layout: FrameId,
+    pub layout: &'a FrameLayout,
+    mode: ModeId,
     node: Option<i64>,
     id: u32,
     /// Bits that are the same in all its identifiers.
@@ -23,79 +24,52 @@ pub struct Sent<'a> {
 /// Returns every frame in each addressing mode that it has, of each of the nodes if these are given.
 pub fn sent<'a>(protocol: &'a Protocol, nodes: Option<&RangeInclusive<i64>>) -> Vec<Sent<'a>> {
     let mut sent = Vec::new();
-    for message in &protocol.messages {
-        for shape in &message.shapes {
-            for (mode, pattern) in patterns(protocol, message, shape) {
-                let numbers: Vec<Option<i64>> = match nodes {
-                    Some(nodes) if is_open(protocol, pattern) => nodes.clone().map(Some).collect(),
-                    _ => vec![None],
-                };
-                let frames = numbers.into_iter().filter_map(|node| {
-                    let (id, fixed) = identifier(protocol, shape, pattern, node, nodes.is_some())?;
-                    Some(Sent { message, shape, mode, node, id, fixed })
-                });
-                sent.extend(frames);
-            }
+    for (id_of_layout, layout) in protocol.frames.entries() {
+        let message = &protocol[layout.message];
+        for (mode, pattern) in protocol.patterns_of(layout) {
+            let numbers: Vec<Option<i64>> = match nodes {
+                Some(nodes) if is_open(protocol, pattern) => nodes.clone().map(Some).collect(),
+                _ => vec![None],
+            };
+            let frames = numbers.into_iter().filter_map(|node| {
+                let (id, fixed) = identifier(protocol, layout, pattern, node, nodes.is_some())?;
+                Some(Sent { message, id_of_layout, layout, mode, node, id, fixed })
+            });
+            sent.extend(frames);
         }
     }
     sent
 }
 
-/// Returns what the identifier shows in each mode.
-fn patterns<'a>(protocol: &'a Protocol, message: &Message, shape: &Shape) -> Vec<(usize, &'a AddressPattern)> {
-    let answers = &message.accesses[shape.access].answers;
-    let modes = protocol.modes.iter().zip(answers).enumerate();
-    let shown = modes.filter_map(|(index, (mode, who))| {
-        let pattern = match shape.kind {
-            Kind::Request => mode.request.as_ref(),
-            Kind::Reply | Kind::Report => mode.reply((*who)?),
-        };
-        who.and(pattern).map(|pattern| (index, pattern))
-    });
-    shown.collect()
-}
-
 /// Tests whether a pattern has an address that is not the sender's own.
 fn is_open(protocol: &Protocol, pattern: &AddressPattern) -> bool {
-    pattern.addresses.iter().any(|address| protocol.address_types[address.address_type].send.is_none())
+    pattern.addresses.iter().any(|address| protocol[address.address_type].send.is_none())
 }
 
 /// Returns an identifier and its fixed bits, or `None` where a node has no such address. A concrete one fixes the addresses.
 fn identifier(
     protocol: &Protocol,
-    shape: &Shape,
+    frame: &FrameLayout,
     pattern: &AddressPattern,
     node: Option<i64>,
     concrete: bool,
 ) -> Option<(u32, u32)> {
     let layout = &protocol.identifier;
-    let mut fixed = layout.mask | pattern.mask;
-    let mut id = layout.value & layout.mask | pattern.value;
-    for (selector, value) in &shape.constants {
-        if let SelectorPlace::Identifier(field) = protocol.selectors[*selector].place {
-            let field = &layout.fields[field];
-            fixed |= field.mask();
-            id |= u32::try_from(*value).unwrap_or(0) << field.shift;
-        }
-    }
+    let chosen = frame.identifier().fold(0, |mask, (field, _)| mask | protocol[field].mask());
+    let mut fixed = layout.mask | pattern.mask | chosen;
+    let mut id = protocol.base_identifier(frame, pattern);
     for address in &pattern.addresses {
-        let field = &layout.fields[address.field];
+        let field = &protocol[address.field];
         let (raw, varying) = number(protocol, address, node)?;
-        id |= raw << field.shift & field.mask();
+        id = field.put(id, raw);
         fixed |= (if concrete { u32::MAX } else { !varying }) << field.shift & field.mask();
-    }
-    let addressed = |index: usize| pattern.addresses.iter().any(|address| address.field == index);
-    for (index, field) in layout.fields.iter().enumerate() {
-        if fixed & field.mask() == 0 && !addressed(index) {
-            id |= field.send.or(field.normal).unwrap_or(0) << field.shift;
-        }
     }
     Some((id, fixed))
 }
 
 /// Returns the raw value of an address, and the bits that are not the same in all documented ones.
 fn number(protocol: &Protocol, address: &Address, node: Option<i64>) -> Option<(u32, u32)> {
-    let known = &protocol.address_types[address.address_type];
+    let known = &protocol[address.address_type];
     let raw = u32::try_from(known.raw(known.send.or(node).unwrap_or(known.first))).ok();
     let raw = raw.filter(|raw| known.documents(*raw))?;
     let (first, last) = known.raw_range();
@@ -133,12 +107,12 @@ pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<Frame>, Vec
 fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
     let mut candidates: Vec<Candidate> = Vec::new();
     for sent in &sent {
-        if !candidates.iter().any(|(_, shape)| std::ptr::eq(*shape, sent.shape)) {
-            candidates.push((sent.message, sent.shape));
+        if !candidates.iter().any(|candidate| candidate.id == sent.id_of_layout) {
+            candidates.push(Candidate { id: sent.id_of_layout, message: sent.message, layout: sent.layout });
         }
     }
     let length = sent[0].message.length;
-    let (candidates, others) = candidates.into_iter().partition(|(message, _)| message.length == length);
+    let (candidates, others) = candidates.into_iter().partition(|candidate| candidate.message.length == length);
     Group { sent, others, tree: tree::tree(protocol, candidates) }
 }
 
@@ -146,9 +120,9 @@ fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
 fn lost(group: &Group, name: &str) -> Vec<String> {
     let length = group.sent[0].message.length;
     let other =
-        |(message, _): &Candidate| format!("`{}` is missing in `{name}`, which has {length} data bytes", message.name);
-    let same = |((lost, _), (kept, _)): &(Candidate, Candidate)| {
-        format!("`{}` is missing in `{name}`, where nothing tells it from `{}`", lost.name, kept.name)
+        |lost: &Candidate| format!("`{}` is missing in `{name}`, which has {length} data bytes", lost.message.name);
+    let same = |(lost, kept): &(Candidate, Candidate)| {
+        format!("`{}` is missing in `{name}`, where nothing tells it from `{}`", lost.message.name, kept.message.name)
     };
     group.others.iter().map(other).chain(group.tree.lost.iter().map(same)).collect()
 }
@@ -157,7 +131,7 @@ fn frame(protocol: &Protocol, group: Group, name: String) -> Frame {
     let sent = &group.sent;
     let module = text::module(common(sent, |sent| sent.node).flatten());
     let controller = text::CONTROLLER.to_owned();
-    let is_request = sent[0].shape.kind == Kind::Request;
+    let is_request = sent[0].layout.kind == Kind::Request;
     let (sender, receivers) = if is_request { (controller, module) } else { (module, controller) };
     Frame {
         id: sent[0].id,
@@ -180,8 +154,8 @@ fn common<T: PartialEq>(group: &[&Sent], of: impl Fn(&Sent) -> T) -> Option<T> {
 
 /// Returns every how many milliseconds a report comes; the shortest time where it may vary.
 fn cycle(protocol: &Protocol, sent: &Sent) -> Option<u32> {
-    let access = &protocol.accesses[sent.message.accesses[sent.shape.access].access];
-    let timing = &protocol.timing[sent.message.every.or(access.every).filter(|_| sent.shape.kind == Kind::Report)?];
+    let access = &protocol[sent.layout.access];
+    let timing = &protocol[sent.message.every.or(access.every).filter(|_| sent.layout.kind == Kind::Report)?];
     let milliseconds = match timing.unit.symbol {
         "ms" => 1.0,
         "s" => 1e3,
@@ -198,10 +172,10 @@ fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
     let mut lines: Vec<String> = Vec::new();
     let mut modes: Vec<&str> = Vec::new();
     for sent in group {
-        let access = &protocol.accesses[sent.message.accesses[sent.shape.access].access].name;
+        let access = &protocol[sent.layout.access].name;
         let text = remarks(&sent.message.doc);
         let space = if text.is_empty() { "" } else { ": " };
-        let how = match sent.shape.kind {
+        let how = match sent.layout.kind {
             Kind::Report => Kind::Report.name().to_owned(),
             kind => format!("{} to {access}", kind.name()),
         };
@@ -209,7 +183,7 @@ fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
         if !lines.contains(&line) {
             lines.push(line);
         }
-        let mode = protocol.modes[sent.mode].name.as_str();
+        let mode = protocol[sent.mode].name.as_str();
         if !modes.contains(&mode) {
             modes.push(mode);
         }
@@ -223,8 +197,8 @@ fn names(protocol: &Protocol, groups: &[Group]) -> Vec<String> {
     let mut plain = Vec::new();
     for group in groups {
         let message = group.tree.message().unwrap_or(&protocol.name);
-        let mode = common(&group.sent, |sent| sent.mode).map(|mode| protocol.modes[mode].name.clone());
-        plain.push((format!("{message}_{}", group.sent[0].shape.kind.name()), mode));
+        let mode = common(&group.sent, |sent| sent.mode).map(|mode| protocol[mode].name.clone());
+        plain.push((format!("{message}_{}", group.sent[0].layout.kind.name()), mode));
     }
     let mut names = Vec::new();
     for (group, (name, mode)) in groups.iter().zip(&plain) {

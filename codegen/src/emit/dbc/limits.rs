@@ -18,7 +18,7 @@ pub fn limits(protocol: &Protocol, mask: u32) -> Vec<String> {
     limits.extend(about(protocol, "has limits that depend on the device model", |signal| {
         !signal.model_ranges.is_empty()
     }));
-    if protocol.messages.iter().flat_map(|message| &message.shapes).any(|shape| shape.kind == Kind::Reply) {
+    if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
         limits.push("which request a reply answers, and who answers it".to_owned());
     }
     if !protocol.procedures.is_empty() || !protocol.timing.is_empty() {

@@ -15,7 +15,7 @@ pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal>
         Encoding::Packed { parts, .. } => {
             parts.iter().flat_map(|part| signals(protocol, part, &format!("{name}_{}", part.name))).collect()
         }
-        Encoding::Status(word) => status(&protocol.status_words[*word], signal.place, name),
+        Encoding::Status(word) => status(&protocol[*word], signal.place, name),
         encoding => vec![single(protocol, signal, encoding, name)],
     }
 }

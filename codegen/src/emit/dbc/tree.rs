@@ -7,11 +7,15 @@ use canspec_runtime::Place;
 use super::file::Signal;
 use super::names::unique;
 use super::signals;
-use crate::interpret::coverage;
-use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape};
+use crate::model::{FrameId, FrameLayout, Kind, Message, Protocol, SelectorId, SelectorPlace};
 
 /// One of the frames that share an identifier.
-pub type Candidate<'a> = (&'a Message, &'a Shape);
+#[derive(Clone, Copy)]
+pub struct Candidate<'a> {
+    pub id: FrameId,
+    pub message: &'a Message,
+    pub layout: &'a FrameLayout,
+}
 
 /// The signals of all these frames.
 pub struct Tree<'a> {
@@ -24,20 +28,19 @@ pub struct Tree<'a> {
 impl Tree<'_> {
     /// Returns the name of the only message, or the first one of those that look the same.
     pub fn message(&self) -> Option<&str> {
-        let name = &self.kept.first()?.0.name;
-        let is_only = self.kept.iter().all(|(message, _)| message.name == *name);
+        let name = &self.kept.first()?.message.name;
+        let is_only = self.kept.iter().all(|kept| kept.message.name == *name);
         (is_only || self.signals.is_empty()).then_some(name)
     }
 }
 
 /// Arranges the signals of frames that share an identifier.
 pub fn tree<'a>(protocol: &Protocol, candidates: Vec<Candidate<'a>>) -> Tree<'a> {
-    let selectors = 0..protocol.selectors.len();
-    let left = selectors.filter(|index| place(protocol, *index).is_some()).collect();
+    let left = protocol.selectors.ids().filter(|id| place(protocol, *id).is_some()).collect();
     let mut grower = Grower { protocol, signals: Vec::new(), taken: BTreeSet::new(), lost: Vec::new() };
     grower.grow(&candidates, left, &Branch { under: None, label: String::new() });
     let Grower { signals, lost, .. } = grower;
-    let is_lost = |(_, shape): &Candidate| lost.iter().any(|((_, lost), _)| std::ptr::eq(*lost, *shape));
+    let is_lost = |candidate: &Candidate| lost.iter().any(|(lost, _)| lost.id == candidate.id);
     let kept = candidates.into_iter().filter(|candidate| !is_lost(candidate)).collect();
     Tree { signals, lost, kept }
 }
@@ -59,7 +62,7 @@ struct Branch {
 
 impl<'a> Grower<'_, 'a> {
     /// Adds the signals of frames of which the multiplexors so far have told all others apart.
-    fn grow(&mut self, candidates: &[Candidate<'a>], left: Vec<usize>, branch: &Branch) {
+    fn grow(&mut self, candidates: &[Candidate<'a>], left: Vec<SelectorId>, branch: &Branch) {
         if is_uniform(candidates) {
             return self.leaf(candidates, &left, branch);
         }
@@ -72,8 +75,8 @@ impl<'a> Grower<'_, 'a> {
         let (branches, lost) = split(candidates, chosen);
         self.lose(&lost, candidates[0]);
         let is_last = branches.values().all(|of| is_uniform(of));
-        let is_shared = |index: &usize| all_have(candidates, *index) && (is_last || has_one_value(candidates, *index));
-        let (shared, left): (Vec<_>, Vec<_>) = left.into_iter().filter(|index| *index != chosen).partition(is_shared);
+        let is_shared = |id: &SelectorId| all_have(candidates, *id) && (is_last || has_one_value(candidates, *id));
+        let (shared, left): (Vec<_>, Vec<_>) = left.into_iter().filter(|id| *id != chosen).partition(is_shared);
         self.selectors(candidates, &shared, branch);
         let labels = self.labels(chosen, &branches);
         let multiplexor = self.multiplexor(candidates[0], chosen, &labels, branch);
@@ -87,12 +90,12 @@ impl<'a> Grower<'_, 'a> {
     }
 
     /// Adds what all these frames carry alike.
-    fn leaf(&mut self, candidates: &[Candidate<'a>], left: &[usize], branch: &Branch) {
+    fn leaf(&mut self, candidates: &[Candidate<'a>], left: &[SelectorId], branch: &Branch) {
         let count = self.signals.len();
         self.selectors(candidates, left, branch);
-        let (message, shape) = candidates[0];
-        for index in &shape.signals {
-            let signal = &message.signals[*index];
+        let Candidate { message, layout, .. } = candidates[0];
+        for id in &layout.signals {
+            let signal = &message[*id];
             let name = match (branch.under.is_some(), message.signals.len(), signal.name.as_str()) {
                 (false, _, name) => name.to_owned(),
                 (true, 1, "value") => message.name.clone(),
@@ -108,9 +111,9 @@ impl<'a> Grower<'_, 'a> {
     }
 
     /// Adds a reserved byte, since programs know a value of a multiplexor only by a signal that depends on it.
-    fn reserved(&mut self, (message, shape): Candidate<'a>, branch: &Branch) {
-        let covered = coverage(self.protocol, message, shape).to_be_bytes();
-        let free = covered.iter().take(message.length.into()).rposition(|byte| *byte == 0);
+    fn reserved(&mut self, Candidate { layout, .. }: Candidate<'a>, branch: &Branch) {
+        let covered = layout.covered.to_be_bytes();
+        let free = covered.iter().take(layout.length.into()).rposition(|byte| *byte == 0);
         if let Some(byte) = free.and_then(|byte| u8::try_from(byte).ok()) {
             let plain = Signal::new(format!("{}_reserved", branch.label), Place::byte(byte));
             let comment = "Reserved, and sent as 0".to_owned();
@@ -119,22 +122,22 @@ impl<'a> Grower<'_, 'a> {
     }
 
     /// Adds those selectors that all frames have.
-    fn selectors(&mut self, candidates: &[Candidate], selectors: &[usize], branch: &Branch) {
-        for index in selectors.iter().filter(|index| all_have(candidates, **index)) {
-            let mut values: Vec<_> = candidates.iter().map(|candidate| constant(*candidate, *index)).collect();
+    fn selectors(&mut self, candidates: &[Candidate], selectors: &[SelectorId], branch: &Branch) {
+        for id in selectors.iter().filter(|id| all_have(candidates, **id)) {
+            let mut values: Vec<_> = candidates.iter().map(|candidate| constant(*candidate, *id)).collect();
             values.dedup();
             let only = if let [only] = values[..] { only } else { None };
-            let mut signal = self.selector(*index, only, candidates[0], branch);
+            let mut signal = self.selector(*id, only, candidates[0], branch);
             if signal.named.is_empty() && values.len() > 1 {
-                let labels = self.labels(*index, &split(candidates, *index).0);
+                let labels = self.labels(*id, &split(candidates, *id).0);
                 signal.named = labels.into_iter().map(|(value, label)| (value.into(), label)).collect();
             }
             self.add(signal, branch);
         }
     }
 
-    fn multiplexor(&mut self, of: Candidate, index: usize, labels: &[(u64, String)], branch: &Branch) -> usize {
-        let mut signal = Signal { multiplexor: true, ..self.selector(index, None, of, branch) };
+    fn multiplexor(&mut self, of: Candidate, id: SelectorId, labels: &[(u64, String)], branch: &Branch) -> usize {
+        let mut signal = Signal { multiplexor: true, ..self.selector(id, None, of, branch) };
         if signal.named.is_empty() {
             signal.named = labels.iter().map(|(value, label)| (i128::from(*value), label.clone())).collect();
         }
@@ -142,25 +145,23 @@ impl<'a> Grower<'_, 'a> {
         self.signals.len() - 1
     }
 
-    fn selector(&self, index: usize, only: Option<u64>, (_, shape): Candidate, branch: &Branch) -> Signal {
-        let selector = &self.protocol.selectors[index];
+    fn selector(&self, id: SelectorId, only: Option<u64>, of: Candidate, branch: &Branch) -> Signal {
+        let selector = &self.protocol[id];
         let space = if branch.label.is_empty() { "" } else { "_" };
         let name = format!("{}{space}{}", branch.label, selector.name);
-        let place = place(self.protocol, index).unwrap_or(Place::byte(0));
-        let start = only.or(selector.normal.filter(|_| shape.kind != Kind::Request));
+        let place = place(self.protocol, id).unwrap_or(Place::byte(0));
+        let start = only.or(selector.normal.filter(|_| of.layout.kind != Kind::Request));
         Signal { start: start.map(i128::from), ..signals::selector(self.protocol, selector, place, only, name) }
     }
 
     /// Names the values of a selector: as the spec does, or else by messages or accesses where these are all different.
-    fn labels(&self, selector: usize, branches: &Branches) -> Vec<(u64, String)> {
-        let selector = &self.protocol.selectors[selector];
-        let messages = distinct(branches, |(message, _)| message.name.clone());
-        let accesses = distinct(branches, |(message, shape)| {
-            self.protocol.accesses[message.accesses[shape.access].access].name.clone()
-        });
+    fn labels(&self, selector: SelectorId, branches: &Branches) -> Vec<(u64, String)> {
+        let selector = &self.protocol[selector];
+        let messages = distinct(branches, |candidate| candidate.message.name.clone());
+        let accesses = distinct(branches, |candidate| self.protocol[candidate.layout.access].name.clone());
         let numbers = || branches.keys().map(|value| format!("{}_{value:X}", selector.name)).collect();
         let labels: Vec<String> = messages.or(accesses).unwrap_or_else(numbers);
-        let known = selector.enumeration.map(|index| &self.protocol.enumerations[index].values);
+        let known = selector.enumeration.map(|id| &self.protocol[id].values);
         let named = |value: u64| known?.iter().find(|named| named.raw == value.into()).map(|named| named.name.clone());
         branches.keys().zip(labels).map(|(value, label)| (*value, named(*value).unwrap_or(label))).collect()
     }
@@ -172,36 +173,36 @@ impl<'a> Grower<'_, 'a> {
 }
 
 /// Returns where in the data bytes a selector stands.
-fn place(protocol: &Protocol, selector: usize) -> Option<Place> {
-    match protocol.selectors[selector].place {
+fn place(protocol: &Protocol, selector: SelectorId) -> Option<Place> {
+    match protocol[selector].place {
         SelectorPlace::Payload(place) => Some(place),
         SelectorPlace::Identifier(_) => None,
     }
 }
 
-fn constant((_, shape): Candidate, selector: usize) -> Option<u64> {
-    shape.constants.iter().find(|(index, _)| *index == selector).map(|(_, value)| *value)
+fn constant(of: Candidate, selector: SelectorId) -> Option<u64> {
+    of.layout.constants.iter().find(|known| known.selector == selector).map(|known| known.value)
 }
 
-fn all_have(candidates: &[Candidate], selector: usize) -> bool {
-    candidates.iter().all(|(_, shape)| shape.selectors.contains(&selector))
+fn all_have(candidates: &[Candidate], selector: SelectorId) -> bool {
+    candidates.iter().all(|candidate| candidate.layout.selectors.contains(&selector))
 }
 
-fn has_one_value(candidates: &[Candidate], selector: usize) -> bool {
+fn has_one_value(candidates: &[Candidate], selector: SelectorId) -> bool {
     candidates.iter().all(|candidate| constant(*candidate, selector) == constant(candidates[0], selector))
 }
 
 /// Tests whether two frames carry the same signals.
-fn has_same_signals((one, shape): &Candidate, (other, its): &Candidate) -> bool {
-    let is_same = std::ptr::eq(*one, *other) || shape.signals.is_empty();
-    is_same && shape.signals == its.signals
+fn has_same_signals(one: &Candidate, other: &Candidate) -> bool {
+    let is_same = one.layout.message == other.layout.message || one.layout.signals.is_empty();
+    is_same && one.layout.signals == other.layout.signals
 }
 
 /// Tests whether all frames carry the same.
 fn is_uniform(candidates: &[Candidate]) -> bool {
-    let selectors = |candidate: &Candidate| candidate.1.selectors.clone();
-    let is_same =
-        |other: &Candidate| has_same_signals(&candidates[0], other) && selectors(&candidates[0]) == selectors(other);
+    let is_same = |other: &Candidate| {
+        has_same_signals(&candidates[0], other) && candidates[0].layout.selectors == other.layout.selectors
+    };
     candidates.iter().all(is_same)
 }
 
@@ -217,7 +218,7 @@ fn distinct(branches: &Branches, of: impl Fn(&Candidate) -> String) -> Option<Ve
 type Branches<'a> = BTreeMap<u64, Vec<Candidate<'a>>>;
 
 /// Splits frames by a selector's value; those without one are left over.
-fn split<'a>(candidates: &[Candidate<'a>], selector: usize) -> (Branches<'a>, Vec<Candidate<'a>>) {
+fn split<'a>(candidates: &[Candidate<'a>], selector: SelectorId) -> (Branches<'a>, Vec<Candidate<'a>>) {
     let mut branches = Branches::new();
     let mut lost = Vec::new();
     for candidate in candidates {
@@ -230,12 +231,12 @@ fn split<'a>(candidates: &[Candidate<'a>], selector: usize) -> (Branches<'a>, Ve
 }
 
 /// Chooses the selector that loses the fewest frames, leaves the least to be told apart and has the fewest values.
-fn choose(candidates: &[Candidate], left: &[usize]) -> Option<usize> {
-    let splits = left.iter().map(|index| (*index, split(candidates, *index)));
+fn choose(candidates: &[Candidate], left: &[SelectorId]) -> Option<SelectorId> {
+    let splits = left.iter().map(|id| (*id, split(candidates, *id)));
     let telling = splits.filter(|(_, (branches, _))| branches.len() > 1);
     let chosen = telling.min_by_key(|(_, (branches, lost))| {
         let mixed = branches.values().filter(|of| !is_uniform(of)).count();
         (lost.len(), mixed, branches.len())
     });
-    chosen.map(|(index, _)| index)
+    chosen.map(|(id, _)| id)
 }

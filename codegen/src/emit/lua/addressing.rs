@@ -30,7 +30,7 @@ fn runs(mask: u32) -> Vec<(u32, u32)> {
 pub fn foreign(foreign: &Foreign) -> Value {
     Value::list(&foreign.ranges, |(field, first, last)| {
         Value::record()
-            .maybe("field", field.map(Value::index))
+            .maybe("field", field.map(Value::id))
             .with("first", Value::hexadecimal(*first))
             .with("last", Value::hexadecimal(*last))
     })
@@ -39,7 +39,7 @@ pub fn foreign(foreign: &Foreign) -> Value {
 pub fn direction(direction: &Direction) -> Value {
     let test = |test: &FieldTest| {
         Value::record()
-            .with("field", Value::index(test.field))
+            .with("field", Value::id(test.field))
             .with("ranges", ranges(&test.ranges))
             .with("inside", Value::flag(test.inside))
     };
@@ -78,8 +78,8 @@ fn pattern(pattern: &AddressPattern) -> Value {
 
 fn address(address: &Address) -> Value {
     Value::record()
-        .with("field", Value::index(address.field))
-        .with("type", Value::index(address.address_type))
+        .with("field", Value::id(address.field))
+        .with("type", Value::id(address.address_type))
         .with("excluded", ranges(&address.excluded))
 }
 

@@ -3,7 +3,7 @@
 use canspec_runtime::{ByteOrder, Place};
 
 use super::table::Value;
-use crate::model::{Encoding, NamedValue, Piece, Protocol, Range, Signal, StatusBit};
+use crate::model::{Encoding, NamedValue, PartId, Piece, Protocol, Range, Signal, StatusBit, Table};
 use crate::number::Rational;
 
 /// Raw values of more bits are no Lua numbers before 5.3.
@@ -53,13 +53,11 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
             scaled(kind("number").maybe("signed", signed.then(|| Value::flag(true))), *scale, *offset)
         }
         Encoding::Float => kind("float"),
-        Encoding::Named(index) => {
-            let values = &protocol.enumerations[*index].values;
+        Encoding::Named(id) => {
+            let values = &protocol[*id].values;
             kind("named").with("names", names(values, signal.place.width()))
         }
-        Encoding::Status(index) => {
-            kind("status").with("bits", Value::list(&protocol.status_words[*index].bits, status_bit))
-        }
+        Encoding::Status(id) => kind("status").with("bits", Value::list(&protocol[*id].bits, status_bit)),
         Encoding::Text => kind("text"),
         Encoding::Packed { pieces, parts } => {
             kind("packed").with("pieces", Value::list(pieces, |known| piece(known, parts)))
@@ -88,7 +86,7 @@ fn status_bit(bit: &StatusBit) -> Value {
         .maybe("title", bit.doc.title.as_deref().map(Value::text))
 }
 
-fn piece(piece: &Piece, parts: &[Signal]) -> Value {
+fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> Value {
     let (part, digits) = match piece {
         Piece::Literal(text) => return Value::record().with("literal", Value::text(text)),
         Piece::Part { part, digits } => (&parts[*part], digits),
@@ -103,7 +101,7 @@ fn piece(piece: &Piece, parts: &[Signal]) -> Value {
 /// Adds special values and limits.
 fn limits(record: Value, signal: &Signal) -> Value {
     let specials = (!signal.specials.is_empty()).then(|| names(&signal.specials, signal.place.width()));
-    let own = signal.model_ranges.iter().map(|own| (Value::index(own.model), range(signal, own.value)));
+    let own = signal.model_ranges.iter().map(|own| (Value::id(own.model), range(signal, own.value)));
     let own = (!signal.model_ranges.is_empty()).then(|| Value::map(own));
     record
         .maybe("specials", specials)

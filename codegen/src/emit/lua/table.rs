@@ -1,5 +1,7 @@
 //! Lua tables, laid out as people write them.
 
+use crate::model::Id;
+
 /// Columns of a line.
 const WIDTH: usize = 120;
 
@@ -71,9 +73,9 @@ impl Value {
         Self::Plain(format!("UInt64(0x{:08X}, 0x{:08X})", number & u64::from(u32::MAX), number >> 32))
     }
 
-    /// Writes a position in a list, which Lua counts from 1.
-    pub fn index(index: usize) -> Self {
-        Self::Plain((index + 1).to_string())
+    /// Writes the place of a row in the list of its table, which Lua counts from 1.
+    pub fn id(id: impl Id) -> Self {
+        Self::Plain((id.place() + 1).to_string())
     }
 
     /// Writes `true` or `false`.

@@ -8,7 +8,7 @@ use super::doc;
 use super::identifier::field_place;
 use super::literal::{decimal, hexadecimal};
 use super::names::{Names, ident};
-use crate::model::{Address, AddressPattern, AddressType, Doc, Mode, Protocol, Who};
+use crate::model::{Address, AddressPattern, AddressType, Answers, Doc, Id, Mode, ModeId, Protocol, Who};
 
 /// Emits the types of addresses and the modes.
 pub fn addressing(protocol: &Protocol) -> TokenStream {
@@ -56,7 +56,7 @@ fn mode_name(name: &str) -> Ident {
 }
 
 /// Writes who answers, mode by mode.
-pub fn answers_list(answers: &[Option<Who>]) -> TokenStream {
+pub fn answers_list(answers: &Answers) -> TokenStream {
     let answers = answers.iter().map(|who| match who {
         None => quote!(None),
         Some(Who::One) => quote!(Some(Who::One)),
@@ -70,8 +70,8 @@ pub fn answers_list(answers: &[Option<Who>]) -> TokenStream {
 fn mode(protocol: &Protocol, mode: &Mode) -> TokenStream {
     let (name, constant) = (&mode.name, mode_name(&mode.name));
     let comment = doc::item(protocol, &mode.doc, &doc::sentence_of(&doc::title(&mode.doc, name)), None);
-    let target = option(mode.target.map(|index| {
-        let name = address_name(&protocol.address_types[index].name);
+    let target = option(mode.target.map(|id| {
+        let name = address_name(&protocol[id].name);
         quote!(&#name)
     }));
     let [request, one, each, coordinator] = [&mode.request, &mode.one, &mode.each, &mode.coordinator]
@@ -105,7 +105,7 @@ fn pattern(protocol: &Protocol, pattern: &AddressPattern) -> TokenStream {
 
 fn address(protocol: &Protocol, address: &Address) -> TokenStream {
     let (place, width) = field_place(protocol, address.field);
-    let kind = &protocol.address_types[address.address_type];
+    let kind = &protocol[address.address_type];
     let name = address_name(&kind.name);
     let excluded = address.excluded.iter().map(|(first, last)| {
         let (first, last) = (hexadecimal(*first, width), hexadecimal(*last, width));
@@ -125,21 +125,19 @@ pub fn modes(protocol: &Protocol) -> TokenStream {
 struct Variant<'a> {
     name: &'a Ident,
     mode: &'a Mode,
-    index: usize,
+    id: ModeId,
     address: Option<&'a AddressType>,
 }
 
 /// Emits `Target`, unless nobody sends requests.
 pub fn target(protocol: &Protocol, names: &Names, derives: Derives) -> Option<TokenStream> {
     let optional = derives.variants();
-    let modes = protocol.modes.iter().zip(&names.targets).enumerate();
-    let modes = modes.filter(|(_, (mode, _))| mode.request.is_some());
-    let variants: Vec<_> = modes
-        .map(|(index, (mode, name))| {
-            let address = mode.target.map(|address| &protocol.address_types[address]);
-            Variant { name, mode, index, address }
-        })
-        .collect();
+    let modes = protocol.modes.entries().filter(|(_, mode)| mode.request.is_some());
+    let variants = modes.map(|(id, mode)| {
+        let address = mode.target.map(|address| &protocol[address]);
+        Variant { name: &names.targets[id], mode, id, address }
+    });
+    let variants: Vec<_> = variants.collect();
     let definitions = variants.iter().map(|variant| definition(protocol, variant));
     let sender = sender(protocol).map(sent_by);
     let destination = destination(&variants);
@@ -183,7 +181,7 @@ fn sender(protocol: &Protocol) -> Option<&AddressType> {
     let mut senders = requests.flat_map(|(mode, request)| {
         request.addresses.iter().filter(|address| Some(address.address_type) != mode.target)
     });
-    senders.next().map(|address| &protocol.address_types[address.address_type])
+    senders.next().map(|address| &protocol[address.address_type])
 }
 
 fn sent_by(sender: &AddressType) -> TokenStream {
@@ -204,7 +202,7 @@ fn sent_by(sender: &AddressType) -> TokenStream {
 
 fn destination(variants: &[Variant]) -> TokenStream {
     let modes = variants.iter().map(|variant| {
-        let (name, index) = (variant.name, proc_macro2::Literal::usize_unsuffixed(variant.index));
+        let (name, index) = (variant.name, proc_macro2::Literal::usize_unsuffixed(variant.id.place()));
         let number = variant.address.map(|_| quote!((_)));
         quote!(Self::#name #number => #index)
     });

@@ -8,7 +8,7 @@ use super::identifier::field_place;
 use super::literal::hexadecimal;
 use super::parts::parts;
 use super::rows::{Constants, agree};
-use crate::model::{Protocol, SelectorPlace};
+use crate::model::{Protocol, SelectorId, SelectorPlace};
 
 /// What is chosen where one of these sets of constants holds.
 pub struct Arm {
@@ -69,7 +69,7 @@ pub fn joined(arms: impl Iterator<Item = Arm>) -> Vec<Arm> {
     joined
 }
 
-fn written(protocol: &Protocol, columns: &[usize], Arm { sets, body }: &Arm) -> TokenStream {
+fn written(protocol: &Protocol, columns: &[SelectorId], Arm { sets, body }: &Arm) -> TokenStream {
     let patterns = match columns {
         [column] => ranges(protocol, *column, sets),
         _ => sets.iter().map(|constants| pattern(protocol, columns, constants)).collect(),
@@ -77,13 +77,13 @@ fn written(protocol: &Protocol, columns: &[usize], Arm { sets, body }: &Arm) -> 
     quote!(#(#patterns)|* => #body,)
 }
 
-fn pattern(protocol: &Protocol, columns: &[usize], constants: &Constants) -> TokenStream {
-    let fixed = |selector: &usize| Some(constant(protocol, *selector, *constants.get(selector)?));
+fn pattern(protocol: &Protocol, columns: &[SelectorId], constants: &Constants) -> TokenStream {
+    let fixed = |selector: &SelectorId| Some(constant(protocol, *selector, *constants.get(selector)?));
     tuple(columns.iter().map(|selector| fixed(selector).unwrap_or_else(|| quote!(_))).collect())
 }
 
 /// Writes values of one selector, and three or more in a row as a range.
-fn ranges(protocol: &Protocol, selector: usize, sets: &[Constants]) -> Vec<TokenStream> {
+fn ranges(protocol: &Protocol, selector: SelectorId, sets: &[Constants]) -> Vec<TokenStream> {
     let mut values: Vec<_> = sets.iter().filter_map(|constants| constants.get(&selector).copied()).collect();
     values.sort_unstable();
     let constant = |value| constant(protocol, selector, value);
@@ -102,23 +102,23 @@ fn tuple(mut parts: Vec<TokenStream>) -> TokenStream {
 }
 
 /// Returns the selectors that some arm looks at.
-fn columns(protocol: &Protocol, arms: &[Arm]) -> Vec<usize> {
+fn columns(protocol: &Protocol, arms: &[Arm]) -> Vec<SelectorId> {
     columns_of(protocol, arms.iter().flat_map(|arm| &arm.sets).flat_map(Constants::keys).copied())
 }
 
 /// Puts selectors in order: first the identifier, then the data.
-fn columns_of(protocol: &Protocol, selectors: impl Iterator<Item = usize>) -> Vec<usize> {
+fn columns_of(protocol: &Protocol, selectors: impl Iterator<Item = SelectorId>) -> Vec<SelectorId> {
     let mut columns: Vec<_> = selectors.collect();
-    columns.sort_unstable_by_key(|selector| match protocol.selectors[*selector].place {
-        SelectorPlace::Identifier(field) => (0, field),
-        SelectorPlace::Payload(_) => (1, *selector),
+    columns.sort_unstable_by_key(|selector| match protocol[*selector].place {
+        SelectorPlace::Identifier(field) => (None, Some(field)),
+        SelectorPlace::Payload(_) => (Some(*selector), None),
     });
     columns.dedup();
     columns
 }
 
-fn value(protocol: &Protocol, selector: usize) -> TokenStream {
-    match protocol.selectors[selector].place {
+fn value(protocol: &Protocol, selector: SelectorId) -> TokenStream {
+    match protocol[selector].place {
         SelectorPlace::Identifier(field) => {
             let (place, _) = field_place(protocol, field);
             quote!(Identifier::#place.of(id))
@@ -131,9 +131,9 @@ fn value(protocol: &Protocol, selector: usize) -> TokenStream {
 }
 
 /// Writes the value of a selector.
-pub fn constant(protocol: &Protocol, selector: usize, value: u64) -> TokenStream {
-    let width = match protocol.selectors[selector].place {
-        SelectorPlace::Identifier(field) => protocol.identifier.fields[field].width,
+pub fn constant(protocol: &Protocol, selector: SelectorId, value: u64) -> TokenStream {
+    let width = match protocol[selector].place {
+        SelectorPlace::Identifier(field) => protocol[field].width,
         SelectorPlace::Payload(place) => place.width(),
     };
     hexadecimal(value, width)

@@ -9,17 +9,17 @@ use super::choice::{Arm, choice, condition, joined, split};
 use super::names::{MessageNames, Names, ident};
 use super::parts::part_name;
 use super::rows::{Constants, implies, rows};
-use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape};
+use crate::model::{FrameLayout, Kind, Protocol};
 
 /// Emits how frames are recognised, and how long those should be that are not: each function with those in which it
 /// goes on.
 pub fn dispatch(protocol: &Protocol, names: &Names) -> [Vec<TokenStream>; 4] {
-    let messages = protocol.messages.iter().zip(&names.messages);
-    let frames = messages.flat_map(|(message, names)| {
-        let shapes = message.shapes.iter().zip(&names.variants);
-        shapes.map(move |(shape, variant)| Known { message, names, shape, variant })
+    let frames = protocol.frames.entries().map(|(id, layout)| Known {
+        names: &names.messages[layout.message],
+        layout,
+        variant: &names.variants[id],
     });
-    let (requests, replies): (Vec<_>, Vec<_>) = frames.partition(|known| known.shape.kind == Kind::Request);
+    let (requests, replies): (Vec<_>, Vec<_>) = frames.partition(|known| known.layout.kind == Kind::Request);
     let [requests, replies] = [requests, replies].map(|known| Direction { protocol, known });
     [
         requests.recognising("request"),
@@ -31,22 +31,27 @@ pub fn dispatch(protocol: &Protocol, names: &Names) -> [Vec<TokenStream>; 4] {
 
 /// A kind of frame of a message.
 struct Known<'a> {
-    message: &'a Message,
     names: &'a MessageNames,
-    shape: &'a Shape,
+    layout: &'a FrameLayout,
     variant: &'a Ident,
 }
 
 impl Known<'_> {
     fn constants(&self) -> Constants {
-        self.shape.constants.iter().copied().collect()
+        self.layout.constants.iter().map(|known| (known.selector, known.value)).collect()
+    }
+
+    fn in_identifier(&self) -> Constants {
+        let known = self.layout.constants.iter().filter(|known| known.in_identifier().is_some());
+        known.map(|known| (known.selector, known.value)).collect()
     }
 
     /// Takes the message out of the data.
     fn decoded(&self) -> TokenStream {
-        let Self { names, shape, variant, .. } = self;
-        let (home, exchange, kind) = (&names.structs[0].name, &names.exchanges[shape.access], ident(shape.kind.name()));
-        let carried = names.carried(shape).map(|_| quote!((Layout::decode(data))));
+        let Self { names, layout, variant } = self;
+        let (home, exchange) = (&names.structs[0].name, &names.exchanges[layout.exchange]);
+        let kind = ident(layout.kind.name());
+        let carried = names.carried(layout).map(|_| quote!((Layout::decode(data))));
         quote!(Recognised::#kind(&#home::#exchange, Self::#variant #carried))
     }
 }
@@ -118,9 +123,9 @@ impl Direction<'_> {
     /// Returns the lengths of frames by constants in the identifier, unless fewer constants say the same.
     fn measured(&self) -> Vec<(Constants, BTreeSet<u8>)> {
         let mut measured: Vec<(Constants, BTreeSet<u8>)> = Vec::new();
-        for row in rows(self.known.iter().map(|known| self.in_identifier(known))).into_iter().rev() {
-            let known = self.known.iter().filter(|known| implies(&row, &self.in_identifier(known)));
-            let lengths = known.map(|known| known.message.length).collect();
+        for row in rows(self.known.iter().map(Known::in_identifier)).into_iter().rev() {
+            let known = self.known.iter().filter(|known| implies(&row, &Known::in_identifier(known)));
+            let lengths = known.map(|known| known.layout.length).collect();
             let less = measured.iter().rfind(|(less, _)| implies(&row, less));
             if less.is_none_or(|(_, known)| *known != lengths) {
                 measured.push((row, lengths));
@@ -128,12 +133,6 @@ impl Direction<'_> {
         }
         measured.reverse();
         measured
-    }
-
-    fn in_identifier(&self, known: &Known) -> Constants {
-        let is_in_identifier =
-            |selector: usize| matches!(self.protocol.selectors[selector].place, SelectorPlace::Identifier(_));
-        known.shape.constants.iter().copied().filter(|(selector, _)| is_in_identifier(*selector)).collect()
     }
 }
 

@@ -18,10 +18,10 @@ pub fn entries(protocol: &Protocol, names: &Names) -> TokenStream {
 }
 
 fn entry(protocol: &Protocol, message: &Message, names: &MessageNames) -> TokenStream {
-    let (home, signals, exchanges) = (&names.structs[0].name, &names.constants, &names.exchanges);
+    let (home, signals, exchanges) = (&names.structs[0].name, names.constants.iter(), names.exchanges.iter());
     let title = message.doc.title.clone().unwrap_or_else(|| message.name.replace('_', " "));
-    let constants = message.constants.iter().map(|(index, value)| {
-        let (name, value) = (&protocol.selectors[*index].name, constant(protocol, *index, *value));
+    let constants = message.constants.iter().map(|known| {
+        let (name, value) = (&protocol[known.selector].name, constant(protocol, known.selector, known.value));
         quote!((#name, #value))
     });
     quote!(Entry::new(#title, &[#(#constants),*], &[#(&#home::#signals),*], &[#(&#home::#exchanges),*]))

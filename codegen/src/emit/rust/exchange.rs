@@ -11,15 +11,17 @@ use super::literal::decimal;
 use super::model::models_of;
 use super::names::{Names, ident};
 use super::set;
-use crate::model::{Kind, Message, Protocol, SelectorPlace, Shape, Who};
+use crate::model::{
+    AccessId, Answers, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId,
+    SelectorPlace, Who,
+};
 
 /// An access as messages share it.
 pub struct Shared {
     pub name: Ident,
-    /// Index into [`Protocol::accesses`].
-    access: usize,
-    /// Index into [`Protocol::messages`]: the set of which the messages are members.
-    set: Option<usize>,
+    access: AccessId,
+    /// The set of which the messages are members.
+    set: Option<MessageId>,
     frames: Vec<SharedFrame>,
 }
 
@@ -28,17 +30,17 @@ pub struct Shared {
 struct SharedFrame {
     kind: Kind,
     has_values: bool,
-    selectors: Vec<usize>,
-    constants: Vec<(usize, u64)>,
+    selectors: Vec<SelectorId>,
+    constants: Vec<Constant>,
 }
 
 impl SharedFrame {
-    fn new(message: &Message, shape: &Shape) -> Self {
+    fn new(message: &Message, frame: &FrameLayout) -> Self {
         Self {
-            kind: shape.kind,
-            has_values: shape.kind == Kind::Request && !shape.signals.is_empty(),
-            selectors: shape.selectors.clone(),
-            constants: shape.constants.iter().copied().filter(|known| !message.constants.contains(known)).collect(),
+            kind: frame.kind,
+            has_values: frame.kind == Kind::Request && !frame.signals.is_empty(),
+            selectors: frame.selectors.clone(),
+            constants: frame.constants.iter().copied().filter(|known| !message.constants.contains(known)).collect(),
         }
     }
 }
@@ -46,9 +48,9 @@ impl SharedFrame {
 /// Returns what messages share of each access; several ways to use one access are told apart by number.
 pub fn shared(protocol: &Protocol) -> Vec<Shared> {
     let mut known: Vec<Shared> = Vec::new();
-    for (access, of) in protocol.accesses.iter().enumerate() {
-        for (message, index, set) in protocol.messages.iter().flat_map(|message| ways(message, access)) {
-            let frames = frames(protocol, message, index);
+    for (access, of) in protocol.accesses.entries() {
+        for (message, id, set) in protocol.messages.iter().flat_map(|message| ways(message, access)) {
+            let frames = frames(protocol, message, id);
             let same: Vec<_> = known.iter().filter(|shared| shared.access == access && shared.set == set).collect();
             if same.iter().all(|shared| shared.frames != frames) {
                 let suffix = if same.is_empty() { String::new() } else { format!("_{}", same.len() + 1) };
@@ -60,21 +62,30 @@ pub fn shared(protocol: &Protocol) -> Vec<Shared> {
     known
 }
 
-/// Returns how a message travels by an access, alone and as a member of sets: index into [`Message::accesses`], and set.
-fn ways(message: &Message, access: usize) -> impl Iterator<Item = (&Message, usize, Option<usize>)> {
-    let known = message.accesses.iter().enumerate().filter(move |(_, known)| known.access == access);
-    known.map(move |(index, known)| (message, index, known.set))
+/// Returns how a message travels by an access, alone and as a member of sets.
+fn ways(message: &Message, access: AccessId) -> impl Iterator<Item = (&Message, ExchangeId, Option<MessageId>)> {
+    let known = message.exchanges.entries().filter(move |(_, exchange)| exchange.access == access);
+    known.map(move |(id, exchange)| (message, id, exchange.set))
 }
 
-fn frames(protocol: &Protocol, message: &Message, access: usize) -> Vec<SharedFrame> {
-    let shapes = message.shapes.iter().filter(|shape| shape.access == access);
-    let whole = set::reply(protocol, message);
-    shapes.chain(&whole).map(|shape| SharedFrame::new(message, shape)).collect()
+fn frames(protocol: &Protocol, message: &Message, exchange: ExchangeId) -> Vec<SharedFrame> {
+    let frames = protocol.frames_of(message).filter(|frame| frame.exchange == exchange);
+    let frames = frames.map(|frame| SharedFrame::new(message, frame));
+    frames.chain(whole(message)).collect()
+}
+
+/// Returns what every reply of a set shows, if the message is one.
+fn whole(message: &Message) -> Option<SharedFrame> {
+    let constants = message.set.as_ref()?.replies.clone();
+    let payload = constants.iter().filter(|constant| constant.in_payload().is_some());
+    let selectors = payload.map(|constant| constant.selector).collect();
+    let constants = constants.into_iter().filter(|known| !message.constants.contains(known)).collect();
+    Some(SharedFrame { kind: Kind::Reply, has_values: false, selectors, constants })
 }
 
 /// Returns the shared constant of a message's access.
-pub fn shared_name<'a>(protocol: &Protocol, names: &'a Names, message: &Message, access: usize) -> Option<&'a Ident> {
-    let (known, frames) = (&message.accesses[access], frames(protocol, message, access));
+pub fn shared_name<'a>(protocol: &Protocol, names: &'a Names, message: &Message, id: ExchangeId) -> Option<&'a Ident> {
+    let (known, frames) = (&message[id], frames(protocol, message, id));
     let is_its = |shared: &&Shared| (shared.access, shared.set) == (known.access, known.set) && shared.frames == frames;
     let shared = names.shared.iter().find(is_its);
     shared.map(|shared| &shared.name)
@@ -86,7 +97,7 @@ pub fn accesses(protocol: &Protocol, names: &Names) -> TokenStream {
 }
 
 fn access(protocol: &Protocol, names: &Names, Shared { name, access, set, frames }: &Shared) -> TokenStream {
-    let known = &protocol.accesses[*access];
+    let known = &protocol[*access];
     let membership = set::membership(protocol, *set);
     let sentence = doc::sentence_of(&format!("{}{membership}", doc::title(&known.doc, &known.name)));
     let member_of = set::member_of(protocol, *set);
@@ -106,9 +117,8 @@ fn access(protocol: &Protocol, names: &Names, Shared { name, access, set, frames
 /// Says by which constants one way to use an access differs from the others.
 fn shows(protocol: &Protocol, frames: &[SharedFrame]) -> String {
     let facts = frames.iter().flat_map(|frame| {
-        let facts = frame.constants.iter().map(|(selector, value)| {
-            let name = &protocol.selectors[*selector].name;
-            format!("In a {}, `{name}` is `{value:#X}`.", frame.kind.name())
+        let facts = frame.constants.iter().map(|Constant { selector, value, .. }| {
+            format!("In a {}, `{}` is `{value:#X}`.", frame.kind.name(), protocol[*selector].name)
         });
         facts.collect::<Vec<_>>()
     });
@@ -116,7 +126,7 @@ fn shows(protocol: &Protocol, frames: &[SharedFrame]) -> String {
 }
 
 /// Says in which modes a request can be sent, and who answers.
-pub fn modes(protocol: &Protocol, answers: &[Option<Who>]) -> String {
+pub fn modes(protocol: &Protocol, answers: &Answers) -> String {
     let modes = protocol.modes.iter().zip(answers).filter_map(|(mode, who)| {
         let who = match (*who)? {
             Who::One => "the module answers",
@@ -130,15 +140,15 @@ pub fn modes(protocol: &Protocol, answers: &[Option<Who>]) -> String {
 }
 
 /// Emits how a message travels by one of its accesses.
-pub fn exchange(protocol: &Protocol, names: &Names, message: &Message, name: &Ident, index: usize) -> TokenStream {
-    let access = &message.accesses[index];
-    let known = &protocol.accesses[access.access];
-    let (shared, text) = (shared_name(protocol, names, message, index), &message.name);
-    let (set, period) = (set::membership(protocol, access.set), period(protocol, message, access.access));
+pub fn exchange(protocol: &Protocol, names: &Names, message: &Message, name: &Ident, id: ExchangeId) -> TokenStream {
+    let exchange = &message[id];
+    let known = &protocol[exchange.access];
+    let (shared, text) = (shared_name(protocol, names, message, id), &message.name);
+    let (set, period) = (set::membership(protocol, exchange.set), period(protocol, message, exchange.access));
     let comment = doc::line(format!("How it travels by `{}`{set}.{period}", known.name));
     let own = filter(protocol, &[], &message.constants);
-    let answers = (access.answers != known.answers).then(|| {
-        let list = answers_list(&access.answers);
+    let answers = (exchange.answers != known.answers).then(|| {
+        let list = answers_list(&exchange.answers);
         quote!(.answers(&#list))
     });
     let length = (message.length != 8).then(|| {
@@ -146,17 +156,17 @@ pub fn exchange(protocol: &Protocol, names: &Names, message: &Message, name: &Id
         quote!(.length(#length))
     });
     let models = models_of(protocol, message);
-    let refusal = message.refusals.iter().find(|shape| shape.access == index).map(|shape| {
-        let filter = filter(protocol, &shape.selectors, &shape.constants);
+    let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id).map(|refusal| {
+        let filter = filter(protocol, &refusal.selectors, &refusal.constants);
         quote!(.refusal(&#filter))
     });
     quote!(#comment pub const #name: Exchange = #shared.of(#text, #own) #answers #length #models #refusal;)
 }
 
 /// Says how often a report comes.
-fn period(protocol: &Protocol, message: &Message, access: usize) -> String {
-    let every = message.every.or(protocol.accesses[access].every);
-    let timing = every.map(|index| &protocol.timing[index]);
+fn period(protocol: &Protocol, message: &Message, access: AccessId) -> String {
+    let every = message.every.or(protocol[access].every);
+    let timing = every.map(|id| &protocol[id]);
     timing.map_or_else(String::new, |timing| {
         let (first, last, unit) = (timing.range.minimum, timing.range.maximum, timing.unit.symbol);
         if first == last {
@@ -168,29 +178,30 @@ fn period(protocol: &Protocol, message: &Message, access: usize) -> String {
 }
 
 /// Emits a filter.
-fn filter(protocol: &Protocol, selectors: &[usize], constants: &[(usize, u64)]) -> TokenStream {
-    let constants = constants.iter().map(|(index, value)| {
-        let value = constant(protocol, *index, *value);
-        match protocol.selectors[*index].place {
+fn filter(protocol: &Protocol, selectors: &[SelectorId], constants: &[Constant]) -> TokenStream {
+    let constants = constants.iter().map(|known| {
+        let value = constant(protocol, known.selector, known.value);
+        match known.place {
             SelectorPlace::Identifier(field) => {
                 let (place, _) = field_place(protocol, field);
                 quote!(.id(Identifier::#place, #value))
             }
             SelectorPlace::Payload(_) => {
-                let selector = selector_name(protocol, *index);
+                let selector = selector_name(protocol, known.selector);
                 quote!(.data(#selector.place, #value))
             }
         }
     });
-    let names = selectors.iter().map(|index| selector_name(protocol, *index));
+    let names = selectors.iter().map(|id| selector_name(protocol, *id));
     let selectors = (!selectors.is_empty()).then(|| quote!(.selectors(&[#(#names),*])));
     quote!(FRAME #selectors #(#constants)*)
 }
 
 /// Returns the name of a payload selector's constant; two places under one name are told apart by number.
-pub fn selector_name(protocol: &Protocol, index: usize) -> Ident {
-    let name = &protocol.selectors[index].name;
-    let earlier = protocol.selectors[..index].iter().filter(|known| known.name == *name).count();
+pub fn selector_name(protocol: &Protocol, id: SelectorId) -> Ident {
+    let name = &protocol[id].name;
+    let earlier = protocol.selectors.entries().take_while(|(other, _)| *other < id);
+    let earlier = earlier.filter(|(_, known)| known.name == *name).count();
     let suffix = if earlier == 0 { String::new() } else { format!("_{}", earlier + 1) };
     ident(&format!("{}_SELECTOR{suffix}", name.to_ascii_uppercase()))
 }

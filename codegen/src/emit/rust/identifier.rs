@@ -8,7 +8,7 @@ use super::doc;
 use super::literal::hexadecimal;
 use super::names::{Names, ident, screaming};
 use super::word::integer;
-use crate::model::{Direction, FieldTest, Foreign, Identifier, IdentifierField, Protocol};
+use crate::model::{Direction, FieldId, FieldTest, Foreign, Identifier, IdentifierField, Protocol};
 
 /// Emits the struct of the identifier and its fields' places.
 pub fn identifier(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {
@@ -34,8 +34,8 @@ fn member(protocol: &Protocol, names: &Names, field: &IdentifierField) -> TokenS
     let sentence = doc::sentence_of(&format!("{title}: {}", bits(field)));
     let comment = doc::item(protocol, &field.doc, &sentence, None);
     let integer = integer(width, false);
-    let kind = field.enumeration.map_or(integer, |index| {
-        let name = &names.enumerations[index];
+    let kind = field.enumeration.map_or(integer, |id| {
+        let name = &names.enumerations[id];
         quote!(#name)
     });
     quote!(#comment pub #name: #kind)
@@ -109,7 +109,7 @@ fn foreign(protocol: &Protocol) -> Option<TokenStream> {
 fn foreign_test(protocol: &Protocol, foreign: &Foreign) -> TokenStream {
     let ranges = foreign.ranges.iter().map(|(field, first, last)| {
         let value = field.map_or_else(|| quote!(id), |field| value_of(protocol, field));
-        let width = field.map_or(29, |field| protocol.identifier.fields[field].width);
+        let width = field.map_or(29, |field| protocol[field].width);
         inside(&value, (*first, *last), width)
     });
     quote!(#(#ranges)&&*)
@@ -132,7 +132,7 @@ fn disjunction(mut conditions: Vec<TokenStream>) -> Option<TokenStream> {
 
 fn field_test(protocol: &Protocol, test: &FieldTest) -> TokenStream {
     let value = value_of(protocol, test.field);
-    let width = protocol.identifier.fields[test.field].width;
+    let width = protocol[test.field].width;
     let ranges = test.ranges.iter();
     match (test.inside, test.ranges.len()) {
         (false, _) => {
@@ -147,8 +147,8 @@ fn field_test(protocol: &Protocol, test: &FieldTest) -> TokenStream {
     }
 }
 
-fn value_of(protocol: &Protocol, field: usize) -> TokenStream {
-    let place = screaming(&protocol.identifier.fields[field].name);
+fn value_of(protocol: &Protocol, field: FieldId) -> TokenStream {
+    let place = screaming(&protocol[field].name);
     quote!(Self::#place.of(id))
 }
 
@@ -165,7 +165,7 @@ fn outside(value: &TokenStream, (first, last): (u32, u32), width: u8) -> TokenSt
 }
 
 /// Returns the path of a field's place.
-pub fn field_place(protocol: &Protocol, field: usize) -> (Ident, u8) {
-    let field = &protocol.identifier.fields[field];
+pub fn field_place(protocol: &Protocol, field: FieldId) -> (Ident, u8) {
+    let field = &protocol[field];
     (screaming(&field.name), field.width)
 }

@@ -13,7 +13,7 @@ use super::names::{MessageNames, Names, Struct};
 use super::place::Written;
 use super::word::{integer, text_type};
 use crate::emit::Float;
-use crate::model::{Encoding, Kind, Message, NamedValue, Protocol, SelectorPlace, Shape, Signal};
+use crate::model::{Encoding, FrameLayout, Kind, Message, NamedValue, Protocol, Signal, SignalId};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -52,17 +52,17 @@ impl Emitter<'_> {
     fn definition(&self, known: &Struct) -> TokenStream {
         let comment = doc::item(self.protocol, &self.message.doc, &self.sentence(), None);
         let name = &known.name;
-        let members = known.signals.iter().map(|index| self.member(*index));
-        let exact = known.signals.iter().all(|index| is_exact(&self.message.signals[*index]));
+        let members = known.signals.iter().map(|id| self.member(*id));
+        let exact = known.signals.iter().all(|id| is_exact(&self.message[*id]));
         let eq = exact.then(|| quote!(, Eq, Hash));
         let body = if known.signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
         let optional = self.derives.structure();
         quote!(#comment #[derive(Clone, Copy, Debug, PartialEq #eq)] #optional pub struct #name #body)
     }
 
-    fn member(&self, index: usize) -> TokenStream {
-        let signal = &self.message.signals[index];
-        let (name, kind) = (&self.names.fields[index], self.field_type(index));
+    fn member(&self, id: SignalId) -> TokenStream {
+        let signal = &self.message[id];
+        let (name, kind) = (&self.names.fields[id], self.field_type(id));
         let paragraphs =
             doc::paragraphs(self.protocol, &signal.doc, &Self::member_sentence(signal), Some(&self.message.doc));
         let comment = doc::comment(paragraphs.into_iter().chain(self.type_notes(signal)));
@@ -73,8 +73,8 @@ impl Emitter<'_> {
     /// Returns the notes of a signal's types, except of one that is a type in Rust too.
     fn type_notes(&self, signal: &Signal) -> impl Iterator<Item = String> {
         let in_rust = match &signal.encoding {
-            Encoding::Named(known) => Some(&self.protocol.enumerations[*known].doc.path),
-            Encoding::Status(known) => Some(&self.protocol.status_words[*known].doc.path),
+            Encoding::Named(known) => Some(&self.protocol[*known].doc.path),
+            Encoding::Status(known) => Some(&self.protocol[*known].doc.path),
             _ => None,
         };
         let paths = signal.types.iter().map(|name| Path::default().key("types").key(name));
@@ -93,12 +93,12 @@ impl Emitter<'_> {
         format!("{}{model}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
     }
 
-    fn field_type(&self, index: usize) -> TokenStream {
-        if is_scaled(&self.message.signals[index]) { physical_type(self.float) } else { self.raw_type(index) }
+    fn field_type(&self, id: SignalId) -> TokenStream {
+        if is_scaled(&self.message[id]) { physical_type(self.float) } else { self.raw_type(id) }
     }
 
-    fn raw_type(&self, index: usize) -> TokenStream {
-        let signal = &self.message.signals[index];
+    fn raw_type(&self, id: SignalId) -> TokenStream {
+        let signal = &self.message[id];
         let width = signal.place.width();
         let name = match &signal.encoding {
             Encoding::Number { signed, .. } => return integer(width, *signed),
@@ -106,7 +106,7 @@ impl Emitter<'_> {
             Encoding::Text => return text_type(width),
             Encoding::Named(known) => Some(&self.all.enumerations[*known]),
             Encoding::Status(known) => Some(&self.all.status_words[*known]),
-            Encoding::Packed { .. } => self.names.packed[index].as_ref(),
+            Encoding::Packed { .. } => self.names.packed[id].as_ref(),
         };
         quote!(#name)
     }
@@ -114,25 +114,29 @@ impl Emitter<'_> {
     fn constants(&self, index: usize, known: &Struct) -> TokenStream {
         let name = &known.name;
         let is_home = index == 0;
-        let signals = (0..self.message.signals.len()).filter(|_| is_home).map(|index| self.signal(index));
+        let signals = self.message.signals.ids().filter(|_| is_home).map(|id| self.signal(id));
         let reserved = self.reserved(known);
-        let exchanges = (0..self.message.accesses.len())
-            .filter(|_| is_home)
-            .map(|access| exchange(self.protocol, self.all, self.message, &self.names.exchanges[access], access));
-        let is_in_set = |shape: &Shape| self.message.accesses[shape.access].set.is_some();
-        let requests = self.message.shapes.iter().filter(|shape| shape.kind == Kind::Request && !is_in_set(shape));
-        let requests: Vec<_> = requests.filter(|shape| self.host(shape) == name).collect();
-        let within = requests.first().and_then(|shape| self.within(shape));
-        let methods = requests.iter().map(|shape| self.method(shape));
+        let exchanges = self.message.exchanges.ids().filter(|_| is_home);
+        let exchanges =
+            exchanges.map(|id| exchange(self.protocol, self.all, self.message, &self.names.exchanges[id], id));
+        let requests = self.requests().filter(|frame| frame.set.is_none() && self.host(frame) == name);
+        let requests: Vec<_> = requests.collect();
+        let within = requests.first().and_then(|frame| self.within(frame));
+        let methods = requests.iter().map(|frame| self.method(frame));
         quote!(impl #name { #(#signals)* #reserved #(#exchanges)* #within #(#methods)* })
     }
 
+    /// Returns the requests of the message.
+    pub fn requests(&self) -> impl Iterator<Item = &FrameLayout> {
+        self.protocol.frames_of(self.message).filter(|frame| frame.kind == Kind::Request)
+    }
+
     /// Emits the method that tests values against a device model, if anything depends on it.
-    fn within(&self, shape: &Shape) -> Option<TokenStream> {
-        let own = |index: &usize| !self.message.signals[*index].model_ranges.is_empty();
-        let depends = !self.message.models.is_empty() || shape.signals.iter().any(own);
-        let exchange = self.exchange_path(shape);
-        (depends && !shape.signals.is_empty()).then(|| {
+    fn within(&self, frame: &FrameLayout) -> Option<TokenStream> {
+        let own = |id: &SignalId| !self.message[*id].model_ranges.is_empty();
+        let depends = !self.message.models.is_empty() || frame.signals.iter().any(own);
+        let exchange = self.exchange_path(frame);
+        (depends && !frame.signals.is_empty()).then(|| {
             quote! {
                 /// Returns the values if a device model takes them.
                 ///
@@ -148,19 +152,19 @@ impl Emitter<'_> {
     }
 
     /// Returns the path to the exchange by which a kind of frame travels, from the struct that hosts its method.
-    fn exchange_path(&self, shape: &Shape) -> TokenStream {
-        let (exchange, home) = (&self.names.exchanges[shape.access], self.home());
-        if self.host(shape) == home { quote!(Self::#exchange) } else { quote!(#home::#exchange) }
+    fn exchange_path(&self, frame: &FrameLayout) -> TokenStream {
+        let (exchange, home) = (&self.names.exchanges[frame.exchange], self.home());
+        if self.host(frame) == home { quote!(Self::#exchange) } else { quote!(#home::#exchange) }
     }
 
     /// Returns the struct that has the method which builds a request.
-    fn host(&self, shape: &Shape) -> &Ident {
-        self.names.carried(shape).map_or_else(|| self.home(), |known| &known.name)
+    fn host(&self, frame: &FrameLayout) -> &Ident {
+        self.names.carried(frame).map_or_else(|| self.home(), |known| &known.name)
     }
 
-    fn signal(&self, index: usize) -> TokenStream {
-        let signal = &self.message.signals[index];
-        let (name, raw) = (&self.names.constants[index], self.raw_type(index));
+    fn signal(&self, id: SignalId) -> TokenStream {
+        let signal = &self.message[id];
+        let (name, raw) = (&self.names.constants[id], self.raw_type(id));
         let (text, place) = (&signal.name, Written::new(signal.place).expression());
         let comment = doc::line(format!("The signal `{text}`."));
         let refinements = [
@@ -171,16 +175,16 @@ impl Emitter<'_> {
             special_list(signal),
         ];
         let refinements = refinements.into_iter().flatten();
-        let values = signal.specials.iter().map(|special| self.special(index, special));
+        let values = signal.specials.iter().map(|special| self.special(id, special));
         let physical = (self.float == Float::F32).then(|| quote!(, f32));
         quote!(#comment pub const #name: Signal<#raw #physical> = Signal::new(#text, #place) #(#refinements)*; #(#values)*)
     }
 
     /// Emits the physical value that stands for a special raw value.
-    fn special(&self, index: usize, special: &NamedValue) -> TokenStream {
-        let signal = &self.message.signals[index];
-        let name = quote::format_ident!("{}_{}", self.names.constants[index], special.name.to_ascii_uppercase());
-        let kind = self.field_type(index);
+    fn special(&self, id: SignalId, special: &NamedValue) -> TokenStream {
+        let signal = &self.message[id];
+        let name = quote::format_ident!("{}_{}", self.names.constants[id], special.name.to_ascii_uppercase());
+        let kind = self.field_type(id);
         let comment = doc::line(format!("The value of `{}` that stands for `{}`.", signal.name, special.name));
         let value = match &signal.encoding {
             encoding if is_scaled(signal) => {
@@ -192,24 +196,25 @@ impl Emitter<'_> {
     }
 
     fn reserved(&self, known: &Struct) -> Option<TokenStream> {
-        let shape = self.message.shapes.iter().find(|shape| shape.signals == known.signals)?;
-        let reserved = data(reserved(self.protocol, self.message, shape));
+        let frame = self.protocol.frames_of(self.message).find(|frame| frame.signals == known.signals)?;
+        let reserved = data(reserved(frame));
         let comment = doc::line("The bits that the document reserves.");
         (!known.signals.is_empty()).then(|| quote!(#comment pub const RESERVED: Data = #reserved;))
     }
 
     /// Emits the method that builds a request.
-    pub fn method(&self, shape: &Shape) -> TokenStream {
-        let (method, exchange) = (&self.names.methods[shape.access], self.exchange_path(shape));
-        let reply = self.message.shapes.iter().find(|other| other.access == shape.access && other.kind == Kind::Reply);
+    pub fn method(&self, frame: &FrameLayout) -> TokenStream {
+        let (method, exchange) = (&self.names.methods[frame.exchange], self.exchange_path(frame));
+        let mut others = self.protocol.frames_of(self.message).filter(|other| other.exchange == frame.exchange);
+        let reply = others.find(|other| other.kind == Kind::Reply);
         let reply = reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name);
         let reply_type = match reply {
             None => quote!(()),
-            Some(name) if name == self.host(shape) => quote!(Self),
+            Some(name) if name == self.host(frame) => quote!(Self),
             Some(name) => quote!(#name),
         };
-        let carries = self.names.carried(shape).is_some();
-        let comment = doc::comment(self.method_comment(shape, carries));
+        let carries = self.names.carried(frame).is_some();
+        let comment = doc::comment(self.method_comment(frame, carries));
         let (receiver, content) = if carries { (Some(quote!(&self,)), quote!(self)) } else { (None, quote!(&())) };
         quote! {
             #comment
@@ -220,11 +225,11 @@ impl Emitter<'_> {
     }
 
     /// Describes a method; what holds for all messages stands at the access.
-    fn method_comment(&self, shape: &Shape, carries: bool) -> Vec<String> {
-        let own = &self.message.accesses[shape.access];
-        let access = &self.protocol.accesses[own.access];
+    fn method_comment(&self, frame: &FrameLayout, carries: bool) -> Vec<String> {
+        let own = &self.message[frame.exchange];
+        let access = &self.protocol[frame.access];
         let values = if carries { " with these values" } else { "" };
-        let shared = shared_name(self.protocol, self.all, self.message, shape.access);
+        let shared = shared_name(self.protocol, self.all, self.message, frame.exchange);
         let shared = shared.map_or_else(String::new, |shared| format!("({shared})"));
         let first = format!("Builds the request [`{}`]{shared}{values}.", access.name);
         let modes = (own.answers != access.answers).then(|| modes(self.protocol, &own.answers));
@@ -237,9 +242,9 @@ impl Emitter<'_> {
     fn layout(&self, known: &Struct) -> Option<TokenStream> {
         let (name, home) = (&known.name, self.home());
         let owner = if name == home { quote!(Self) } else { quote!(#home) };
-        let constants: Vec<_> = known.signals.iter().map(|index| &self.names.constants[*index]).collect();
-        let fields: Vec<_> = known.signals.iter().map(|index| &self.names.fields[*index]).collect();
-        let verbs = known.signals.iter().map(|index| is_scaled(&self.message.signals[*index]));
+        let constants: Vec<_> = known.signals.iter().map(|id| &self.names.constants[*id]).collect();
+        let fields: Vec<_> = known.signals.iter().map(|id| &self.names.fields[*id]).collect();
+        let verbs = known.signals.iter().map(|id| is_scaled(&self.message[*id]));
         let (get, put): (Vec<_>, Vec<_>) = verbs
             .map(|scaled| if scaled { (quote!(decode), quote!(encode)) } else { (quote!(get), quote!(put)) })
             .unzip();
@@ -333,13 +338,7 @@ fn specials(signal: &Signal) -> Option<String> {
 }
 
 /// Returns the bits of the data that neither signals nor selectors cover.
-fn reserved(protocol: &Protocol, message: &Message, shape: &Shape) -> Data {
-    let signals = shape.signals.iter().map(|index| message.signals[*index].place.mask());
-    let selectors = shape.selectors.iter().filter_map(|index| match protocol.selectors[*index].place {
-        SelectorPlace::Payload(place) => Some(place.mask()),
-        SelectorPlace::Identifier(_) => None,
-    });
-    let covered = signals.chain(selectors).fold(0, |covered, mask| covered | u64::from_be_bytes(mask));
-    let present = u64::MAX.checked_shl(64 - 8 * u32::from(message.length)).unwrap_or(0);
-    (!covered & present).to_be_bytes()
+fn reserved(frame: &FrameLayout) -> Data {
+    let present = u64::MAX.checked_shl(64 - 8 * u32::from(frame.length)).unwrap_or(0);
+    (!frame.covered & present).to_be_bytes()
 }

@@ -8,14 +8,13 @@ use super::doc;
 use super::literal::{physical, physical_type};
 use super::names::{Names, model_variants};
 use crate::emit::Float;
-use crate::model::{Message, Protocol, Range, Signal};
+use crate::model::{Message, ModelId, Protocol, Range, Signal, Table};
 use crate::syntax::tree::Step;
 
 /// Limits by device model, which signals share.
 pub struct Limits {
     pub name: Ident,
-    /// Index into [`Protocol::models`], and its limits.
-    ranges: Vec<(usize, Range)>,
+    ranges: Vec<(ModelId, Range)>,
     of: String,
 }
 
@@ -37,7 +36,7 @@ pub fn limits(protocol: &Protocol) -> Vec<Limits> {
     known
 }
 
-fn ranges(signal: &Signal) -> Vec<(usize, Range)> {
+fn ranges(signal: &Signal) -> Vec<(ModelId, Range)> {
     signal.model_ranges.iter().map(|own| (own.model, own.value)).collect()
 }
 
@@ -62,22 +61,23 @@ pub fn models(protocol: &Protocol, names: &Names, derives: Derives, float: Float
     let texts = protocol.models.iter().map(|model| &model.name);
     let count = proc_macro2::Literal::usize_unsuffixed(variants.len());
     let tables = names.limits.iter().map(|limits| table(limits, &variants, float));
+    let all: Vec<_> = variants.iter().collect();
     (!variants.is_empty()).then(|| {
         quote! {
             /// A device model.
             #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
             #[repr(u8)]
             #optional
-            pub enum Model { #(#comments #serialized #variants),* }
+            pub enum Model { #(#comments #serialized #all),* }
 
             impl Model {
                 /// Every device model.
-                pub const ALL: [Self; #count] = [#(Self::#variants),*];
+                pub const ALL: [Self; #count] = [#(Self::#all),*];
 
                 /// Returns the vendor's name.
                 #[must_use]
                 pub const fn name(self) -> &'static str {
-                    match self { #(Self::#variants => #texts),* }
+                    match self { #(Self::#all => #texts),* }
                 }
             }
 
@@ -92,7 +92,7 @@ pub fn models(protocol: &Protocol, names: &Names, derives: Derives, float: Float
     })
 }
 
-fn table(limits: &Limits, variants: &[Ident], float: Float) -> TokenStream {
+fn table(limits: &Limits, variants: &Table<ModelId, Ident>, float: Float) -> TokenStream {
     let name = &limits.name;
     let comment = doc::line(format!("Limits of `{}` by device model.", limits.of));
     let rows = limits.ranges.iter().map(|(model, range)| {

@@ -5,7 +5,10 @@ use proc_macro2::{Ident, Span};
 use super::exchange::{Shared, shared};
 use super::model::{Limits, limits};
 use super::set::exchange_name;
-use crate::model::{Encoding, Kind, Message, Protocol, Shape, Signal};
+use crate::model::{
+    Encoding, EnumerationId, ExchangeId, FrameId, FrameLayout, Kind, Message, MessageId, ModeId, ModelId, Protocol,
+    Signal, SignalId, StatusWordId, Table,
+};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
 const TAKEN: [&str; 79] = [
@@ -162,7 +165,7 @@ pub fn variants<'a>(names: impl Iterator<Item = &'a str>) -> (Vec<Ident>, Ident)
 }
 
 /// Names a variant for each device model: `SM_750_30A` becomes `Sm750_30a`.
-pub fn model_variants(protocol: &Protocol) -> Vec<Ident> {
+pub fn model_variants(protocol: &Protocol) -> Table<ModelId, Ident> {
     let mut variants = Pool::default();
     protocol.models.iter().map(|model| variants.take(model_variant(&model.name), "_")).collect()
 }
@@ -185,11 +188,13 @@ pub fn screaming(name: &str) -> Ident {
 
 /// The names of a protocol's items.
 pub struct Names {
-    pub enumerations: Vec<Ident>,
-    pub status_words: Vec<Ident>,
-    pub messages: Vec<MessageNames>,
-    /// Variants of `Target`, by mode.
-    pub targets: Vec<Ident>,
+    pub enumerations: Table<EnumerationId, Ident>,
+    pub status_words: Table<StatusWordId, Ident>,
+    pub messages: Table<MessageId, MessageNames>,
+    /// Variants of `Message`.
+    pub variants: Table<FrameId, Ident>,
+    /// Variants of `Target`.
+    pub targets: Table<ModeId, Ident>,
     /// Limits by device model.
     pub limits: Vec<Limits>,
     /// What messages share of each access.
@@ -201,49 +206,49 @@ pub struct MessageNames {
     /// The structs: one for each set of signals that some frame carries; the first one is the message's own.
     pub structs: Vec<Struct>,
     /// Constants of the signals.
-    pub constants: Vec<Ident>,
+    pub constants: Table<SignalId, Ident>,
     /// Fields of the signals.
-    pub fields: Vec<Ident>,
-    /// Types of the packed values, by signal.
-    pub packed: Vec<Option<Ident>>,
+    pub fields: Table<SignalId, Ident>,
+    /// Types of the packed values.
+    pub packed: Table<SignalId, Option<Ident>>,
     /// Constants of the exchanges.
-    pub exchanges: Vec<Ident>,
-    /// Methods that build requests, by access.
-    pub methods: Vec<Ident>,
-    /// Variants of `Message`, by shape.
-    pub variants: Vec<Ident>,
+    pub exchanges: Table<ExchangeId, Ident>,
+    /// Methods that build requests.
+    pub methods: Table<ExchangeId, Ident>,
 }
 
 /// A struct and the signals it has.
 pub struct Struct {
     pub name: Ident,
-    /// Indices into [`Message::signals`].
-    pub signals: Vec<usize>,
+    pub signals: Vec<SignalId>,
 }
 
 impl MessageNames {
     /// Returns the struct that a kind of frame carries.
-    pub fn carried(&self, shape: &Shape) -> Option<&Struct> {
-        self.structs.iter().find(|known| known.signals == shape.signals).filter(|known| !known.signals.is_empty())
+    pub fn carried(&self, frame: &FrameLayout) -> Option<&Struct> {
+        self.structs.iter().find(|known| known.signals == frame.signals).filter(|known| !known.signals.is_empty())
     }
 }
 
 impl Names {
     pub fn new(protocol: &Protocol) -> Self {
         let mut types = Pool::new(&TAKEN);
-        let structs: Vec<_> = protocol.messages.iter().map(|message| structs(message, &mut types)).collect();
+        let structs: Vec<_> = protocol.messages.iter().map(|message| structs(protocol, message, &mut types)).collect();
         let mut named = |name: &str, suffix| types.take(camel_case(name), suffix);
         let enumerations = protocol.enumerations.iter().map(|known| named(&known.name, "Value")).collect();
         let status_words = protocol.status_words.iter().map(|word| named(&word.name, "Word")).collect();
         let mut variants = Pool::default();
         variants.taken.extend(structs.iter().flatten().map(|known| known.name.to_string()));
         let messages = protocol.messages.iter().zip(structs);
-        let messages =
-            messages.map(|(message, structs)| message_names(protocol, message, structs, &mut types, &mut variants));
+        let messages = messages.map(|(message, structs)| message_names(protocol, message, structs, &mut types));
+        let messages: Table<MessageId, MessageNames> = messages.collect();
+        let frames = protocol.frames.iter();
+        let variants = frames.map(|frame| variant(protocol, &messages[frame.message], frame, &mut variants)).collect();
         Self {
             enumerations,
             status_words,
-            messages: messages.collect(),
+            messages,
+            variants,
             targets: targets(protocol),
             limits: limits(protocol),
             shared: shared(protocol),
@@ -252,42 +257,34 @@ impl Names {
 }
 
 /// Names a struct for each set of signals, the largest first; a message without signals has an empty struct.
-fn structs(message: &Message, types: &mut Pool) -> Vec<Struct> {
-    let mut sets: Vec<&Shape> = Vec::new();
-    for shape in &message.shapes {
-        if !shape.signals.is_empty() && !sets.iter().any(|known| known.signals == shape.signals) {
-            sets.push(shape);
+fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Struct> {
+    let mut sets: Vec<&FrameLayout> = Vec::new();
+    for frame in protocol.frames_of(message) {
+        if !frame.signals.is_empty() && !sets.iter().any(|known| known.signals == frame.signals) {
+            sets.push(frame);
         }
     }
-    sets.sort_by_key(|shape| std::cmp::Reverse(shape.signals.len()));
-    let first = sets.first().map(|shape| shape.signals.clone()).unwrap_or_default();
+    sets.sort_by_key(|frame| std::cmp::Reverse(frame.signals.len()));
+    let first = sets.first().map(|frame| frame.signals.clone()).unwrap_or_default();
     let own = Struct { name: types.take(camel_case(&message.name), "Message"), signals: first };
-    let others = sets.iter().skip(1).map(|shape| {
-        let name = format!("{}{}", camel_case(&message.name), camel_case(shape.kind.name()));
-        Struct { name: types.take(name, "Message"), signals: shape.signals.clone() }
+    let others = sets.iter().skip(1).map(|frame| {
+        let name = format!("{}{}", camel_case(&message.name), camel_case(frame.kind.name()));
+        Struct { name: types.take(name, "Message"), signals: frame.signals.clone() }
     });
     std::iter::once(own).chain(others).collect()
 }
 
-fn message_names(
-    protocol: &Protocol,
-    message: &Message,
-    structs: Vec<Struct>,
-    types: &mut Pool,
-    variants: &mut Pool,
-) -> MessageNames {
+fn message_names(protocol: &Protocol, message: &Message, structs: Vec<Struct>, types: &mut Pool) -> MessageNames {
     let (mut members, mut fields) = (Pool::new(&OF_MESSAGES), Pool::default());
     let constants =
         message.signals.iter().map(|signal| members.take(signal.name.to_ascii_uppercase(), "_SIGNAL")).collect();
     let fields = message.signals.iter().map(|signal| fields.take(member(signal), "_")).collect();
     let packed = message.signals.iter().map(|signal| packed(message, signal, types)).collect();
-    let accesses = message.accesses.iter();
-    let accesses = accesses.map(|access| exchange_name(protocol, &protocol.accesses[access.access].name, access.set));
-    let exchanges = accesses.clone().map(|access| members.take(access.to_ascii_uppercase(), "_EXCHANGE")).collect();
-    let methods = accesses.map(|access| members.take(access, "_request")).collect();
-    let mut names = MessageNames { structs, constants, fields, packed, exchanges, methods, variants: Vec::new() };
-    names.variants = message.shapes.iter().map(|shape| variant(protocol, message, &names, shape, variants)).collect();
-    names
+    let ways = message.exchanges.iter();
+    let ways = ways.map(|exchange| exchange_name(protocol, &protocol[exchange.access].name, exchange.set));
+    let exchanges = ways.clone().map(|way| members.take(way.to_ascii_uppercase(), "_EXCHANGE")).collect();
+    let methods = ways.map(|way| members.take(way, "_request")).collect();
+    MessageNames { structs, constants, fields, packed, exchanges, methods }
 }
 
 /// Names the member of a signal: with the unit behind it, if there is one.
@@ -301,25 +298,20 @@ fn packed(message: &Message, signal: &Signal, types: &mut Pool) -> Option<Ident>
 }
 
 /// Names a variant after the struct it carries, else after the frame.
-fn variant(protocol: &Protocol, message: &Message, names: &MessageNames, shape: &Shape, variants: &mut Pool) -> Ident {
-    if let Some(carried) = names.carried(shape) {
+fn variant(protocol: &Protocol, names: &MessageNames, frame: &FrameLayout, variants: &mut Pool) -> Ident {
+    if let Some(carried) = names.carried(frame) {
         return carried.name.clone();
     }
-    let access = camel_case(&protocol.accesses[message.accesses[shape.access].access].name);
-    let message = camel_case(&message.name);
-    let name = match shape.kind {
+    let access = camel_case(&protocol[frame.access].name);
+    let message = camel_case(&protocol[frame.message].name);
+    let name = match frame.kind {
         Kind::Request => format!("{access}{message}"),
         kind => format!("{message}{access}{}", camel_case(kind.name())),
     };
     variants.take(name, "Frame")
 }
 
-fn targets(protocol: &Protocol) -> Vec<Ident> {
+fn targets(protocol: &Protocol) -> Table<ModeId, Ident> {
     let mut variants = Pool::default();
-    let alone = |index: &usize| protocol.modes.iter().filter(|other| other.target == Some(*index)).count() == 1;
-    let names = protocol.modes.iter().map(|mode| {
-        let address = mode.target.filter(alone).map(|index| &protocol.address_types[index].name);
-        variants.take(camel_case(address.unwrap_or(&mode.name)), "Mode")
-    });
-    names.collect()
+    protocol.modes.map(|mode| variants.take(camel_case(protocol.target_name(mode)), "Mode"))
 }

@@ -12,10 +12,10 @@ use super::exchange::selector_name;
 use super::identifier::unnamed;
 use super::literal::hexadecimal;
 use super::message::is_exact;
-use super::names::{MessageNames, Names, screaming};
+use super::names::{Names, screaming};
 use super::parts::{part_name, parts};
 use super::place::Written;
-use crate::model::{Message, Protocol, SelectorPlace, Shape};
+use crate::model::{FrameLayout, Protocol, SelectorId, SelectorPlace};
 
 /// Emits what every frame shows, and the selectors in the data.
 pub fn frame(protocol: &Protocol) -> TokenStream {
@@ -31,11 +31,10 @@ pub fn frame(protocol: &Protocol) -> TokenStream {
         Some(quote!(.id(Identifier::#place, #value)))
     });
     let sent = fields.iter().filter_map(|field| {
-        let sent = field.send.or(field.normal).filter(|value| *value != 0 && field.constant.is_none())?;
-        let (place, value) = (screaming(&field.name), hexadecimal(sent, field.width));
-        Some(quote!(.send_id(Identifier::#place, #value)))
+        let (place, value) = (screaming(&field.name), hexadecimal(field.sent(), field.width));
+        (field.constant.is_none() && field.sent() != 0).then(|| quote!(.send_id(Identifier::#place, #value)))
     });
-    let selectors = used_selectors(protocol).map(|index| selector(protocol, index));
+    let selectors = used_selectors(protocol).map(|id| selector(protocol, id));
     quote! {
         /// What every frame shows.
         const FRAME: Filter = Filter::#width #fixed #(#constants)* #(#sent)*;
@@ -44,15 +43,15 @@ pub fn frame(protocol: &Protocol) -> TokenStream {
 }
 
 /// Returns the selectors in the data that some frame has.
-fn used_selectors(protocol: &Protocol) -> impl Iterator<Item = usize> {
-    let shapes = || protocol.messages.iter().flat_map(|message| &message.shapes);
-    (0..protocol.selectors.len()).filter(move |index| shapes().any(|shape| shape.selectors.contains(index)))
+fn used_selectors(protocol: &Protocol) -> impl Iterator<Item = SelectorId> {
+    let is_used = |id: &SelectorId| protocol.frames.iter().any(|frame| frame.selectors.contains(id));
+    protocol.selectors.ids().filter(is_used)
 }
 
-fn selector(protocol: &Protocol, index: usize) -> Option<TokenStream> {
-    let known = &protocol.selectors[index];
+fn selector(protocol: &Protocol, id: SelectorId) -> Option<TokenStream> {
+    let known = &protocol[id];
     let SelectorPlace::Payload(place) = known.place else { return None };
-    let (constant, name) = (selector_name(protocol, index), &known.name);
+    let (constant, name) = (selector_name(protocol, id), &known.name);
     let written = Written::new(place);
     let title = doc::title(&known.doc, name);
     let comment = doc::item(protocol, &known.doc, &doc::sentence_of(&format!("{title}: {}", written.text())), None);
@@ -132,15 +131,10 @@ struct Variants<'a> {
 impl<'a> Variants<'a> {
     fn new(protocol: &Protocol, names: &'a Names) -> Self {
         let mut list: Vec<(&Ident, String, Option<&Ident>)> = Vec::new();
-        for (message, known) in protocol.messages.iter().zip(&names.messages) {
-            for (shape, variant) in message.shapes.iter().zip(&known.variants) {
-                if !list.iter().any(|(name, ..)| *name == variant) {
-                    list.push((
-                        variant,
-                        comment(protocol, message, known, shape),
-                        known.carried(shape).map(|known| &known.name),
-                    ));
-                }
+        for (frame, variant) in protocol.frames.iter().zip(&names.variants) {
+            if !list.iter().any(|(name, ..)| *name == variant) {
+                let carried = names.messages[frame.message].carried(frame).map(|known| &known.name);
+                list.push((variant, comment(protocol, frame, carried.is_some()), carried));
             }
         }
         let mut signals = protocol.messages.iter().flat_map(|message| &message.signals);
@@ -202,12 +196,12 @@ fn layout(index: usize, body: &TokenStream) -> TokenStream {
     quote!(fn #name(&self) -> &dyn Layout { #body })
 }
 
-fn comment(protocol: &Protocol, message: &Message, names: &MessageNames, shape: &Shape) -> String {
-    let access = &protocol.accesses[message.accesses[shape.access].access].name;
-    match names.carried(shape) {
-        Some(_) => doc::sentence_of(&doc::title(&message.doc, &message.name)),
-        None => format!("The {} of `{}` by `{access}`.", shape.kind.name(), message.name),
+fn comment(protocol: &Protocol, frame: &FrameLayout, carries: bool) -> String {
+    let message = &protocol[frame.message];
+    if carries {
+        return doc::sentence_of(&doc::title(&message.doc, &message.name));
     }
+    format!("The {} of `{}` by `{}`.", frame.kind.name(), message.name, protocol[frame.access].name)
 }
 
 fn implementation<'a>(protocol: &Protocol, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {

@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Selectors (indices into [`crate::model::Protocol::selectors`]) and the values they must have.
-pub type Constants = BTreeMap<usize, u64>;
+use crate::model::SelectorId;
+
+/// Selectors and the values they must have.
+pub type Constants = BTreeMap<SelectorId, u64>;
 
 /// Returns every set of constants once, and every union of such sets that a frame can show at the same time; a larger
 /// set comes before the sets it contains, so that the first one that fits a frame is all that the frame shows.
@@ -37,9 +39,10 @@ fn union(set: &Constants, other: &Constants) -> Option<Constants> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Id;
 
     fn set<const N: usize>(constants: [(usize, u64); N]) -> Constants {
-        Constants::from(constants)
+        constants.into_iter().map(|(selector, value)| (SelectorId::new(selector), value)).collect()
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::exchange::{exchange, modes, selector_name, shared_name};
 use super::identifier::field_place;
 use super::literal::hexadecimal;
 use super::message::{Emitter, is_exact};
-use crate::model::{Kind, Message, Protocol, SelectorPlace, Set, Shape};
+use crate::model::{FrameId, Kind, Message, MessageId, Protocol, SelectorPlace, Set};
 
 /// Emits the field that says whether more frames follow, if there are sets.
 pub fn continuation(protocol: &Protocol) -> Option<TokenStream> {
@@ -22,8 +22,8 @@ pub fn continuation(protocol: &Protocol) -> Option<TokenStream> {
             quote!(Continuation::identifier(Identifier::#place, #raw))
         }
         SelectorPlace::Payload(place) => {
-            let index = protocol.selectors.iter().position(|selector| selector.place == continuation.place)?;
-            let (selector, raw) = (selector_name(protocol, index), hexadecimal(continuation.raw, place.width()));
+            let id = protocol.selectors.position(|selector| selector.place == continuation.place)?;
+            let (selector, raw) = (selector_name(protocol, id), hexadecimal(continuation.raw, place.width()));
             quote!(Continuation::data(#selector.place, #raw))
         }
     };
@@ -45,19 +45,15 @@ struct Member<'a> {
     /// Member of the struct.
     field: Ident,
     message: &'a Message,
-    /// Index into [`Protocol::messages`].
-    index: usize,
-    /// Index into [`Message::accesses`].
-    access: usize,
-    /// Index into [`Message::shapes`].
-    reply: usize,
+    id: MessageId,
+    reply: FrameId,
 }
 
 impl<'a> SetEmitter<'a> {
     /// Returns the emitter of a message that is a set.
     pub fn new(message: &'a Emitter<'a>) -> Option<Self> {
         let set = message.message.set.as_ref()?;
-        let members = set.members.iter().filter_map(|index| Member::new(message, *index)).collect();
+        let members = set.members.iter().filter_map(|id| Member::new(message, *id)).collect();
         Some(Self { message, set, members })
     }
 
@@ -91,18 +87,17 @@ impl<'a> SetEmitter<'a> {
 
     /// Returns the struct that a member's reply carries.
     fn struct_of(&self, member: &Member) -> &Ident {
-        let names = &self.message.all.messages[member.index];
-        let carried = names.carried(&member.message.shapes[member.reply]);
+        let names = &self.message.all.messages[member.id];
+        let carried = names.carried(&self.message.protocol[member.reply]);
         &carried.unwrap_or(&names.structs[0]).name
     }
 
     fn implementation(&self) -> TokenStream {
         let name = self.name();
         let Emitter { protocol, all, names, message, .. } = self.message;
-        let exchanges = names.exchanges.iter().enumerate();
-        let exchanges = exchanges.map(|(access, name)| exchange(protocol, all, message, name, access));
-        let own = message.shapes.iter().filter(|shape| shape.kind == Kind::Request);
-        let own = own.map(|shape| self.message.method(shape));
+        let exchanges = names.exchanges.entries();
+        let exchanges = exchanges.map(|(id, name)| exchange(protocol, all, message, name, id));
+        let own = self.message.requests().map(|frame| self.message.method(frame));
         let split = self.set.kinds.contains(&Kind::Request).then(|| self.requests());
         quote!(impl #name { #(#exchanges)* #(#own)* #split })
     }
@@ -110,10 +105,10 @@ impl<'a> SetEmitter<'a> {
     /// Emits the method that builds a request for each member.
     fn requests(&self) -> Option<TokenStream> {
         let Emitter { protocol, message, names, all, .. } = self.message;
-        let own = message.accesses.first()?;
-        let access = &protocol.accesses[own.access];
-        let method = names.methods.first()?;
-        let shared = shared_name(protocol, all, message, 0)?;
+        let (id, own) = message.exchanges.entries().next()?;
+        let access = &protocol[own.access];
+        let method = &names.methods[id];
+        let shared = shared_name(protocol, all, message, id)?;
         let first = format!(
             "Builds the requests [`{}`]({shared}), one for each member in the order in which they are sent.",
             access.name
@@ -124,8 +119,9 @@ impl<'a> SetEmitter<'a> {
         let comment = doc::comment(paragraphs);
         let count = Literal::usize_unsuffixed(self.members.len());
         let requests = self.members.iter().enumerate().map(|(position, member)| {
-            let names = &all.messages[member.index];
-            let (home, exchange) = (&names.structs[0].name, &names.exchanges[member.access]);
+            let names = &all.messages[member.id];
+            let exchange = &names.exchanges[protocol[member.reply].exchange];
+            let home = &names.structs[0].name;
             let followed = (position + 1 < self.members.len()).then(|| quote!(.followed(&CONTINUATION)));
             quote!(#home::#exchange.request_to(route, &())? #followed)
         });
@@ -142,7 +138,7 @@ impl<'a> SetEmitter<'a> {
     fn assembly(&self) -> Option<TokenStream> {
         let Emitter { protocol, message, names, .. } = self.message;
         let (name, exchange) = (self.name(), names.exchanges.first()?);
-        let node = address_name(&protocol.address_types[protocol.answering(message.accesses.first()?)?].name);
+        let node = address_name(&protocol[protocol.answering(message.exchanges.first()?)?].name);
         let texts = self.members.iter().map(|member| &member.message.name);
         let variants: Vec<_> = self.members.iter().map(|member| self.variant(member)).collect();
         let fields: Vec<_> = self.members.iter().map(|member| &member.field).collect();
@@ -172,17 +168,15 @@ impl<'a> SetEmitter<'a> {
     }
 
     fn variant(&self, member: &Member) -> &Ident {
-        &self.message.all.messages[member.index].variants[member.reply]
+        &self.message.all.variants[member.reply]
     }
 
     /// Returns the pattern of what frames can carry beside the members: none, the only one, or `_`.
     fn other_variants(&self) -> Option<TokenStream> {
         let members: Vec<_> = self.members.iter().map(|member| self.variant(member)).collect();
-        let messages = self.message.protocol.messages.iter().zip(&self.message.all.messages);
-        let all = messages.flat_map(|(message, names)| {
-            let shapes = message.shapes.iter().zip(&names.variants);
-            shapes.map(move |(shape, variant)| (variant, names.carried(shape).is_some()))
-        });
+        let Emitter { protocol, all: names, .. } = self.message;
+        let frames = protocol.frames.iter().zip(&names.variants);
+        let all = frames.map(|(frame, variant)| (variant, names.messages[frame.message].carried(frame).is_some()));
         let mut others: Vec<_> = all.filter(|(variant, _)| !members.contains(variant)).collect();
         others.dedup();
         match others.as_slice() {
@@ -195,36 +189,29 @@ impl<'a> SetEmitter<'a> {
 }
 
 impl<'a> Member<'a> {
-    fn new(set: &Emitter<'a>, index: usize) -> Option<Self> {
-        let message = set.protocol.messages.get(index)?;
-        let whole = set.protocol.messages.iter().position(|known| known.name == set.message.name);
-        let access = message.accesses.iter().position(|access| access.set.is_some() && access.set == whole)?;
-        let is_reply = |shape: &Shape| shape.access == access && shape.kind == Kind::Reply;
-        let reply = message.shapes.iter().position(is_reply)?;
-        Some(Self { field: super::names::ident(&message.name), message, index, access, reply })
+    fn new(set: &Emitter<'a>, id: MessageId) -> Option<Self> {
+        let message = &set.protocol[id];
+        let is_whole = |whole: MessageId| set.protocol[whole].name == set.message.name;
+        let is_reply = |frame: &&FrameId| {
+            set.protocol[**frame].kind == Kind::Reply && set.protocol[**frame].set.is_some_and(is_whole)
+        };
+        let reply = *message.frames.iter().find(is_reply)?;
+        Some(Self { field: super::names::ident(&message.name), message, id, reply })
     }
 }
 
-/// Returns what every reply of a set shows, if the message is one.
-pub fn reply(protocol: &Protocol, message: &Message) -> Option<Shape> {
-    let constants = message.set.as_ref()?.replies.clone();
-    let is_in_data = |index: &usize| matches!(protocol.selectors[*index].place, SelectorPlace::Payload(_));
-    let selectors = constants.iter().map(|(index, _)| *index).filter(is_in_data).collect();
-    Some(Shape { access: 0, kind: Kind::Reply, constants, selectors, signals: Vec::new() })
-}
-
 /// Emits of which set a message is a member when it travels by an access.
-pub fn member_of(protocol: &Protocol, set: Option<usize>) -> Option<TokenStream> {
-    let name = &protocol.messages[set?].name;
+pub fn member_of(protocol: &Protocol, set: Option<MessageId>) -> Option<TokenStream> {
+    let name = &protocol[set?].name;
     Some(quote!(.member_of(#name)))
 }
 
 /// Names the exchange or the method of a member of a set.
-pub fn exchange_name(protocol: &Protocol, access: &str, set: Option<usize>) -> String {
-    set.map_or_else(|| access.to_owned(), |set| format!("{access}_{}", protocol.messages[set].name))
+pub fn exchange_name(protocol: &Protocol, access: &str, set: Option<MessageId>) -> String {
+    set.map_or_else(|| access.to_owned(), |set| format!("{access}_{}", protocol[set].name))
 }
 
 /// Says as a member of which set a message travels.
-pub fn membership(protocol: &Protocol, set: Option<usize>) -> String {
-    set.map_or_else(String::new, |set| format!(" in the set `{}`", protocol.messages[set].name))
+pub fn membership(protocol: &Protocol, set: Option<MessageId>) -> String {
+    set.map_or_else(String::new, |set| format!(" in the set `{}`", protocol[set].name))
 }

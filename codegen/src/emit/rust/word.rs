@@ -8,7 +8,9 @@ use super::doc;
 use super::literal::{decimal, hexadecimal};
 use super::names::{ident, screaming, variants};
 use super::place::Written;
-use crate::model::{Encoding, Enumeration, Message, Piece, Protocol, Severity, Signal, StatusBit, StatusWord};
+use crate::model::{
+    Encoding, Enumeration, Message, PartId, Piece, Protocol, Severity, Signal, StatusBit, StatusWord, Table,
+};
 
 /// Returns the smallest integer type of so many bits.
 pub fn integer(width: u8, signed: bool) -> TokenStream {
@@ -165,7 +167,7 @@ pub fn packed(
     })
 }
 
-fn packed_word(name: &Ident, signal: &Signal, pieces: &[Piece], parts: &[Signal]) -> TokenStream {
+fn packed_word(name: &Ident, signal: &Signal, pieces: &[Piece], parts: &Table<PartId, Signal>) -> TokenStream {
     let bytes = Literal::u8_unsuffixed(signal.place.width() / 8);
     let fields: Vec<_> = parts.iter().map(|part| ident(&part.name)).collect();
     let constants: Vec<_> = parts.iter().map(|part| screaming(&part.name)).collect();
@@ -194,7 +196,7 @@ fn first_byte(signal: &Signal) -> u8 {
 }
 
 /// Writes the form of the text as in the spec.
-fn format(pieces: &[Piece], parts: &[Signal]) -> String {
+fn format(pieces: &[Piece], parts: &Table<PartId, Signal>) -> String {
     let piece = |piece: &Piece| match piece {
         Piece::Literal(literal) => literal.clone(),
         Piece::Part { part, digits: None } => format!("{{{}}}", parts[*part].name),
@@ -220,7 +222,7 @@ pub fn text_type(width: u8) -> TokenStream {
     quote!(Text<#bytes>)
 }
 
-fn piece(piece: &Piece, parts: &[Signal]) -> TokenStream {
+fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> TokenStream {
     let (part, digits) = match piece {
         Piece::Literal(literal) => return quote!(Piece::Literal(#literal)),
         Piece::Part { part, digits } => (&parts[*part], digits),
