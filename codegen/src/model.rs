@@ -8,6 +8,7 @@ mod example;
 mod id;
 mod identifier;
 mod message;
+mod recognition;
 mod set;
 mod signal;
 
@@ -20,6 +21,7 @@ pub use id::{
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Travel, Who};
+pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{
     Encoding, Enumeration, NamedValue, OfModel, Piece, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit,
@@ -52,10 +54,6 @@ pub struct Protocol {
     pub address_types: Table<AddressTypeId, AddressType>,
     /// Addressing modes in the order of the spec.
     pub modes: Table<ModeId, Mode>,
-    /// How an identifier shows that a frame goes to a module.
-    pub to_module: Direction,
-    /// How an identifier shows that a frame goes to the controller.
-    pub to_controller: Direction,
     /// Accesses in the order of the spec.
     pub accesses: Table<AccessId, Access>,
     /// Identifiers that are never sent, and refused on receipt.
@@ -64,6 +62,8 @@ pub struct Protocol {
     pub messages: Table<MessageId, Message>,
     /// The frames that exist, message by message.
     pub frames: Table<FrameId, FrameLayout>,
+    /// How frames are recognised.
+    pub recognition: Recognition,
     /// Device models in the order of the spec.
     pub models: Table<ModelId, DeviceModel>,
     /// Times that the document states.

@@ -18,7 +18,7 @@ use std::collections::{HashMap, HashSet};
 use indexmap::IndexSet;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::model::{self, EnumerationId, ModelId, Protocol, SelectorId, StatusWordId, Table};
+use crate::model::{self, EnumerationId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table};
 use crate::rules::RULES;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -69,7 +69,7 @@ impl Resolver<'_> {
         self.header_selectors();
         let address_types = self.address_types();
         let modes = self.modes(&identifier, &address_types);
-        let (to_module, to_controller) = addressing::directions(&identifier, &address_types, &modes);
+        let directions = addressing::directions(&identifier, &address_types, &modes);
         let accesses = self.accesses(&modes, &timing);
         let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
         let foreign = self.foreign(&identifier);
@@ -86,11 +86,10 @@ impl Resolver<'_> {
             identifier,
             address_types,
             modes,
-            to_module,
-            to_controller,
             accesses,
             foreign,
             messages,
+            recognition: Recognition::new(directions, &frames, &self.tables.selectors),
             frames,
             timing,
             procedures,

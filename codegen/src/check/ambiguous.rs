@@ -1,24 +1,55 @@
 #![doc = include_str!("../rules/ambiguous.md")]
 
+use std::collections::HashSet;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{AddressPattern, Constant, FieldId, FrameLayout, Id, Kind, Protocol};
+use crate::model::{AddressPattern, FieldId, FrameId, FrameLayout, Id, Protocol};
 use crate::syntax::tree::Path;
 
 /// Inclusive raw ranges.
 pub type Ranges = Vec<(u32, u32)>;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let frames = protocol.frames.iter().filter(|frame| !is_of_wrong_set(protocol, frame, diagnostics));
-    let frames: Vec<_> = frames.collect();
-    let mut reported: Vec<(Path, Path)> = Vec::new();
-    for (index, one) in frames.iter().enumerate() {
-        let Some(other) = frames[..index].iter().find(|other| both_fit(protocol, one, other)) else { continue };
+    if !protocol.recognition.is_whole {
+        let text = "the constants of the messages can be combined in too many ways to tell frames apart";
+        let help = "let one field choose among the messages, with a constant in each";
+        diagnostics.push(Diagnostic::error("ambiguous", Path::default().key("messages").at_key(), text).help(help));
+        return;
+    }
+    let mut reported = HashSet::new();
+    for (id, one) in protocol.frames.entries() {
+        if is_of_wrong_set(protocol, one, diagnostics) {
+            continue;
+        }
+        let Some(other) = first_alike(protocol, id, one, diagnostics) else { continue };
         let pair = places(protocol, one, other);
-        if !reported.contains(&pair) {
+        if reported.insert(pair.clone()) {
             report(protocol, one, other, &pair, diagnostics);
-            reported.push(pair);
         }
     }
+}
+
+/// Finds the first of the frames before one that a frame can be as well.
+fn first_alike<'a>(
+    protocol: &'a Protocol,
+    id: FrameId,
+    one: &FrameLayout,
+    diagnostics: &Diagnostics,
+) -> Option<&'a FrameLayout> {
+    let mut first: Option<FrameId> = None;
+    let choice = protocol.recognition.course(one.kind).choice.as_ref()?;
+    let _: Option<()> = choice.find_among(&one.constants, &mut |group| {
+        group.choice.as_ref()?.find_among(&one.constants, &mut |frames| {
+            let before = frames.iter().copied().take_while(|other| *other < first.unwrap_or(id));
+            let mut alike = before.filter(|other| {
+                let other = &protocol[*other];
+                !is_of_wrong_set(protocol, other, diagnostics) && both_fit(protocol, one, other)
+            });
+            first = alike.next().or(first);
+            None
+        })
+    });
+    first.map(|first| &protocol[first])
 }
 
 /// Tests whether a frame belongs to a set that has an error of its own, which can be why it is ambiguous.
@@ -59,23 +90,13 @@ fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path,
     if first == second { (own(one), own(other)) } else { (first, second) }
 }
 
+/// Tests whether models, lengths and addresses leave frames that can be both.
 fn both_fit(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
-    let same_direction = (one.kind == Kind::Request) == (other.kind == Kind::Request);
-    same_direction
-        && !protocol[one.message].is_apart_from(&protocol[other.message])
+    !protocol[one.message].is_apart_from(&protocol[other.message])
         && one.length == other.length
-        && agree(one, other)
         && protocol
             .patterns_of(one)
             .any(|(_, pattern)| protocol.patterns_of(other).any(|(_, opposite)| intersect(protocol, pattern, opposite)))
-}
-
-/// Tests whether no selector has two values.
-fn agree(one: &FrameLayout, other: &FrameLayout) -> bool {
-    let differs = |known: &Constant| {
-        other.constants.iter().any(|opposite| opposite.selector == known.selector && opposite.value != known.value)
-    };
-    !one.constants.iter().any(differs)
 }
 
 /// Tests whether one identifier fits both patterns.

@@ -5,8 +5,12 @@ use crate::model::{AddressPattern, FieldTest, IdentifierField, Mode, Protocol};
 use crate::syntax::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let pairs =
-        protocol.to_module.any.iter().flat_map(|one| protocol.to_controller.any.iter().map(move |other| (one, other)));
+    let pairs = protocol
+        .recognition
+        .to_module
+        .any
+        .iter()
+        .flat_map(|one| protocol.recognition.to_controller.any.iter().map(move |other| (one, other)));
     for (one, other) in pairs {
         if !one.iter().any(|test| other.iter().any(|opposite| excludes(test, opposite) || excludes(opposite, test))) {
             report(protocol, diagnostics);

@@ -5,8 +5,8 @@ use std::cmp::Reverse;
 use super::value::{extended, float, in_range, named, physical};
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
 use crate::model::{
-    AddressPattern, Direction, Encoding, FieldId, FrameId, FrameLayout, Kind, Message, ModelId, Protocol, SelectorId,
-    SelectorPlace, Signal, Table, Travel, Who,
+    AddressPattern, Course, Direction, Encoding, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId,
+    Protocol, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
 /// Decodes a frame that goes to a device model, or comes from one.
@@ -22,7 +22,7 @@ pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Res
     Decoder { protocol, model, frame, data: frame.padded() }.decode()
 }
 
-/// A kind of frame that it can be.
+/// A kind of frame that a frame can be.
 type Candidate<'a> = (FrameId, &'a FrameLayout);
 
 struct Decoder<'a> {
@@ -52,18 +52,17 @@ struct Addressing<'a> {
 impl<'a> Decoder<'a> {
     fn decode(&self) -> Result<Decoded, Unrecognised> {
         if let Some(text) = self.form() {
-            return Err(self.unrecognised(Problem::Frame, text.to_owned(), false, &[]));
+            return Err(self.unrecognised(Problem::Frame, text.to_owned(), false, None));
         }
         if let Some(text) = self.foreign() {
-            return Err(self.unrecognised(Problem::Foreign, text, false, &[]));
+            return Err(self.unrecognised(Problem::Foreign, text, false, None));
         }
-        let to_module = self.direction()?;
-        let candidates = self.candidates(to_module);
-        let candidates = self.by_identifier(&candidates)?;
-        let candidates = self.by_length(&candidates)?;
-        let (best, candidates) = self.by_payload(&candidates)?;
+        let course = self.protocol.recognition.course(self.direction()?);
+        let group = self.by_identifier(course)?;
+        let of_length = self.by_length(group)?;
+        let (best, frames) = self.by_payload(group, of_length)?;
         let mut decoded = self.decoded(best);
-        decoded.notes.extend(self.model_note(best, &candidates));
+        decoded.notes.extend(self.model_note(best, frames));
         Ok(decoded)
     }
 
@@ -93,17 +92,17 @@ impl<'a> Decoder<'a> {
         self.protocol[id].get(self.frame.id)
     }
 
-    /// Tests the identifier's width and fixed bits, and whether it shows its direction.
-    fn direction(&self) -> Result<bool, Unrecognised> {
+    /// Tests the identifier's width and fixed bits, and returns a kind of frame of the direction that it shows.
+    fn direction(&self) -> Result<Kind, Unrecognised> {
         let identifier = &self.protocol.identifier;
         if self.frame.extended != identifier.extended {
             let [found, wanted] =
                 [self.frame.extended, identifier.extended].map(|extended| if extended { 29 } else { 11 });
             let text = format!("the identifier has {found} bits instead of {wanted}");
-            return Err(self.unrecognised(Problem::Identifier, text, false, &[]));
+            return Err(self.unrecognised(Problem::Identifier, text, false, None));
         }
         if self.frame.id & identifier.mask != identifier.value {
-            return Err(self.unrecognised(Problem::Identifier, self.wrong_bits(), true, &[]));
+            return Err(self.unrecognised(Problem::Identifier, self.wrong_bits(), true, None));
         }
         let holds = |direction: &Direction| {
             direction.any.iter().any(|tests| {
@@ -113,12 +112,13 @@ impl<'a> Decoder<'a> {
                 })
             })
         };
-        match (holds(&self.protocol.to_module), holds(&self.protocol.to_controller)) {
-            (true, false) => Ok(true),
-            (false, true) => Ok(false),
+        let Recognition { to_module, to_controller, .. } = &self.protocol.recognition;
+        match (holds(to_module), holds(to_controller)) {
+            (true, false) => Ok(Kind::Request),
+            (false, true) => Ok(Kind::Reply),
             _ => {
                 let text = "the addresses do not show whether it goes to a module or to the controller";
-                Err(self.unrecognised(Problem::Identifier, text.to_owned(), true, &[]))
+                Err(self.unrecognised(Problem::Identifier, text.to_owned(), true, None))
             }
         }
     }
@@ -137,59 +137,67 @@ impl<'a> Decoder<'a> {
         format!("the identifier's {} is {found} instead of {wanted}", field.name)
     }
 
-    /// Returns every frame of this direction.
-    fn candidates(&self, to_module: bool) -> Vec<Candidate<'a>> {
-        self.protocol.frames.entries().filter(|(_, frame)| (frame.kind == Kind::Request) == to_module).collect()
+    /// Returns what a selector has in this frame.
+    fn read(&self, place: SelectorPlace) -> u64 {
+        match place {
+            SelectorPlace::Identifier(field) => self.field(field).into(),
+            SelectorPlace::Payload(place) => place.get(&self.data),
+        }
     }
 
-    fn by_identifier(&self, candidates: &[Candidate<'a>]) -> Result<Vec<Candidate<'a>>, Unrecognised> {
-        let chosen = |(_, frame): &Candidate| frame.identifier().all(|(field, value)| self.field(field) == value);
-        let left: Vec<_> = candidates.iter().copied().filter(chosen).collect();
-        if left.is_empty() {
-            let text = match self.identifier_selectors(candidates).as_str() {
+    fn by_identifier(&self, course: &'a Course) -> Result<&'a Group, Unrecognised> {
+        let found = course.choice.as_ref().and_then(|choice| choice.find(|place| self.read(place)));
+        found.ok_or_else(|| {
+            let text = match self.identifier_selectors(&course.all).as_str() {
                 "" => "no message goes this way".to_owned(),
-                selectors => format!("no {} has {selectors}", kinds(candidates)),
+                selectors => format!("no {} has {selectors}", kinds(&course.all)),
             };
-            return Err(self.unrecognised(Problem::UnknownMessage, text, true, &[]));
-        }
-        Ok(left)
+            self.unrecognised(Problem::UnknownMessage, text, true, None)
+        })
     }
 
     /// Shows the values of the identifier's selectors.
-    fn identifier_selectors(&self, candidates: &[Candidate]) -> String {
-        let selectors = self.protocol.selectors.entries().filter(|(id, _)| chooses(candidates, *id));
-        let texts = selectors.filter_map(|(id, selector)| match selector.place {
-            SelectorPlace::Identifier(field) => Some(self.selector_text((id, self.field(field).into()))),
+    fn identifier_selectors(&self, scope: &Scope) -> String {
+        let texts = scope.choosing.iter().filter_map(|id| match self.protocol[*id].place {
+            SelectorPlace::Identifier(field) => Some(self.selector_text((*id, self.field(field).into()))),
             SelectorPlace::Payload(_) => None,
         });
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    fn by_length(&self, candidates: &[Candidate<'a>]) -> Result<Vec<Candidate<'a>>, Unrecognised> {
+    fn by_length(&self, group: &'a Group) -> Result<&'a Scope, Unrecognised> {
         let length = self.frame.data.len();
-        let left: Vec<_> =
-            candidates.iter().copied().filter(|(_, frame)| usize::from(frame.length) == length).collect();
-        if left.is_empty() {
-            let wanted = candidates.iter().map(|(_, frame)| frame.length).max().unwrap_or(8);
+        group.of_length(length).ok_or_else(|| {
+            let wanted = group.lengths.last().map_or(8, |(length, _)| *length);
             let bytes = if length == 1 { "byte" } else { "bytes" };
             let text = format!("{length} data {bytes} instead of {wanted}");
-            return Err(self.unrecognised(Problem::Length, text, true, candidates));
-        }
-        Ok(left)
+            self.unrecognised(Problem::Length, text, true, Some(&group.all))
+        })
     }
 
-    /// Returns the candidate that fits best, and all that have the frame's constants.
-    fn by_payload(&self, candidates: &[Candidate<'a>]) -> Result<(Candidate<'a>, Vec<Candidate<'a>>), Unrecognised> {
-        let chosen = |(_, frame): &Candidate| frame.payload().all(|(place, value)| place.get(&self.data) == value);
-        let left: Vec<_> = candidates.iter().copied().filter(chosen).collect();
-        let Some(best) = left.iter().min_by_key(|candidate| self.rank(candidate)).copied() else {
-            let mut selectors = self.selectors(candidates);
-            selectors.retain(|(id, _)| chooses(candidates, *id));
-            let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
-            let text = format!("no {} has {}", kinds(candidates), shown.join(", "));
-            return Err(self.unrecognised(Problem::UnknownMessage, text, true, candidates));
+    /// Returns the kind of frame that fits best, and all that have the frame's constants.
+    fn by_payload(&self, group: &'a Group, of_length: &Scope) -> Result<(Candidate<'a>, &'a [FrameId]), Unrecognised> {
+        let found = group.choice.as_ref().and_then(|choice| choice.find(|place| self.read(place)));
+        let frames = found.map_or(&[][..], Vec::as_slice);
+        let best = match frames {
+            [only] => self.candidates(frames).next().filter(|(id, _)| id == only),
+            _ => self.candidates(frames).min_by_key(|candidate| self.rank(candidate)),
         };
-        Ok((best, left))
+        best.map(|best| (best, frames)).ok_or_else(|| {
+            let mut selectors = self.selectors(&of_length.selectors);
+            selectors.retain(|(id, _)| of_length.choosing.contains(id));
+            let shown: Vec<_> = selectors.into_iter().map(|known| self.selector_text(known)).collect();
+            let text = format!("no {} has {}", kinds(of_length), shown.join(", "));
+            self.unrecognised(Problem::UnknownMessage, text, true, Some(of_length))
+        })
+    }
+
+    /// Returns those of these kinds of frames that have the frame's length.
+    fn candidates(&self, frames: &'a [FrameId]) -> impl Iterator<Item = Candidate<'a>> {
+        let protocol = self.protocol;
+        let length = self.frame.data.len();
+        let known = frames.iter().map(move |id| (*id, &protocol[*id]));
+        known.filter(move |(_, layout)| usize::from(layout.length) == length)
     }
 
     /// Puts a candidate that the device model has first, then one whose addresses fit better.
@@ -200,21 +208,32 @@ impl<'a> Decoder<'a> {
     }
 
     /// Says that the device model has no such message, or that the frame may be another message on another model.
-    fn model_note(&self, best: Candidate, candidates: &[Candidate]) -> Option<Note> {
+    fn model_note(&self, best: Candidate, frames: &'a [FrameId]) -> Option<Note> {
         let message = self.message(best);
         let text = match self.model {
             Some(model) if message.is_of(model) => return None,
             Some(model) => format!("{} has no message `{}`", self.protocol[model].name, message.name),
+            None if message.models.is_empty() || frames.len() < 2 => return None,
             None => {
-                let is_equal = |other: &&Candidate| {
-                    message.is_apart_from(self.message(**other)) && self.rank(other) == self.rank(&best)
+                let rank = self.rank(&best);
+                let is_equal = |other: &Candidate| {
+                    message.is_apart_from(&self.protocol[other.1.message]) && self.rank(other) == rank
                 };
-                let other = self.message(*candidates.iter().find(is_equal)?);
-                let models = other.models.iter().map(|model| self.protocol[*model].name.as_str());
-                format!("it is `{}` if the model is {}", other.name, models.collect::<Vec<_>>().join(" or "))
+                let others = self.candidates(frames).filter(is_equal).map(|(_, other)| other.message);
+                let mut others: Vec<_> = others.collect();
+                others.dedup();
+                others.first()?;
+                let texts: Vec<_> = others.into_iter().map(|other| self.of_models(&self.protocol[other])).collect();
+                format!("it is {}", texts.join(", and "))
             }
         };
         Some(Note { rule: "model_dependent", text })
+    }
+
+    /// Names a message and the device models that have it.
+    fn of_models(&self, message: &Message) -> String {
+        let models = message.models.iter().map(|model| self.protocol[*model].name.as_str());
+        format!("`{}` if the model is {}", message.name, models.collect::<Vec<_>>().join(" or "))
     }
 
     fn message(&self, (_, frame): Candidate) -> &'a Message {
@@ -225,23 +244,21 @@ impl<'a> Decoder<'a> {
         format!("{} {}", self.protocol[id].name, self.protocol.selector_value(id, value))
     }
 
-    /// Returns the payload selectors of the candidates, as far as the frame has the bytes.
-    fn selectors(&self, candidates: &[Candidate]) -> Vec<(SelectorId, u64)> {
-        let present = |id: &SelectorId| candidates.iter().any(|(_, frame)| frame.selectors.contains(id));
-        let places = self.protocol.selectors.ids().filter(present);
-        places
-            .filter_map(|id| match self.protocol[id].place {
-                SelectorPlace::Payload(place) if covered(place.mask(), self.frame.data.len()) => {
-                    Some((id, place.get(&self.data)))
-                }
-                _ => None,
-            })
-            .collect()
+    /// Returns the values of payload selectors, as far as the frame has the bytes.
+    fn selectors(&self, ids: &[SelectorId]) -> Vec<(SelectorId, u64)> {
+        let values = ids.iter().filter_map(|id| match self.protocol[*id].place {
+            SelectorPlace::Payload(place) if covered(place.mask(), self.frame.data.len()) => {
+                Some((*id, place.get(&self.data)))
+            }
+            _ => None,
+        });
+        values.collect()
     }
 
-    fn unrecognised(&self, problem: Problem, text: String, split: bool, candidates: &[Candidate]) -> Unrecognised {
+    fn unrecognised(&self, problem: Problem, text: String, split: bool, scope: Option<&Scope>) -> Unrecognised {
         let identifier = if split { self.identifier() } else { Table::default() };
-        Unrecognised { problem, text, identifier, selectors: self.selectors(candidates) }
+        let selectors = scope.map_or(Vec::new(), |scope| self.selectors(&scope.selectors));
+        Unrecognised { problem, text, identifier, selectors }
     }
 
     fn identifier(&self) -> Table<FieldId, u32> {
@@ -300,7 +317,7 @@ impl<'a> Decoder<'a> {
             Reading { signal: id, bits, value: physical(self.protocol, signal, bits) }
         });
         let signals: Vec<_> = readings.collect();
-        let selectors = self.selectors(&[(id, frame)]);
+        let selectors = self.selectors(&frame.selectors);
         let reserved = self.reserved(frame);
         let mut notes = self.error_notes(frame, &selectors);
         notes.extend(self.address_notes(message, frame, &addressing));
@@ -406,15 +423,9 @@ fn range_note(signal: &Signal, model: Option<ModelId>, value: f64) -> Option<Not
     Some(Note { rule: "out_of_range", text })
 }
 
-/// Names the kinds of these frames, for texts.
-fn kinds(candidates: &[Candidate]) -> String {
-    let is_there = |kind: &Kind| candidates.iter().any(|(_, frame)| frame.kind == *kind);
-    Kind::ALL.into_iter().filter(is_there).map(Kind::name).collect::<Vec<_>>().join(" or ")
-}
-
-/// Tests whether a selector takes part in the choice among these frames.
-fn chooses(candidates: &[Candidate], id: SelectorId) -> bool {
-    candidates.iter().any(|(_, frame)| frame.constants.iter().any(|known| known.selector == id))
+/// Names the kinds of frames, for texts.
+fn kinds(scope: &Scope) -> String {
+    scope.kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(" or ")
 }
 
 /// Tests whether all bits of a mask lie in the first bytes.

@@ -136,11 +136,15 @@ impl Resolver<'_> {
     ) -> (Table<MessageId, Message>, Table<FrameId, FrameLayout>) {
         let (mut messages, mut frames) = (Table::default(), Table::default());
         for Draft { mut message, frames: drafted, .. } in drafts {
-            for mut frame in drafted {
-                frame.covered = self.covered(&message, &frame);
-                frame.travels = travels(modes, frame.kind, &message[frame.exchange].answers);
-                message.frames.push(frames.push(frame));
-            }
+            let complete = |frame: FrameLayout| FrameLayout {
+                covered: self.covered(&message, &frame),
+                travels: travels(modes, frame.kind, &message[frame.exchange].answers),
+                ..frame
+            };
+            let refusals = message.refusals.iter().cloned().map(complete).collect();
+            let drafted: Vec<_> = drafted.into_iter().map(complete).collect();
+            message.refusals = refusals;
+            message.frames = drafted.into_iter().map(|frame| frames.push(frame)).collect();
             messages.push(message);
         }
         (messages, frames)

@@ -1,26 +1,19 @@
 //! Which message a frame carries: one `match` over its selectors for each direction.
 
-use std::collections::BTreeSet;
-
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::choice::{Arm, choice, condition, joined, split};
-use super::names::{MessageNames, Names, ident};
+use super::names::{Names, ident};
 use super::parts::part_name;
-use super::rows::{Constants, implies, rows};
-use crate::model::{FrameLayout, Kind, Protocol};
+use super::rows::{Constants, implies, lengths, rows};
+use crate::model::{Course, FrameId, Protocol};
 
 /// Emits how frames are recognised, and how long those should be that are not: each function with those in which it
 /// goes on.
 pub fn dispatch(protocol: &Protocol, names: &Names) -> [Vec<TokenStream>; 4] {
-    let frames = protocol.frames.entries().map(|(id, layout)| Known {
-        names: &names.messages[layout.message],
-        layout,
-        variant: &names.variants[id],
-    });
-    let (requests, replies): (Vec<_>, Vec<_>) = frames.partition(|known| known.layout.kind == Kind::Request);
-    let [requests, replies] = [requests, replies].map(|known| Direction { protocol, known });
+    let plan = &protocol.recognition;
+    let [requests, replies] = [&plan.requests, &plan.replies].map(|course| Direction { protocol, names, course });
     [
         requests.recognising("request"),
         replies.recognising("reply"),
@@ -29,48 +22,22 @@ pub fn dispatch(protocol: &Protocol, names: &Names) -> [Vec<TokenStream>; 4] {
     ]
 }
 
-/// A kind of frame of a message.
-struct Known<'a> {
-    names: &'a MessageNames,
-    layout: &'a FrameLayout,
-    variant: &'a Ident,
-}
-
-impl Known<'_> {
-    fn constants(&self) -> Constants {
-        self.layout.constants.iter().map(|known| (known.selector, known.value)).collect()
-    }
-
-    fn in_identifier(&self) -> Constants {
-        let known = self.layout.constants.iter().filter(|known| known.in_identifier().is_some());
-        known.map(|known| (known.selector, known.value)).collect()
-    }
-
-    /// Takes the message out of the data.
-    fn decoded(&self) -> TokenStream {
-        let Self { names, layout, variant } = self;
-        let (home, exchange) = (&names.structs[0].name, &names.exchanges[layout.exchange]);
-        let kind = ident(layout.kind.name());
-        let carried = names.carried(layout).map(|_| quote!((Layout::decode(data))));
-        quote!(Recognised::#kind(&#home::#exchange, Self::#variant #carried))
-    }
-}
-
 /// The frames of one direction.
 struct Direction<'a> {
     protocol: &'a Protocol,
-    known: Vec<Known<'a>>,
+    names: &'a Names,
+    course: &'a Course,
 }
 
 impl Direction<'_> {
     /// Emits the functions that find the message of a frame, none if there are no frames.
     fn recognising(&self, name: &str) -> Vec<TokenStream> {
-        let rows = rows(self.known.iter().map(Known::constants));
-        let (rest, rows): (Vec<_>, Vec<_>) = rows.into_iter().partition(Constants::is_empty);
-        let rest = rest.first().map(|row| self.decoded(row));
+        let rows = rows(self.protocol, self.course);
+        let (rest, rows): (Vec<_>, Vec<_>) = rows.into_iter().partition(|row| row.constants.is_empty());
+        let rest = rest.first().map(|row| self.decoded(&row.outcome));
         let arms = rows.into_iter().map(|row| {
-            let body = self.decoded(&row);
-            Arm::new(row, body)
+            let body = self.decoded(&row.outcome);
+            Arm::new(row.constants, body)
         });
         let parts = split(self.protocol, arms.collect());
         let functions = parts.iter().enumerate().map(|(index, arms)| {
@@ -78,7 +45,7 @@ impl Direction<'_> {
             let found = self.found(arms, rest.as_ref().filter(|_| index == 0), next.as_ref());
             recognising(&part_name(name, index), &found)
         });
-        if self.known.is_empty() { Vec::new() } else { functions.collect() }
+        if self.course.choice.is_none() { Vec::new() } else { functions.collect() }
     }
 
     /// Emits what a function finds: by its arms, in the next function, and else the frame without constants.
@@ -97,11 +64,21 @@ impl Direction<'_> {
         if arms.is_empty() { quote!(Some(#choice)) } else { quote!(let recognised = #choice; Some(recognised)) }
     }
 
-    /// Takes the message out of frames that show these constants; several are told apart by length, model and addresses.
-    fn decoded(&self, row: &Constants) -> TokenStream {
-        let mut decoded = self.known.iter().filter(|known| implies(row, &known.constants())).map(Known::decoded);
+    /// Takes the message out of a frame; several are told apart by length, model and addresses.
+    fn decoded(&self, frames: &[FrameId]) -> TokenStream {
+        let mut decoded = frames.iter().map(|frame| self.recognised(*frame));
         let first = decoded.next();
         quote!(#first #(.or(#decoded, frame, model))*)
+    }
+
+    /// Takes the message of a kind of frame out of the data.
+    fn recognised(&self, id: FrameId) -> TokenStream {
+        let (layout, variant) = (&self.protocol[id], &self.names.variants[id]);
+        let names = &self.names.messages[layout.message];
+        let (home, exchange) = (&names.structs[0].name, &names.exchanges[layout.exchange]);
+        let kind = ident(layout.kind.name());
+        let carried = names.carried(layout).map(|_| quote!((Layout::decode(data))));
+        quote!(Recognised::#kind(&#home::#exchange, Self::#variant #carried))
     }
 
     /// Emits the functions that say how long frames are that show some constants in the identifier.
@@ -117,18 +94,16 @@ impl Direction<'_> {
             let otherwise = next.map_or_else(|| rest.clone(), |next| quote!(Self::#next(id)));
             functions.push(measuring(&part_name(name, index), &choice(self.protocol, &arms, &otherwise)));
         }
-        if self.known.is_empty() { Vec::new() } else { functions }
+        if self.course.choice.is_none() { Vec::new() } else { functions }
     }
 
     /// Returns the lengths of frames by constants in the identifier, unless fewer constants say the same.
-    fn measured(&self) -> Vec<(Constants, BTreeSet<u8>)> {
-        let mut measured: Vec<(Constants, BTreeSet<u8>)> = Vec::new();
-        for row in rows(self.known.iter().map(Known::in_identifier)).into_iter().rev() {
-            let known = self.known.iter().filter(|known| implies(&row, &Known::in_identifier(known)));
-            let lengths = known.map(|known| known.layout.length).collect();
-            let less = measured.iter().rfind(|(less, _)| implies(&row, less));
-            if less.is_none_or(|(_, known)| *known != lengths) {
-                measured.push((row, lengths));
+    fn measured(&self) -> Vec<(Constants, Vec<u8>)> {
+        let mut measured: Vec<(Constants, Vec<u8>)> = Vec::new();
+        for row in lengths(self.protocol, self.course).into_iter().rev() {
+            let less = measured.iter().rfind(|(less, _)| implies(&row.constants, less));
+            if less.is_none_or(|(_, known)| *known != row.outcome) {
+                measured.push((row.constants, row.outcome));
             }
         }
         measured.reverse();
@@ -136,7 +111,7 @@ impl Direction<'_> {
     }
 }
 
-fn list(lengths: &BTreeSet<u8>) -> TokenStream {
+fn list(lengths: &[u8]) -> TokenStream {
     let lengths = lengths.iter().map(|length| Literal::u8_unsuffixed(*length));
     quote!(&[#(#lengths),*])
 }

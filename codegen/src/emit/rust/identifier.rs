@@ -68,8 +68,8 @@ fn splitting(protocol: &Protocol) -> TokenStream {
         quote!(#ones |)
     });
     let foreign = foreign(protocol);
-    let to_module = test("is_to_module", any(protocol, &protocol.to_module));
-    let to_controller = test("is_to_controller", any(protocol, &protocol.to_controller));
+    let to_module = test("is_to_module", any(protocol, &protocol.recognition.to_module));
+    let to_controller = test("is_to_controller", any(protocol, &protocol.recognition.to_controller));
     quote! {
         impl IdentifierFields for Identifier {
             fn from_raw(id: u32) -> Self {

@@ -1,28 +1,60 @@
-//! Which combinations of constants tell frames apart.
+//! The plan of recognition as rows of a `match`: what a frame must show, and what it is then.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 
-use crate::model::SelectorId;
+use crate::model::{Constant, Course, FrameId, Protocol, SelectorId};
 
 /// Selectors and the values they must have.
 pub type Constants = BTreeMap<SelectorId, u64>;
 
-/// Returns every set of constants once, and every union of such sets that a frame can show at the same time; a larger
-/// set comes before the sets it contains, so that the first one that fits a frame is all that the frame shows.
-pub fn rows(sets: impl IntoIterator<Item = Constants>) -> Vec<Constants> {
-    let mut known = BTreeSet::new();
-    let mut rows: Vec<_> = sets.into_iter().filter(|set| known.insert(set.clone())).collect();
-    let mut index = 0;
-    while let Some(set) = rows.get(index) {
-        let unions: Vec<_> = rows[..index].iter().filter_map(|other| union(set, other)).collect();
-        rows.extend(unions.into_iter().filter(|union| known.insert(union.clone())));
-        index += 1;
-    }
-    rows.sort_by_key(|set| std::cmp::Reverse(set.len()));
-    rows
+/// What frames with some constants are.
+pub struct Row<T> {
+    pub constants: Constants,
+    pub outcome: T,
+    /// The first frame that has these constants and no others.
+    own: Option<FrameId>,
 }
 
-/// Tests whether whatever shows the one set shows the other one too.
+/// Returns the kinds of frames by their constants. A row comes before those whose constants it contains, so that the
+/// first one that fits a frame is all that the frame shows.
+pub fn rows(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<FrameId>>> {
+    let groups = course.choice.iter().flat_map(|choice| choice.ends());
+    let frames = groups.flat_map(|group| group.choice.iter().flat_map(|choice| choice.ends()));
+    in_order(frames.map(|frames| row(protocol, frames, |_| true, frames.clone())))
+}
+
+/// Returns the lengths of frames, the shortest first, by their constants in the identifier, in the same order.
+pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
+    let groups = course.choice.iter().flat_map(|choice| choice.ends());
+    in_order(groups.map(|group| {
+        let frames: Vec<_> = group.choice.iter().flat_map(|choice| choice.ends()).flatten().copied().collect();
+        let lengths = group.lengths.iter().map(|(length, _)| *length).collect();
+        row(protocol, &frames, |constant| constant.in_identifier().is_some(), lengths)
+    }))
+}
+
+/// Makes a row of what frames show between them.
+fn row<T>(protocol: &Protocol, frames: &[FrameId], shows: impl Fn(&Constant) -> bool, outcome: T) -> Row<T> {
+    let constants = |frame: &FrameId| -> Constants {
+        let shown = protocol[*frame].constants.iter().filter(|constant| shows(constant));
+        shown.map(|constant| (constant.selector, constant.value)).collect()
+    };
+    let all: Constants = frames.iter().flat_map(constants).collect();
+    let own = frames.iter().filter(|frame| constants(frame) == all).min().copied();
+    Row { constants: all, outcome, own }
+}
+
+/// Puts the rows with more constants first, each once.
+fn in_order<T>(rows: impl Iterator<Item = Row<T>>) -> Vec<Row<T>> {
+    let mut once = BTreeMap::new();
+    for row in rows {
+        once.entry((Reverse(row.constants.len()), row.own.is_none(), row.own, row.constants.clone())).or_insert(row);
+    }
+    once.into_values().collect()
+}
+
+/// Tests whether whatever shows the one set of constants shows the other one too.
 pub fn implies(set: &Constants, other: &Constants) -> bool {
     other.iter().all(|(selector, value)| set.get(selector) == Some(value))
 }
@@ -32,10 +64,6 @@ pub fn agree(set: &Constants, other: &Constants) -> bool {
     other.iter().all(|(selector, value)| set.get(selector).is_none_or(|known| known == value))
 }
 
-fn union(set: &Constants, other: &Constants) -> Option<Constants> {
-    agree(set, other).then(|| set.iter().chain(other).map(|(selector, value)| (*selector, *value)).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,22 +71,6 @@ mod tests {
 
     fn set<const N: usize>(constants: [(usize, u64); N]) -> Constants {
         constants.into_iter().map(|(selector, value)| (SelectorId::new(selector), value)).collect()
-    }
-
-    #[test]
-    fn a_larger_set_comes_before_the_sets_it_contains() {
-        let sets = [set([]), set([(0, 1)]), set([(0, 1), (1, 5)]), set([(0, 2)]), set([(0, 1)])];
-        let expected = [set([(0, 1), (1, 5)]), set([(0, 1)]), set([(0, 2)]), set([])];
-        assert_eq!(rows(sets), expected);
-    }
-
-    #[test]
-    fn sets_that_one_frame_can_show_meet_in_their_union() {
-        let sets = [set([(0, 1)]), set([(1, 5)]), set([(2, 7)]), set([(0, 2)])];
-        let unions = rows(sets);
-        assert_eq!(unions.len(), 4 + 5 + 2);
-        assert!(unions.contains(&set([(0, 2), (1, 5), (2, 7)])));
-        assert!(!unions.iter().any(|union| union.len() > 3));
     }
 
     #[test]

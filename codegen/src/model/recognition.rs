@@ -1,0 +1,251 @@
+//! How frames are recognised: which bits tell them apart, in which order. Every engine runs or prints this plan.
+
+use std::collections::BTreeSet;
+
+use indexmap::IndexMap;
+
+use crate::model::{Constant, Direction, FrameId, FrameLayout, Id, Kind, Selector, SelectorId, SelectorPlace, Table};
+
+/// How frames are recognised, in this order: direction, constants of the identifier, length, constants of the payload.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Recognition {
+    /// How an identifier shows that a frame goes to a module.
+    pub to_module: Direction,
+    /// How an identifier shows that a frame goes to the controller.
+    pub to_controller: Direction,
+    /// Frames that go to a module.
+    pub requests: Course,
+    /// Frames that go to the controller.
+    pub replies: Course,
+    /// Whether the plan is whole. One whose constants combine in too many ways ends early.
+    pub is_whole: bool,
+}
+
+/// The frames of one direction.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Course {
+    /// All these frames.
+    pub all: Scope,
+    /// Which of them have the constants of an identifier.
+    pub choice: Option<Choice<Group>>,
+}
+
+/// Frames with the same constants in the identifier.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Group {
+    /// All these frames.
+    pub all: Scope,
+    /// Those of each length, the shortest first.
+    pub lengths: Vec<(u8, Scope)>,
+    /// Which of them have the constants of a payload, whatever the length.
+    pub choice: Option<Choice<Vec<FrameId>>>,
+}
+
+impl Group {
+    /// Returns the frames of a number of data bytes.
+    pub fn of_length(&self, length: usize) -> Option<&Scope> {
+        self.lengths.iter().find(|(known, _)| usize::from(*known) == length).map(|(_, scope)| scope)
+    }
+}
+
+/// What frames have between them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Scope {
+    /// Their kinds.
+    pub kinds: Vec<Kind>,
+    /// The selectors of which some frame has a constant.
+    pub choosing: Vec<SelectorId>,
+    /// The payload selectors that some frame has.
+    pub selectors: Vec<SelectorId>,
+}
+
+/// A choice by one selector after the other.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Choice<T> {
+    /// There is one outcome.
+    End(T),
+    /// The value of a selector decides.
+    By {
+        /// The selector.
+        selector: SelectorId,
+        /// Where it stands.
+        place: SelectorPlace,
+        /// How the choice goes on after each value, in the order of the frames.
+        cases: IndexMap<u64, Self>,
+        /// How it goes on after another value; `None` if no frame has one.
+        otherwise: Option<Box<Self>>,
+    },
+}
+
+impl<T> Choice<T> {
+    /// Returns the outcome for a frame whose selectors `read` reads.
+    pub fn find(&self, read: impl Fn(SelectorPlace) -> u64) -> Option<&T> {
+        let mut choice = self;
+        loop {
+            match choice {
+                Self::End(outcome) => return Some(outcome),
+                Self::By { place, cases, otherwise, .. } => {
+                    choice = cases.get(&read(*place)).or(otherwise.as_deref())?;
+                }
+            }
+        }
+    }
+
+    /// Returns every outcome.
+    pub fn ends(&self) -> Vec<&T> {
+        match self {
+            Self::End(outcome) => vec![outcome],
+            Self::By { cases, otherwise, .. } => {
+                let after = cases.values().chain(otherwise.as_deref());
+                after.flat_map(Self::ends).collect()
+            }
+        }
+    }
+
+    /// Finds the first outcome that passes a test, among those of frames that can show constants.
+    pub fn find_among<'a, R>(&'a self, constants: &[Constant], test: &mut impl FnMut(&'a T) -> Option<R>) -> Option<R> {
+        match self {
+            Self::End(outcome) => test(outcome),
+            Self::By { selector, cases, otherwise, .. } => {
+                match constants.iter().find(|constant| constant.selector == *selector) {
+                    Some(constant) => {
+                        let next = cases.get(&constant.value).or(otherwise.as_deref())?;
+                        next.find_among(constants, test)
+                    }
+                    None => {
+                        let mut after = cases.values().chain(otherwise.as_deref());
+                        after.find_map(|next| next.find_among(constants, test))
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Recognition {
+    /// Plans how to recognise frames.
+    pub(crate) fn new(
+        (to_module, to_controller): (Direction, Direction),
+        frames: &Table<FrameId, FrameLayout>,
+        selectors: &Table<SelectorId, Selector>,
+    ) -> Self {
+        // A frame has a few ends of its own, and shares some with others.
+        let mut planner = Planner { frames, selectors, ends_left: 64 * frames.len() + 1024 };
+        let (requests, replies) = frames.ids().partition(|frame| frames[*frame].kind == Kind::Request);
+        let (requests, replies) = (planner.course(requests), planner.course(replies));
+        Self { to_module, to_controller, requests, replies, is_whole: planner.ends_left > 0 }
+    }
+
+    /// Returns the frames of the direction of a kind.
+    pub fn course(&self, kind: Kind) -> &Course {
+        match kind {
+            Kind::Request => &self.requests,
+            Kind::Reply | Kind::Report => &self.replies,
+        }
+    }
+}
+
+/// How many selectors may be asked one after the other; a frame has fewer bits.
+const DEEPEST: usize = 96;
+
+/// Makes the plan of both directions.
+struct Planner<'a> {
+    frames: &'a Table<FrameId, FrameLayout>,
+    selectors: &'a Table<SelectorId, Selector>,
+    /// How many more outcomes the plan may have.
+    ends_left: usize,
+}
+
+impl Planner<'_> {
+    fn course(&mut self, frames: Vec<FrameId>) -> Course {
+        let all = self.scope(&frames);
+        let by = self.ordered(&all.choosing, |place| matches!(place, SelectorPlace::Identifier(_)));
+        Course { all, choice: self.choice(frames, &by, &mut Self::group) }
+    }
+
+    fn group(&mut self, frames: Vec<FrameId>) -> Group {
+        let all = self.scope(&frames);
+        let lengths: BTreeSet<u8> = frames.iter().map(|frame| self.frames[*frame].length).collect();
+        let of_length = |length: u8| {
+            let frames: Vec<_> = frames.iter().copied().filter(|frame| self.frames[*frame].length == length).collect();
+            (length, self.scope(&frames))
+        };
+        let lengths = lengths.into_iter().map(of_length).collect();
+        let by = self.ordered(&all.choosing, |place| matches!(place, SelectorPlace::Payload(_)));
+        Group { all, lengths, choice: self.choice(frames, &by, &mut |_, frames| frames) }
+    }
+
+    fn scope(&self, frames: &[FrameId]) -> Scope {
+        let frames = || frames.iter().map(|frame| &self.frames[*frame]);
+        let kinds: BTreeSet<_> = frames().map(|frame| frame.kind).collect();
+        let choosing: BTreeSet<_> = frames().flat_map(|frame| &frame.constants).map(|known| known.selector).collect();
+        let selectors: BTreeSet<_> = frames().flat_map(|frame| &frame.selectors).copied().collect();
+        Scope {
+            kinds: kinds.into_iter().collect(),
+            choosing: choosing.into_iter().collect(),
+            selectors: selectors.into_iter().collect(),
+        }
+    }
+
+    /// Returns the selectors in the order in which they are asked: as in the identifier, then as in the header.
+    fn ordered(&self, selectors: &[SelectorId], is_asked: impl Fn(SelectorPlace) -> bool) -> Vec<SelectorId> {
+        let place = |selector: &SelectorId| self.selectors[*selector].place;
+        let mut ordered: Vec<_> = selectors.iter().copied().filter(|selector| is_asked(place(selector))).collect();
+        ordered.sort_by_key(|selector| match place(selector) {
+            SelectorPlace::Identifier(field) => field.place(),
+            SelectorPlace::Payload(_) => selector.place(),
+        });
+        ordered
+    }
+
+    /// Chooses among frames by selectors in turn; none are left over where the plan has become too large.
+    fn choice<T>(
+        &mut self,
+        frames: Vec<FrameId>,
+        by: &[SelectorId],
+        end: &mut impl FnMut(&mut Self, Vec<FrameId>) -> T,
+    ) -> Option<Choice<T>> {
+        if by.len() > DEEPEST {
+            self.ends_left = 0;
+        }
+        if frames.is_empty() || self.ends_left == 0 {
+            return None;
+        }
+        let all = self.frames;
+        let constant = |frame: &FrameId, selector: SelectorId| {
+            let constants = all[*frame].constants.iter();
+            constants.clone().find(|constant| constant.selector == selector).map(|constant| constant.value)
+        };
+        let asked = by.iter().position(|selector| frames.iter().any(|frame| constant(frame, *selector).is_some()));
+        let Some(asked) = asked else {
+            self.ends_left -= 1;
+            return Some(Choice::End(end(self, frames)));
+        };
+        let (selector, by) = (by[asked], &by[asked + 1..]);
+        let mut cases: IndexMap<u64, Vec<FrameId>> = IndexMap::new();
+        for frame in &frames {
+            if let Some(value) = constant(frame, selector) {
+                cases.entry(value).or_default();
+            }
+        }
+        let mut others = Vec::new();
+        for frame in frames {
+            match constant(&frame, selector) {
+                Some(value) => cases.entry(value).or_default().push(frame),
+                None => {
+                    cases.values_mut().for_each(|frames| frames.push(frame));
+                    others.push(frame);
+                }
+            }
+        }
+        let cases = cases.into_iter();
+        let cases = cases.filter_map(|(value, frames)| Some((value, self.choice(frames, by, end)?))).collect();
+        let otherwise = self.choice(others, by, end).map(Box::new);
+        Some(Choice::By { selector, place: self.selectors[selector].place, cases, otherwise })
+    }
+}
