@@ -7,6 +7,13 @@ use crate::model::Encoding;
 use crate::syntax::ast::Field;
 use crate::syntax::tree::Path;
 
+/// Where a field stands, which decides the keys that it reads.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Site {
+    Header,
+    Message,
+}
+
 /// What a field is used as, with the keys that it reads beside title, note, section, erratum and `type`.
 #[derive(Clone, Copy)]
 pub struct Role {
@@ -20,8 +27,11 @@ impl Role {
         Self { name: "a field of the identifier", keys: &["bits", "const", "send", "normal", "continues", "values"] };
     pub const ADDRESS: Self =
         Self { name: "an address type", keys: &["range", "scale", "offset", "outside", "send", "examples"] };
-    pub const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields", "reply"] };
-    pub const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in", "reply"] };
+    const HEADER: Self =
+        Self { name: "a field of the header", keys: &["bytes", "bits", "values", "normal", "continues"] };
+    const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields", "reply"] };
+    const HEADER_WORD: Self = Self { name: "a word of the header", keys: &["bytes", "bits", "fields"] };
+    const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in", "reply"] };
     pub const CONSTANT: Self = Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
     pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
 
@@ -30,33 +40,33 @@ impl Role {
         self.keys.contains(&key)
     }
 
-    /// Returns the role of a signal.
-    pub fn of_signal(encoding: &Encoding) -> Self {
+    /// Returns the role of a word.
+    pub fn of_word(site: Site) -> Self {
+        if site == Site::Message { Self::WORD } else { Self::HEADER_WORD }
+    }
+
+    /// Returns the role of a packed value.
+    pub fn of_packed(site: Site) -> Self {
+        if site == Site::Message { Self::PACKED } else { Self::HEADER }
+    }
+
+    /// Returns the role of a field that is neither a word nor a packed value.
+    pub fn of_field(site: Site, encoding: &Encoding) -> Self {
+        if site == Site::Message { Self::of_signal(encoding) } else { Self::HEADER }
+    }
+
+    fn of_signal(encoding: &Encoding) -> Self {
         match encoding {
             Encoding::Number { .. } => Self {
                 name: "a number",
-                keys: &[
-                    "bytes",
-                    "bits",
-                    "as",
-                    "scale",
-                    "offset",
-                    "unit",
-                    "range",
-                    "values",
-                    "default",
-                    "in",
-                    "normal",
-                    "continues",
-                    "reply",
-                ],
+                keys: &["bytes", "bits", "as", "scale", "offset", "unit", "range", "values", "default", "in", "reply"],
             },
             Encoding::Float => {
                 Self { name: "a float", keys: &["bytes", "bits", "as", "unit", "range", "default", "in", "reply"] }
             }
             Encoding::Named(_) => Self {
                 name: "a signal of named values",
-                keys: &["bytes", "bits", "as", "values", "default", "in", "normal", "continues", "reply"],
+                keys: &["bytes", "bits", "as", "values", "default", "in", "reply"],
             },
             Encoding::Status(_) => Self { name: "a status word", keys: &["bytes", "bits", "status", "in", "reply"] },
             Encoding::Text => Self { name: "a text", keys: &["bytes", "bits", "as", "default", "in", "reply"] },
@@ -81,15 +91,6 @@ impl Resolver<'_> {
         let field = &merged.sources[0];
         if !merged.field.examples.is_empty() && !field.ancestors().any(|outer| *outer == Path::default().key("types")) {
             self.misplaced(&field.key("examples"), "examples", role);
-        }
-        let in_header = field.ancestors().any(|outer| *outer == Path::default().key("header"));
-        for (key, text) in [("normal", &merged.field.normal), ("continues", &merged.field.continues)] {
-            if text.is_some() && !in_header && role.keys.contains(&"in") {
-                self.misplaced(&merged.path(self.diagnostics, key), key, role);
-            }
-        }
-        if !merged.field.reply.is_empty() && in_header {
-            self.misplaced(&merged.path(self.diagnostics, "reply"), "reply", role);
         }
     }
 

@@ -11,7 +11,7 @@ impl Resolver<'_> {
     pub fn header_selectors(&mut self) {
         let path = Path::default().key("header");
         let spec = self.spec;
-        let leaves = self.signals(&path, &spec.header, None, &Doc::default(), "header");
+        let leaves = self.header_leaves(&path, &spec.header);
         self.tables.given_up_header = leaves.given_up;
         for signal in leaves.signals {
             let (normal, continues) = self.header_values(&signal).unwrap_or_default();

@@ -3,7 +3,7 @@
 use canspec_runtime::Place;
 
 use super::Resolver;
-use super::keys::Role;
+use super::keys::{Role, Site};
 use super::texts::remarks;
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
@@ -42,6 +42,7 @@ impl Leaves {
 /// What a field stands in.
 #[derive(Clone, Copy)]
 struct Outer<'a> {
+    site: Site,
     /// The word whose bits the field's `bits` count.
     word: Option<Place>,
     doc: &'a Doc,
@@ -52,16 +53,10 @@ struct Outer<'a> {
 }
 
 impl Resolver<'_> {
-    /// Resolves fields that may not be constant.
-    pub fn signals(
-        &mut self,
-        path: &Path,
-        fields: &ast::Map<Field>,
-        word: Option<Place>,
-        doc: &Doc,
-        owner: &str,
-    ) -> Leaves {
-        self.free_of_constants(path, fields, Outer { word, doc, owner, around: &[] })
+    /// Resolves the fields of the header.
+    pub fn header_leaves(&mut self, path: &Path, fields: &ast::Map<Field>) -> Leaves {
+        let outer = Outer { site: Site::Header, word: None, doc: &Doc::default(), owner: "header", around: &[] };
+        self.free_of_constants(path, fields, outer)
     }
 
     fn free_of_constants(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer) -> Leaves {
@@ -79,7 +74,7 @@ impl Resolver<'_> {
     pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaves(path, fields, Outer { word: None, doc, owner, around: &[] }, &mut leaves);
+        self.leaves(path, fields, Outer { site: Site::Message, word: None, doc, owner, around: &[] }, &mut leaves);
         leaves.signals.sort_by_key(|signal| first_byte(signal.place));
         leaves
     }
@@ -94,7 +89,13 @@ impl Resolver<'_> {
     pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaf(path, "value", field, Outer { word: None, doc, owner, around: &[] }, &mut leaves);
+        self.leaf(
+            path,
+            "value",
+            field,
+            Outer { site: Site::Message, word: None, doc, owner, around: &[] },
+            &mut leaves,
+        );
         leaves.signals.sort_by_key(|signal| first_byte(signal.place));
         leaves
     }
@@ -121,13 +122,13 @@ impl Resolver<'_> {
         let doc = Doc { title: merged.field.title.clone(), ..doc };
         leaves.replies.push((merged.path(self.diagnostics, "reply"), merged.field.reply.clone()));
         if merged.field.format.is_some() {
-            self.check_keys(merged, Role::PACKED);
+            self.check_keys(merged, Role::of_packed(outer.site));
             leaves.signals.push(self.packed(name, merged, doc, outer)?);
             return Some(());
         }
         let place = self.place(path, name, merged, outer.word)?;
         if !merged.field.fields.is_empty() {
-            self.check_keys(merged, Role::WORD);
+            self.check_keys(merged, Role::of_word(outer.site));
             self.tables.words.push(doc.clone());
             let inside = Outer { word: Some(place), doc: &doc, ..outer };
             self.leaves(&fields, &merged.field.fields.clone(), inside, leaves);
@@ -136,7 +137,7 @@ impl Resolver<'_> {
         let signal = self.signal(name, merged, place, doc, outer.owner)?;
         let is_sound = self.is_sound(merged);
         let constant = merged.field.constant.is_some();
-        self.check_keys(merged, if constant { Role::CONSTANT } else { Role::of_signal(&signal.encoding) });
+        self.check_keys(merged, if constant { Role::CONSTANT } else { Role::of_field(outer.site, &signal.encoding) });
         match &merged.field.constant {
             None => {
                 leaves.signals.push(signal);
