@@ -12,6 +12,7 @@ use crate::syntax::tree::Path;
 pub enum Site {
     Header,
     Message,
+    Packed,
 }
 
 /// What a field is used as, with the keys that it reads beside title, note, section, erratum and `type`.
@@ -31,6 +32,9 @@ impl Role {
         Self { name: "a field of the header", keys: &["bytes", "bits", "values", "normal", "continues"] };
     const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields", "reply"] };
     const HEADER_WORD: Self = Self { name: "a word of the header", keys: &["bytes", "bits", "fields"] };
+    const PACKED_WORD: Self = Self { name: "a word of a packed value", keys: &["bytes", "bits", "fields"] };
+    const PACKED_NUMBER: Self = Self { name: "a number of a packed value", keys: &["bytes", "bits", "range"] };
+    const PACKED_TEXT: Self = Self { name: "a text of a packed value", keys: &["bytes", "bits", "as"] };
     const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in", "reply"] };
     pub const CONSTANT: Self = Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
     pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
@@ -42,17 +46,30 @@ impl Role {
 
     /// Returns the role of a word.
     pub fn of_word(site: Site) -> Self {
-        if site == Site::Message { Self::WORD } else { Self::HEADER_WORD }
+        match site {
+            Site::Message => Self::WORD,
+            Site::Header => Self::HEADER_WORD,
+            Site::Packed => Self::PACKED_WORD,
+        }
     }
 
     /// Returns the role of a packed value.
     pub fn of_packed(site: Site) -> Self {
-        if site == Site::Message { Self::PACKED } else { Self::HEADER }
+        match site {
+            Site::Message => Self::PACKED,
+            Site::Header => Self::HEADER,
+            Site::Packed => Self::PACKED_NUMBER,
+        }
     }
 
     /// Returns the role of a field that is neither a word nor a packed value.
     pub fn of_field(site: Site, encoding: &Encoding) -> Self {
-        if site == Site::Message { Self::of_signal(encoding) } else { Self::HEADER }
+        match (site, encoding) {
+            (Site::Message, _) => Self::of_signal(encoding),
+            (Site::Header, _) => Self::HEADER,
+            (Site::Packed, Encoding::Text) => Self::PACKED_TEXT,
+            (Site::Packed, _) => Self::PACKED_NUMBER,
+        }
     }
 
     fn of_signal(encoding: &Encoding) -> Self {

@@ -381,7 +381,8 @@ impl Resolver<'_> {
     /// Makes one text signal of several parts.
     fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
         let fields = merged.path(self.diagnostics, "fields");
-        let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), Outer { doc: &doc, ..outer });
+        let inside = Outer { site: Site::Packed, doc: &doc, ..outer };
+        let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), inside);
         let parts: Table<PartId, Signal> = leaves.given_up.is_empty().then(|| leaves.signals.into_iter().collect())?;
         let format = merged.field.format.clone()?;
         let at = merged.path(self.diagnostics, "format");
