@@ -27,11 +27,15 @@ impl Resolver<'_> {
             let help = "write `request: {}`, `reply: {}` or `report: {}`";
             self.error_with_help("access", path.at_key(), format!("the access `{name}` has no frames"), help);
         }
+        self.check_not_empty(path, &["in"]);
         let named = self.kinds(&path.key("in"), &access.kinds);
         let carries = if access.kinds.is_empty() { kinds.clone() } else { named };
         self.check_carries(path, name, access, &kinds);
         let answers = self.answers(&path.key("answers"), &access.answers, modes, &kinds);
         let every = self.every(path, access.every.as_deref(), timing);
+        if access.every.is_some() && access.report.is_none() {
+            self.misplaced_every(path, "an access", "add `report: {}`");
+        }
         Access { name: name.to_owned(), doc: remarks!(access).doc(path, None), kinds, carries, answers, every }
     }
 
@@ -79,6 +83,13 @@ impl Resolver<'_> {
             let help = "add `reply: {}` to the access, or write `nobody`";
             self.error_with_help("access", at.at_value(), format!("`{word}` answers, but there is no reply"), help);
         }
+    }
+
+    /// Refuses what says how often a report comes, where there is no report.
+    pub fn misplaced_every(&mut self, path: &Path, what: &str, otherwise: &str) {
+        let text = format!("`every` means nothing for {what} without a report");
+        let help = format!("take it out, or {otherwise}");
+        self.error_with_help("misplaced_key", path.key("every").at_key(), text, help);
     }
 
     /// Finds the time of a cyclic report.

@@ -5,7 +5,7 @@ use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::Encoding;
 use crate::syntax::ast::Field;
-use crate::syntax::tree::Path;
+use crate::syntax::tree::{Node, Path};
 
 /// Where a field stands, which decides the keys that it reads.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -95,6 +95,9 @@ impl Role {
 /// Keys that say which values a field has.
 const OF_VALUES: [&str; 10] = ["bytes", "bits", "as", "scale", "offset", "unit", "values", "fields", "format", "const"];
 
+/// Keys of a field that would say nothing, or less than their absence, if they were empty.
+const NEVER_EMPTY: [&str; 4] = ["values", "fields", "status", "in"];
+
 impl Resolver<'_> {
     /// Refuses the keys of a field, and of its types, that its role does not read.
     pub fn check_keys(&mut self, merged: &Merged, role: Role) {
@@ -104,6 +107,9 @@ impl Resolver<'_> {
                 Some(name) => self.misplaced_by_type(&merged.sources[0], name, &path, key, role),
                 None => self.misplaced(&path, key, role),
             }
+        }
+        for source in &merged.sources {
+            self.check_not_empty(source, &NEVER_EMPTY);
         }
         let field = &merged.sources[0];
         if !merged.field.examples.is_empty() && !field.ancestors().any(|outer| *outer == Path::default().key("types")) {
@@ -115,6 +121,18 @@ impl Resolver<'_> {
     pub fn check_own_keys(&mut self, path: &Path, field: &Field, role: Role) {
         for key in written(field).filter(|key| !role.keys.contains(key)) {
             self.misplaced(&path.key(key), key, role);
+        }
+        self.check_not_empty(path, &NEVER_EMPTY);
+    }
+
+    /// Refuses empty maps and lists after some keys of an item.
+    pub fn check_not_empty(&mut self, item: &Path, keys: &[&str]) {
+        for key in keys {
+            let path = item.key(*key);
+            if self.diagnostics.tree().and_then(|tree| tree.get(&path)).is_some_and(Node::is_empty) {
+                let text = format!("`{key}` is empty, so it says nothing");
+                self.error_with_help("misplaced_key", path.at_key(), text, "write what belongs there, or take it out");
+            }
         }
     }
 

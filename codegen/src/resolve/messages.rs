@@ -83,6 +83,7 @@ impl Resolver<'_> {
         surroundings: &Surroundings,
     ) -> Draft {
         self.check_name(path, name);
+        self.check_not_empty(path, &["answers", "models", "members", "in"]);
         let doc = remarks!(message).doc(path, None);
         let leaves = self.contents(path, name, message, &doc);
         let length = message.length.as_ref().and_then(|text| self.integer(&path.key("length"), text, 0, 8));
@@ -110,6 +111,10 @@ impl Resolver<'_> {
         let always = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| *constant);
         let constants = choice.matched.iter().copied().chain(always).collect();
         let every = self.every(path, message.every.as_deref(), surroundings.timing);
+        let reports = |exchange: &Exchange| surroundings.accesses[exchange.access].kinds.contains(&Kind::Report);
+        if message.every.is_some() && exchanges.len() == message.access.len() && !exchanges.iter().any(reports) {
+            self.misplaced_every(path, "a message", "name an access that has a `report`");
+        }
         let models = self.message_models(&path.key("models"), &message.models);
         let name = name.to_owned();
         let message = Message {

@@ -61,6 +61,15 @@ impl Node {
         }
     }
 
+    /// Tells whether it is a map or a list without entries.
+    pub fn is_empty(&self) -> bool {
+        match &self.content {
+            Content::List(items) => items.is_empty(),
+            Content::Map(entries) => entries.is_empty(),
+            Content::Text(_) | Content::Refused => false,
+        }
+    }
+
     /// Returns the value of a key of a map.
     pub fn child_at(&self, key: &str) -> Option<&Node> {
         Some(&self.entries()?.get(key)?.value)
