@@ -388,6 +388,7 @@ impl Resolver<'_> {
         let at = merged.path(self.diagnostics, "format");
         let pieces = self.pieces(&at, &format, &parts)?;
         self.check_pieces(&at, &pieces, &parts);
+        self.check_ends(&at, &pieces, &parts);
         let place = self.packed_place(&at, &parts)?;
         let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, "in"), &merged.field.kinds);
         let (range_path, default_path) = (doc.path.key("range"), doc.path.key("default"));
@@ -450,6 +451,29 @@ impl Resolver<'_> {
                 let help = "show every part once, or the text cannot be read back";
                 self.error_with_help("format", path.at_value(), message, help);
             }
+        }
+    }
+
+    /// Tests that a number without so many digits ends where no digit follows.
+    fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &[Signal]) {
+        let number = |piece: &Piece| match piece {
+            Piece::Part { part, digits } if !matches!(parts[*part].encoding, Encoding::Text) => Some((*part, *digits)),
+            _ => None,
+        };
+        for pair in pieces.windows(2) {
+            let Some((part, None)) = number(&pair[0]) else { continue };
+            let name = &parts[part].name;
+            let after = match (&pair[1], number(&pair[1])) {
+                (_, Some((other, _))) => format!("the number `{}`", parts[other].name),
+                (Piece::Literal(text), _) if text.starts_with(|letter: char| letter.is_ascii_digit()) => {
+                    format!("the text `{text}`")
+                }
+                _ => continue,
+            };
+            let text = format!("nothing shows where the number `{name}` ends and {after} begins");
+            let help =
+                format!("say how many digits it has, as in `{{{name}:3}}`, or put what is no digit between the two");
+            self.error_with_help("format", path.at_value(), text, help);
         }
     }
 
