@@ -130,7 +130,7 @@ fn measuring(name: &Ident, lengths: &TokenStream) -> TokenStream {
 }
 
 /// Names an argument if the body uses it.
-fn argument(name: &str, body: &TokenStream) -> TokenStream {
+pub fn argument(name: &str, body: &TokenStream) -> TokenStream {
     let name = ident(name);
     if mentions(body, &name.to_string()) { quote!(#name) } else { quote!(_) }
 }

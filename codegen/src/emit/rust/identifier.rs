@@ -4,6 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
+use super::dispatch::argument;
 use super::doc;
 use super::literal::hexadecimal;
 use super::names::{Names, ident, screaming};
@@ -96,9 +97,9 @@ pub fn unnamed(identifier: &Identifier) -> (u32, u32) {
 
 /// Emits a test of an identifier, or of none if it always comes out the same.
 fn test(name: &str, condition: Option<TokenStream>) -> TokenStream {
-    let name = ident(name);
-    let never = quote!(fn #name(_: u32) -> bool { false });
-    condition.map_or(never, |condition| quote!(fn #name(id: u32) -> bool { #condition }))
+    let condition = condition.unwrap_or_else(|| quote!(false));
+    let (name, id) = (ident(name), argument("id", &condition));
+    quote!(fn #name(#id: u32) -> bool { #condition })
 }
 
 fn foreign(protocol: &Protocol) -> Option<TokenStream> {
