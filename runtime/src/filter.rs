@@ -75,6 +75,20 @@ impl Filter {
         self
     }
 
+    /// Writes into the selectors, where no value is required, what says that a reply is no error reply.
+    #[must_use]
+    pub(crate) const fn accepting(mut self) -> Self {
+        let mut selectors = self.selectors;
+        while let [selector, others @ ..] = selectors {
+            let is_required = word(selector.place.mask()) & word(self.data_mask) != 0;
+            if let (Some(normal), false) = (selector.normal, is_required) {
+                selector.place.put(&mut self.data_value, normal);
+            }
+            selectors = others;
+        }
+        self
+    }
+
     /// Sets which selectors such frames have in their data.
     #[must_use]
     pub const fn selectors(self, selectors: &'static [Selector]) -> Self {
@@ -151,7 +165,7 @@ impl Filter {
         self.id_value
     }
 
-    /// Returns the frame that shows what the filter asks for, with zeros elsewhere.
+    /// Returns the frame that shows what the filter asks for, with zeros elsewhere; a reply is no error reply.
     pub const fn frame(&self, length: u8) -> Frame {
         Frame::new_raw(self.id_value, self.extended, self.data_value, length)
     }
@@ -194,6 +208,16 @@ mod tests {
         assert!(filter.matches(&frame(0, 0x41)));
         assert!(!filter.matches(&frame(0, 0x42)));
         assert_eq!(filter.frame(2).bytes(), [0x41, 0, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn what_says_that_a_reply_is_no_error_is_written_where_nothing_is_required() {
+        const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
+        let reply = Filter::EXTENDED.selectors(&[RESULT]).data(FUNCTION, 0x41);
+        assert_eq!(reply.accepting().frame(8).bytes(), [0x41, 0xF0, 0, 0, 0, 0, 0, 0]);
+        assert!(reply.accepting().matches(&frame(0, 0x41)));
+        let refused = reply.data(RESULT.place, 0xF2);
+        assert_eq!(refused.accepting(), refused);
     }
 
     #[test]

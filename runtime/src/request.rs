@@ -143,13 +143,13 @@ impl Exchange {
     /// Adds what a reply shows.
     #[must_use]
     pub const fn reply(self, reply: Filter) -> Self {
-        Self { reply: Some(reply), ..self }
+        Self { reply: Some(reply.accepting()), ..self }
     }
 
     /// Adds what a report shows.
     #[must_use]
     pub const fn report(self, report: Filter) -> Self {
-        Self { report: Some(report), ..self }
+        Self { report: Some(report.accepting()), ..self }
     }
 
     /// Adds what refuses a request in place of the reply: another message's reply, which says why.

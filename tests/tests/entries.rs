@@ -107,3 +107,15 @@ fn a_request_that_carries_values_is_not_built_without_them() {
 fn frame(id: u32, data: u64) -> Frame {
     Frame::new_raw(id, true, data.to_be_bytes(), 8)
 }
+
+#[test]
+fn a_blank_reply_is_none_that_refuses() {
+    let request = OutputVoltage::read(Target::Module(1)).expect("the module is in range");
+    let blank = request.replies().filter().expect("the module answers").frame(8);
+    // The document prints 060F8008#41F00001442F0000 for 700 V, where F0 says that the request was carried out.
+    assert_eq!(blank, frame(0x060F_8008, 0x41F0_0001_0000_0000));
+    let blank = Message::decode(&blank).expect("it is a frame of the protocol");
+    let full = Message::OutputVoltage(OutputVoltage { value_v: 700.0 });
+    assert_eq!(blank.reply(), Some(Ok(&Message::OutputVoltage(OutputVoltage { value_v: 0.0 }))));
+    assert_eq!(blank.with_content(full).encode(), Ok(frame(0x060F_8008, 0x41F0_0001_442F_0000)));
+}

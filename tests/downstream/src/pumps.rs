@@ -1,6 +1,6 @@
 //! A driver for circulation pumps of several models, and a pump that is simulated.
 
-use crate::pump::{Error, Frame, Identifier, Message, Model, Motion, Request, SetSpeed, Target, embedded_can};
+use crate::pump::{Error, Frame, Identifier, Kind, Message, Model, Motion, Request, SetSpeed, Target, embedded_can};
 
 /// Finds the model that a configuration names.
 pub fn model(name: &str) -> Option<Model> {
@@ -26,9 +26,9 @@ pub fn flow(model: Model, frame: &impl embedded_can::Frame) -> Option<f64> {
 
 /// Builds the report of a simulated pump.
 pub fn report(pump: u8, motion: Motion) -> Option<Frame> {
-    let empty = Message::decode(&Frame::new_raw(0x501, false, [0; 8], 4)).ok()?;
-    let identifier = Identifier { pump, ..empty.identifier() };
-    empty.with_identifier(identifier).with_content(Message::Motion(motion)).encode().ok()
+    let blank = Message::decode(&Motion::REPORT.filter(Kind::Report)?.frame(4)).ok()?;
+    let identifier = Identifier { pump, ..blank.identifier() };
+    blank.with_identifier(identifier).with_content(Message::Motion(motion)).encode().ok()
 }
 
 /// Builds the same frame with the highest priority.
