@@ -1,8 +1,9 @@
 //! From a frame to a message with its values.
 
 use std::cmp::Reverse;
+use std::fmt::Display;
 
-use super::value::{extended, float, in_range, named, physical};
+use super::value::{float, in_range, named, physical};
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
 use crate::model::{
     AddressPattern, Course, Direction, Encoding, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId,
@@ -406,20 +407,20 @@ fn signal_note(signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Op
         (_, Value::Status { unknown, .. }) if *unknown != 0 => {
             note("unknown_bit", format!("{name} has bits {unknown:#X} set that have no name"))
         }
-        (Encoding::Number { signed, .. }, Value::Integer(_)) => {
+        (_, Value::Integer(whole)) => {
             #[allow(clippy::cast_precision_loss, reason = "ranges of unscaled signals lie below 2^53")]
-            let value = extended(signal, reading.bits, *signed) as f64;
-            range_note(signal, model, value)
+            let value = *whole as f64;
+            range_note(signal, model, value, whole)
         }
-        (_, Value::Number(value)) => range_note(signal, model, *value),
+        (_, Value::Number(value)) => range_note(signal, model, *value, value),
         _ => None,
     }
 }
 
-fn range_note(signal: &Signal, model: Option<ModelId>, value: f64) -> Option<Note> {
+fn range_note(signal: &Signal, model: Option<ModelId>, value: f64, shown: &dyn Display) -> Option<Note> {
     let range = signal.range_for(model).filter(|range| !in_range(signal, range, value))?;
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
-    let text = format!("{} {value}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
+    let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
     Some(Note { rule: "out_of_range", text })
 }
 

@@ -1,6 +1,7 @@
 //! One signal: raw bits to physical value and back.
 
 use std::cmp::Ordering;
+use std::fmt::Display;
 
 use canspec_runtime::{Scale, nearest};
 
@@ -41,7 +42,7 @@ pub fn physical(protocol: &Protocol, signal: &Signal, bits: u64) -> Value {
 }
 
 /// Returns the raw number of a signal's bits.
-pub fn extended(signal: &Signal, bits: u64, signed: bool) -> i128 {
+fn extended(signal: &Signal, bits: u64, signed: bool) -> i128 {
     let width = signal.place.width();
     let negative = signed && bits >> (width - 1) & 1 == 1;
     i128::from(bits) - if negative { 1 << width } else { 0 }
@@ -182,9 +183,9 @@ impl Encoder<'_> {
     /// Encodes an unscaled number.
     fn whole(&self, value: i128, signed: bool) -> Result<u64, String> {
         if !self.is_special(value) {
-            self.check_range(as_double(value))?;
+            self.check_shown(as_double(value), &value)?;
         }
-        self.bits(value, signed).map_err(|_| self.misfit(as_double(value)))
+        self.bits(value, signed).map_err(|_| self.misfit(value))
     }
 
     fn is_special(&self, raw: i128) -> bool {
@@ -219,11 +220,16 @@ impl Encoder<'_> {
     }
 
     fn check_range(&self, value: f64) -> Result<(), String> {
+        self.check_shown(value, &value)
+    }
+
+    /// Tests a number that a double may only come near to.
+    fn check_shown(&self, value: f64, shown: &dyn Display) -> Result<(), String> {
         let Limits::Range(model) = self.limits else { return Ok(()) };
         let range = self.signal.range_for(model).filter(|range| !in_range(self.signal, range, value));
         let Some(range) = range else { return Ok(()) };
         let unit = self.unit();
-        Err(format!("{value}{unit} is outside {}..{}{unit}", range.minimum, range.maximum))
+        Err(format!("{shown}{unit} is outside {}..{}{unit}", range.minimum, range.maximum))
     }
 
     fn unit(&self) -> String {
@@ -231,7 +237,7 @@ impl Encoder<'_> {
     }
 
     /// Says what the bits can hold.
-    fn misfit(&self, value: f64) -> String {
+    fn misfit(&self, value: impl Display) -> String {
         let (unit, width) = (self.unit(), self.signal.place.width());
         self.signal.held().map_or_else(
             || format!("{value}{unit} does not fit a floating-point number of 32 bits"),

@@ -13,6 +13,22 @@ use canspec_codegen::model::{ModelId, Protocol};
 use canspec_codegen::source::Source;
 use canspec_codegen::{Outcome, compile};
 
+/// Numbers of 64 bits that are set and read.
+const WIDE: &str = r#"
+canspec: 1
+protocol: wide
+title: Counters
+document: {title: Made up, version: "1"}
+length: 8
+identifier: {direction: {bits: 10}, command: {bits: 9..4}, node: {bits: 3..0}}
+types: {counter: {range: 1..9}}
+addressing: {single: {request: {direction: 0, node: counter}, one: {direction: 1, node: counter}}}
+access: {set: {request: {}, reply: {}, answers: {single: one}}}
+messages:
+  positive: {section: "1", match: {command: 1}, access: [set], value: {bytes: 0..7, range: 0..1000}}
+  negative: {section: "1", match: {command: 2}, access: [set], value: {bytes: 7..0, as: signed, range: 0..1000}}
+"#;
+
 /// Returns the specs of a folder of the workspace, in order.
 fn specs(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
@@ -33,6 +49,13 @@ fn feature(name: &str) -> Protocol {
 /// Compiles a spec of the workspace.
 fn protocol(path: &str) -> Protocol {
     let Outcome { protocol, diagnostics, .. } = outcome(&Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path));
+    protocol.unwrap_or_else(|| panic!("{}", diagnostics.concise()))
+}
+
+/// Compiles a text.
+fn written(spec: &str) -> Protocol {
+    let Outcome { protocol, diagnostics, .. } =
+        compile(Source::new("written.yaml", spec.into()).expect("it is a text"));
     protocol.unwrap_or_else(|| panic!("{}", diagnostics.concise()))
 }
 
@@ -77,6 +100,11 @@ fn values(protocol: &Protocol, text: &str) -> Vec<(String, Value)> {
     let decoded = decoded(protocol, text);
     let signals = &protocol.messages[decoded.message].signals;
     decoded.signals.into_iter().map(|reading| (signals[reading.signal].name.clone(), reading.value)).collect()
+}
+
+/// Returns the texts of a frame's notes.
+fn note_texts(protocol: &Protocol, text: &str) -> Vec<String> {
+    decoded(protocol, text).notes.into_iter().map(|note| note.text).collect()
 }
 
 /// Returns the rules of a frame's notes.

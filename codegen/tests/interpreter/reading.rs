@@ -4,7 +4,7 @@ use canspec_codegen::compile;
 use canspec_codegen::interpret::{Problem, Value};
 use canspec_codegen::source::Source;
 
-use super::{decoded, feature, message, model, notes, problem, protocol, values};
+use super::{WIDE, decoded, feature, message, model, note_texts, notes, problem, protocol, values, written};
 
 fn named(name: &str) -> Value {
     Value::Name(name.to_owned())
@@ -97,6 +97,15 @@ fn a_value_beyond_its_range_gets_a_note() {
     let levels = feature("addressing");
     assert_eq!(notes(&levels, "004303F0#6400000000000000"), [""; 0]);
     assert_eq!(notes(&levels, "004303F0#6500000000000000"), ["out_of_range"]);
+}
+
+#[test]
+fn the_note_of_a_wide_number_has_all_its_digits() {
+    let wide = written(WIDE);
+    let note = note_texts(&wide, "011#FFFFFFFFFFFFFFFF");
+    assert_eq!(note, ["value 18446744073709551615 is outside 0..1000"]);
+    let note = note_texts(&wide, "021#0100000000000080");
+    assert_eq!(note, ["value -9223372036854775807 is outside 0..1000"]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use canspec_codegen::interpret::{Target, requests};
 use canspec_codegen::model::Protocol;
 
-use super::{feature, model, printed, protocol, requested};
+use super::{WIDE, feature, model, printed, protocol, requested, written};
 
 fn output(signals: &[(&str, &str)]) -> Option<String> {
     requested(&feature("scaled_signal"), None, "set_output", "module:3", signals).ok()
@@ -37,6 +37,17 @@ fn both_ends_of_a_range_are_legal_and_what_lies_beyond_is_refused() {
     assert_eq!(["41.4", "58.6", "41.49"].map(voltage), [false; 3]);
     assert_eq!([power("327670").is_some(), power("-327680").is_some()], [true; 2]);
     assert_eq!([power("327680").is_some(), power("-327690").is_some()], [false; 2]);
+}
+
+#[test]
+fn a_wide_number_is_refused_with_all_its_digits() {
+    let refused = |message: &str, value: &str| {
+        let refusal = requested(&written(WIDE), None, message, "counter:1", &[("value", value)]);
+        refusal.expect_err("it is out of range").to_string()
+    };
+    let (highest, lowest) = ("18446744073709551615", "-9223372036854775807");
+    assert_eq!(refused("positive", highest), format!("positive.value: {highest} is outside 0..1000"));
+    assert_eq!(refused("negative", lowest), format!("negative.value: {lowest} is outside 0..1000"));
 }
 
 #[test]

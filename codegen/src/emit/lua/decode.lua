@@ -45,7 +45,9 @@ local function digits(value, count)
 end
 
 local function plain(value)
-  return type(value) ~= "number" and tostring(value) or string.format("%.15g", value)
+  if type(value) ~= "number" then return tostring(value) end
+  local is_whole = math.abs(value) < 2 ^ 53 and value == math.floor(value)
+  return string.format(is_whole and "%.0f" or "%.15g", value)
 end
 
 local function lies_within(value, ranges)
@@ -161,7 +163,7 @@ end
 
 local function range_note(signal, model, value)
   local range = signal.model_ranges and signal.model_ranges[model] or signal.range
-  if not range or lies_within(value, { range }) then return end
+  if not range or lies_within(double(value), { range }) then return end
   local unit = signal.unit and " " .. signal.unit or ""
   local limits = plain(range[1]) .. ".." .. plain(range[2]) .. unit
   return "out_of_range", signal.name .. " " .. plain(value) .. unit .. " is outside " .. limits
@@ -175,7 +177,7 @@ local function reading(frame, signal)
   if special then return { signal = signal, raw = raw, name = special } end
   local value, rule, text = values[signal.kind](signal, raw, frame)
   local is_number = signal.kind == "integer" or signal.kind == "number" or signal.kind == "float"
-  if is_number and value then rule, text = range_note(signal, frame.model, double(value)) end
+  if is_number and value then rule, text = range_note(signal, frame.model, value) end
   return { signal = signal, raw = raw, value = value, rule = rule, text = text }
 end
 
