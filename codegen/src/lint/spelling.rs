@@ -2,6 +2,8 @@
 
 mod words;
 
+use std::ops::RangeInclusive;
+
 use super::table::{Name, Table};
 use crate::diagnostic::Diagnostic;
 use crate::syntax::tree::{Node, Path};
@@ -15,6 +17,9 @@ const SHORTEST: usize = 4;
 
 /// Shortest word in which a letter may be missing, wrong or too many; shorter ones are too like each other.
 const LONG_WORD: usize = 5;
+
+/// What stands between the ends of a range.
+const TO: [&str; 6] = ["to", "..", "...", "…", "-", "–"];
 
 /// Most strange names that are looked at, so that a file of many thousands takes no longer.
 const MOST: usize = 500;
@@ -89,8 +94,12 @@ fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
 /// Notices a number in a name that is not in its title, where the title has the words of the name and other numbers.
 fn misnumbered(name: &Name) -> Option<Diagnostic> {
     let title = name.title?;
-    let others: Vec<_> = numbers(title).collect();
-    let number = numbers(name.text).find(|number| !others.contains(number))?;
+    let title_numbers: Vec<_> = numbers(title).collect();
+    let ranges = ranges(title, &title_numbers);
+    let is_in_range =
+        |number: &str| ranges.iter().any(|range| number.parse().is_ok_and(|number| range.contains(&number)));
+    let others: Vec<_> = title_numbers.iter().copied().filter(|number| !is_in_range(number)).collect();
+    let number = numbers(name.text).find(|number| !others.contains(number) && !is_in_range(number))?;
     let mut own_words = words(name.text).peekable();
     own_words.peek().filter(|_| !others.is_empty())?;
     if !own_words.all(|word| words(title).any(|other| word.eq_ignore_ascii_case(other))) {
@@ -105,4 +114,13 @@ fn misnumbered(name: &Name) -> Option<Diagnostic> {
 fn numbers(text: &str) -> impl Iterator<Item = &str> {
     let digits = text.split(|letter: char| !letter.is_ascii_digit()).filter(|digits| !digits.is_empty());
     digits.map(|digits| digits.trim_start_matches('0')).map(|digits| if digits.is_empty() { "0" } else { digits })
+}
+
+/// Returns the ranges in a text, such as `5 to 11`: they say what is inside, and are no number of the whole.
+fn ranges(text: &str, numbers: &[&str]) -> Vec<RangeInclusive<u64>> {
+    let is_digit = |letter: char| letter.is_ascii_digit();
+    let between = text.split(is_digit).filter(|between| !between.is_empty());
+    let between = between.skip(usize::from(!text.starts_with(is_digit)));
+    let pairs = numbers.windows(2).zip(between).filter(|(_, between)| TO.contains(&between.trim()));
+    pairs.filter_map(|(pair, _)| Some(pair[0].parse().ok()?..=pair[1].parse().ok()?)).collect()
 }
