@@ -1,8 +1,6 @@
 //! From frames to values.
 
-use canspec_codegen::compile;
 use canspec_codegen::interpret::{Problem, Value};
-use canspec_codegen::source::Source;
 
 use super::{WIDE, decoded, feature, message, model, note_texts, notes, problem, protocol, values, written};
 
@@ -169,12 +167,34 @@ models: {L: {section: "1"}, R: {section: "1"}}
 
 #[test]
 fn the_message_of_another_model_is_noted_only_if_the_frame_can_be_that_one() {
-    let outcome = compile(Source::new("ends.yaml", ENDS.into()).expect("plain text"));
-    let ends = outcome.protocol.unwrap_or_else(|| panic!("{}", outcome.diagnostics.concise()));
+    let ends = written(ENDS);
     // Command 1 is bit 2, the right end bit 1, a report bit 0.
     assert_eq!((message(&ends, None, "005#07"), notes(&ends, "005#07")), ("left", vec![]));
     assert_eq!((message(&ends, None, "007#07"), notes(&ends, "007#07")), ("right", vec![]));
     assert_eq!(notes(&feature("model_layouts"), "003#08FC"), ["model_dependent"]);
+}
+
+/// One frame that is another message on each of three kinds of devices.
+const KINDS: &str = r#"
+canspec: 1
+protocol: kinds
+title: Three kinds
+document: {title: Kinds, version: "1"}
+length: 1
+identifier: {command: {bits: 10..1}, sender: {bits: 0}}
+addressing: {all: {request: {sender: 0}, one: {sender: 1}}}
+access: {read: {request: {}, reply: {}, in: [reply], answers: {all: one}}, report: {report: {}, answers: {all: one}}}
+messages:
+  speed: {section: "1", match: {command: 1}, access: [report], models: [A], value: {bytes: 0, unit: rpm}}
+  power: {section: "1", match: {command: 1}, access: [report], models: [B, C], value: {bytes: 0, unit: W}}
+  level: {section: "1", match: {command: 1}, access: [report], models: [D], value: {bytes: 0, unit: "%"}}
+models: {A: {section: "1"}, B: {section: "1"}, C: {section: "1"}, D: {section: "1"}}
+"#;
+
+#[test]
+fn the_note_of_a_message_that_depends_on_the_model_names_each_of_the_others() {
+    let texts = note_texts(&written(KINDS), "003#07");
+    assert_eq!(texts, ["it is `power` if the model is B or C, and `level` if the model is D"]);
 }
 
 #[test]

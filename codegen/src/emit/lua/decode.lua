@@ -389,6 +389,13 @@ local function rank(frame, shape)
   return { is_of_model = is_of_model(shape.message, frame.model), fit = known.fit, constants = known.constants }
 end
 
+-- Names a message and the device models that have it.
+local function of_models(message)
+  local names = {}
+  for index, model in ipairs(message.models) do names[index] = protocol.models[model] end
+  return "`" .. message.name .. "` if the model is " .. table.concat(names, " or ")
+end
+
 -- Returns the shape that fits best, and the note that it depends on the device model.
 local function best(frame, shapes)
   local chosen, ranked = shapes[1], rank(frame, shapes[1])
@@ -401,13 +408,15 @@ local function best(frame, shapes)
     if is_of_model(message, frame.model) then return chosen end
     return chosen, protocol.models[frame.model] .. " has no message `" .. message.name .. "`"
   end
+  local others = {}
   for _, shape in ipairs(shapes) do
     local other = rank(frame, shape)
     if is_apart(message, shape.message) and not compare(other, ranked) and not compare(ranked, other) then
-      return chosen, "it is `" .. shape.message.name .. "` on other models"
+      local text = of_models(shape.message)
+      if others[#others] ~= text then others[#others + 1] = text end
     end
   end
-  return chosen
+  return chosen, #others > 0 and "it is " .. table.concat(others, ", and ") or nil
 end
 
 -- Notes: what the document does not foresee.
