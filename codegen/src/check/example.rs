@@ -148,12 +148,14 @@ impl<'a> Checker<'a> {
                 return Err(contradicted(meaning.path.at_value(), text, field));
             };
             let read = shown(self.protocol, signal, &reading.value, reading.bits);
-            if self.is_slip_in_frame(signal, meaning, &read) {
+            let diagnostic = if self.is_slip_in_frame(signal, meaning, &read) {
                 let text = format!("this frame says {read} for `{}`, one digit from {}", signal.name, meaning.text);
-                return Err(contradicted(self.frame_at(), text, (meaning.path.at_value(), "what it means")));
-            }
-            let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
-            return Err(contradicted(meaning.path.at_value(), text, field));
+                contradicted(self.frame_at(), text, (meaning.path.at_value(), "what it means"))
+            } else {
+                let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
+                contradicted(meaning.path.at_value(), text, field)
+            };
+            return Err(Box::new(Diagnostic { help: unnamed_bits(&reading.value, &read), ..*diagnostic }));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {
@@ -304,9 +306,21 @@ fn shown(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Stri
         Input::Integer(value) => format!("{value}{unit}"),
         Input::Number(value) => format!("{value}{unit}"),
         Input::Text(text) => text,
-        Input::Status { set, unknown: 0 } => format!("[{}]", set.join(", ")),
-        Input::Status { set, unknown } => format!("[{}] and {unknown:#X}", set.join(", ")),
+        Input::Status { set, unknown } => {
+            let numbers = (0..64).filter(|bit| unknown >> bit & 1 == 1).map(|bit: u8| bit.to_string());
+            format!("[{}]", set.into_iter().chain(numbers).collect::<Vec<_>>().join(", "))
+        }
     }
+}
+
+/// Says how an example holds a status bit that has no name.
+fn unnamed_bits(value: &Value, read: &str) -> Option<String> {
+    let is_unnamed = matches!(value, Value::Status { unknown, .. } if *unknown != 0);
+    is_unnamed.then(|| {
+        format!(
+            "a number is a bit without a name: name it in the status word, or write `{read}` and `notes: [unknown_bit]`"
+        )
+    })
 }
 
 fn wrong(at: At, text: String) -> Box<Diagnostic> {

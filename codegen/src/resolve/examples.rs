@@ -264,15 +264,7 @@ impl Resolver<'_> {
             return None;
         };
         let bits = &self.tables.status_words[index].bits;
-        let known: Vec<_> = bits.iter().map(|bit| bit.name.as_str()).collect();
-        Some(names.iter().try_fold(0, |raw, name| {
-            let bit = bits.iter().find(|bit| bit.name == *name);
-            let missing = || {
-                let why = format!("`{}` has no status bit `{name}`", signal.name);
-                Misfit::with_help(why, suggestion("status bit", name, &known))
-            };
-            Ok(raw | 1 << bit.ok_or_else(missing)?.bit)
-        }))
+        Some(names.iter().try_fold(0, |raw, name| Ok(raw | 1 << status_bit(signal, bits, name)?)))
     }
 
     /// Resolves the examples of types: bytes alone, and what they mean.
@@ -324,6 +316,30 @@ fn example_remarks(example: &ast::Example) -> super::texts::Remarks<'_> {
 
 fn remarks_of_value(example: &ast::ValueExample) -> super::texts::Remarks<'_> {
     super::texts::Remarks { title: &None, note: &None, section: &example.section, erratum: &example.erratum }
+}
+
+/// Finds the bit of a status word that a name stands for; a bit without a name has its number for one.
+fn status_bit(signal: &Signal, bits: &[StatusBit], name: &str) -> Result<u8, Misfit> {
+    if let Some(bit) = bits.iter().find(|bit| bit.name == name) {
+        return Ok(bit.bit);
+    }
+    let Ok(number) = name.parse::<u8>() else {
+        let known: Vec<_> = bits.iter().map(|bit| bit.name.as_str()).collect();
+        let why = format!("`{}` has no status bit `{name}`", signal.name);
+        return Err(Misfit::with_help(why, suggestion("status bit", name, &known)));
+    };
+    let width = signal.place.width();
+    if number >= width {
+        let why = format!("there is no bit {number} in the {width} bits of `{}`", signal.name);
+        return Err(Misfit::with_help(why, format!("its bits are 0 to {}", width - 1)));
+    }
+    match bits.iter().find(|bit| bit.bit == number) {
+        Some(bit) => {
+            let why = format!("bit {number} of `{}` has a name", signal.name);
+            Err(Misfit::with_help(why, format!("write `{}`", bit.name)))
+        }
+        None => Ok(number),
+    }
 }
 
 /// Reads pairs of hexadecimal digits.

@@ -51,11 +51,14 @@ pub fn digits_apart(signal: &Signal, data: [u8; 8], raw: u64) -> usize {
 
 /// An example names a bit that the word does not have, and its frame sets one that has no name.
 fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
-    let names: Vec<_> = denial.meaning.text.trim_matches(['[', ']']).split(", ").collect();
-    let known = |name: &str| bits.iter().find(|bit| bit.name == name);
-    let mut unknown = names.iter().filter(|name| known(name).is_none());
+    let names = denial.meaning.text.trim_matches(['[', ']']).split(", ").filter(|name| !name.is_empty());
+    let number = |name: &str| {
+        let known = bits.iter().find(|bit| bit.name == name).map(|bit| bit.bit);
+        known.or_else(|| name.parse().ok().filter(|number| *number < 64))
+    };
+    let mut unknown = names.clone().filter(|name| number(name).is_none());
     let (name, None) = (unknown.next()?, unknown.next()) else { return None };
-    let said = names.iter().filter_map(|name| known(name)).fold(0, |mask, bit| mask | 1 << bit.bit);
+    let said = names.filter_map(number).fold(0, |mask, bit| mask | 1 << bit);
     let surplus = denial.bits ^ said;
     let number = surplus.trailing_zeros();
     if !surplus.is_power_of_two() || bits.iter().any(|bit| u32::from(bit.bit) == number) {

@@ -100,7 +100,7 @@ pub struct Example {
 pub enum Means {
     /// A number with its unit, a name or a text: `500 V`.
     Value(String),
-    /// Names of the set bits of a status word: `[fan_fault]`, or `[]` if none is set.
+    /// Names of the set bits of a status word, or the numbers of those without a name: `[fan_fault, 28]`, or `[]` if none is set.
     Bits(Vec<String>),
     /// A value for each signal: `{voltage: 500 V, alarms: []}`.
     Signals(Map<Means>),
