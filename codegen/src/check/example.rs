@@ -1,6 +1,7 @@
 #![doc = include_str!("../rules/example.md")]
 #![doc = include_str!("../rules/expected_failure.md")]
 
+mod accused;
 mod evidence;
 mod limit;
 mod repair;
@@ -26,7 +27,7 @@ pub struct Counts {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
     let mut counts = Counts::default();
-    let mut explained = evidence::blame(protocol, diagnostics);
+    let mut explained = accused::blame(protocol, diagnostics);
     for (message, frames) in unread::find(protocol) {
         diagnostics.push(unread::report(&protocol.messages[message], &frames));
         explained.extend(frames);

@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::interpret::NOTES;
 use crate::model::{
     Doc, Encoding, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, Signal, SignalId,
-    Table, ValueExample,
+    StatusBit, Table, ValueExample,
 };
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;

@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::texts::remarks;
-use crate::model::{Constant, Doc, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
+use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
 

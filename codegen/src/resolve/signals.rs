@@ -455,7 +455,7 @@ impl Resolver<'_> {
     }
 
     /// Tests that a number without so many digits ends where no digit follows.
-    fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &[Signal]) {
+    fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &Table<PartId, Signal>) {
         let number = |piece: &Piece| match piece {
             Piece::Part { part, digits } if !matches!(parts[*part].encoding, Encoding::Text) => Some((*part, *digits)),
             _ => None,

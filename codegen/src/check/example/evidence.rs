@@ -1,21 +1,15 @@
-//! Whom to blame where an example and a field disagree.
+//! What examples say of fields.
 //!
 //! An example says everything twice, by its bytes and by its meaning, so that one slip of its writer leaves the two a digit apart. What
 //! lies further apart, or what several examples deny, is rather a mistake in the field.
 
-use std::collections::HashSet;
-
 use indexmap::IndexMap;
 
-use super::repair::{self, Repair};
 use super::shown;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{Frame, Reading, decode};
-use crate::model::{Encoding, Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
+use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
 use crate::syntax::tree::{Content, Path};
-
-/// Most examples that are shown beside a field.
-const SHOWN: usize = 3;
 
 /// What one example says of a field.
 pub struct Evidence<'a> {
@@ -27,7 +21,8 @@ pub struct Evidence<'a> {
     reserved: [u8; 8],
     /// What the field makes of these bytes.
     bits: u64,
-    read: String,
+    /// The same as text.
+    pub read: String,
 }
 
 impl Evidence<'_> {
@@ -36,7 +31,7 @@ impl Evidence<'_> {
     }
 
     /// Tells whether the two sides are a digit of the frame apart, where set bits that no field holds count as well.
-    fn is_slip(&self, signal: &Signal) -> bool {
+    pub fn is_slip(&self, signal: &Signal) -> bool {
         let Ok(raw) = self.meaning.raw else { return false };
         digits_apart(signal, self.data, raw) + nibbles(self.reserved).filter(|nibble| *nibble != 0).count() <= 1
     }
@@ -50,7 +45,7 @@ pub fn digits_apart(signal: &Signal, data: [u8; 8], raw: u64) -> usize {
 }
 
 /// An example names a bit that the word does not have, and its frame sets one that has no name.
-fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
+pub fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
     let names = denial.meaning.text.trim_matches(['[', ']']).split(", ").filter(|name| !name.is_empty());
     let number = |name: &str| {
         let known = bits.iter().find(|bit| bit.name == name).map(|bit| bit.bit);
@@ -75,22 +70,8 @@ fn nibbles(data: [u8; 8]) -> impl Iterator<Item = u8> {
     data.into_iter().flat_map(|byte| [byte >> 4, byte & 0xF])
 }
 
-/// Blames the fields that are rather wrong than their examples; returns the places of what these say, which is thereby explained.
-pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path> {
-    let mut explained = HashSet::new();
-    for ((message, signal), evidence) in &collect(protocol) {
-        let message = &protocol.messages[*message];
-        let field = Field { protocol, message: &message.name, signal: &message[*signal], evidence };
-        if let Some(diagnostic) = field.blamed(diagnostics) {
-            diagnostics.push_first(diagnostic);
-            explained.extend(field.denials().map(|denial| denial.meaning.path.clone()));
-        }
-    }
-    explained
-}
-
 /// Collects what the examples that must hold say of each field, by message and signal.
-fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evidence<'_>>> {
+pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evidence<'_>>> {
     let mut fields: IndexMap<_, Vec<_>> = IndexMap::new();
     for example in protocol.examples.iter().filter(|example| example.fails.is_none() && example.data.is_some()) {
         let frame = Frame::of(protocol, example);
@@ -116,34 +97,45 @@ fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evidence<
 }
 
 /// A field and what the examples say of it.
-struct Field<'a> {
-    protocol: &'a Protocol,
-    message: &'a str,
-    signal: &'a Signal,
-    evidence: &'a [Evidence<'a>],
+pub struct Field<'a> {
+    /// Name of its message and its own.
+    pub name: String,
+    pub signal: &'a Signal,
+    pub evidence: &'a [Evidence<'a>],
+    /// Bits that its frames have for others, or do not have, byte 0 highest.
+    pub taken: u64,
 }
 
 impl<'a> Field<'a> {
-    fn denials(&self) -> impl Iterator<Item = &'a Evidence<'a>> + use<'a> {
+    pub fn new(protocol: &'a Protocol, message: MessageId, id: SignalId, evidence: &'a [Evidence<'a>]) -> Self {
+        let message = &protocol[message];
+        let signal = &message[id];
+        let carrying = protocol.frames_of(message).filter(|frame| frame.signals.contains(&id));
+        let others = carrying.map(|frame| frame.covered & !u64::from_be_bytes(signal.place.mask()));
+        let behind = u64::MAX.checked_shr(8 * u32::from(message.length)).unwrap_or(0);
+        let taken = others.fold(behind, |taken, bits| taken | bits);
+        Self { name: format!("{}.{}", message.name, signal.name), signal, evidence, taken }
+    }
+
+    pub fn denials(&self) -> impl Iterator<Item = &'a Evidence<'a>> + use<'a> {
         self.evidence.iter().filter(|evidence| !evidence.agrees())
     }
 
-    fn blamed(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
-        let first = self.denials().next()?;
-        match self.signal.encoding {
-            Encoding::Status(word) => {
-                let bits = &self.protocol.status_words[word].bits;
-                self.moved_bit(first, bits).or_else(|| missing_bit(first, bits))
-            }
-            _ => self
-                .repaired(diagnostics)
-                .or_else(|| self.misnumbered(first, diagnostics))
-                .or_else(|| self.contradicted()),
-        }
+    /// Tells whether an example agrees with bits of such a kind.
+    pub fn is_borne_out(&self, counts: impl Fn(u64) -> bool) -> bool {
+        self.evidence.iter().any(|evidence| evidence.agrees() && counts(evidence.bits))
+    }
+
+    /// Finds where the field, or else one of its types, has a key.
+    pub fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
+        let types = Path::default().key("types");
+        let own = std::iter::once(self.signal.doc.path.clone());
+        let mut sources = own.chain(self.signal.types.iter().map(|name| types.key(name)));
+        sources.find_map(|source| Some(source.key(key)).filter(|path| diagnostics.has(path)))
     }
 
     /// A bit that an example names is set at another place of the frame, where no bit has a name.
-    fn moved_bit(&self, denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
+    pub fn moved_bit(&self, denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
         let said = denial.meaning.raw.as_ref().ok()?;
         let (missing, surplus) = (said & !denial.bits, denial.bits & !said);
         let is_moved = missing.is_power_of_two() && surplus.is_power_of_two();
@@ -167,7 +159,7 @@ impl<'a> Field<'a> {
     }
 
     /// A name that an example says is a number without a name in the frame.
-    fn misnumbered(&self, denial: &Evidence, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+    pub fn misnumbered(&self, denial: &Evidence, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let raw = *denial.meaning.raw.as_ref().ok()?;
         let at = self.written("values", diagnostics)?;
         let Content::Map(values) = &diagnostics.tree()?.get(&at)?.content else { return None };
@@ -181,51 +173,5 @@ impl<'a> Field<'a> {
         let diagnostic = Diagnostic::error("example", At::Key(at.key(number)), text);
         let shown = format!("by these names this frame says {}", denial.read);
         Some(diagnostic.help("correct the number, or else the example").other(denial.meaning.path.at_value(), shown))
-    }
-
-    /// No example holds, and each would after one change of the field.
-    fn repaired(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
-        let denials: Vec<_> = self.denials().collect();
-        if self.is_borne_out(|bits| bits != 0) || denials.len() == 1 && denials[0].is_slip(self.signal) {
-            return None;
-        }
-        let Repair { at, text, .. } =
-            repair::find(self.protocol, self.signal, &denials, |key| self.written(key, diagnostics), diagnostics)?;
-        let help = format!("with `{text}` each of them holds; correct it, or else the examples");
-        Some(self.denied(At::Value(at)).help(help))
-    }
-
-    /// No example holds, and there are several.
-    fn contradicted(&self) -> Option<Diagnostic> {
-        let is_misfit = |denial: &Evidence| denial.meaning.raw.is_err();
-        if self.is_borne_out(|bits| bits != 0) || self.denials().count() == 1 || self.denials().any(is_misfit) {
-            return None;
-        }
-        let help = "correct its place, its scale or its kind of number, or else the examples";
-        Some(self.denied(self.signal.doc.path.at_key()).help(help))
-    }
-
-    fn denied(&self, at: At) -> Diagnostic {
-        let contradict = match self.denials().count() {
-            1 => "1 contradicts".to_owned(),
-            count => format!("{count} contradict"),
-        };
-        let text = format!("no example bears out `{}.{}`, and {contradict} it", self.message, self.signal.name);
-        self.denials().take(SHOWN).fold(Diagnostic::error("example", at, text), |diagnostic, denial| {
-            diagnostic.other(denial.meaning.path.at_value(), format!("by the field this frame says {}", denial.read))
-        })
-    }
-
-    /// Tells whether an example agrees with bits of such a kind.
-    fn is_borne_out(&self, counts: impl Fn(u64) -> bool) -> bool {
-        self.evidence.iter().any(|evidence| evidence.agrees() && counts(evidence.bits))
-    }
-
-    /// Finds where the field, or else one of its types, has a key.
-    fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
-        let types = Path::default().key("types");
-        let own = std::iter::once(self.signal.doc.path.clone());
-        let mut sources = own.chain(self.signal.types.iter().map(|name| types.key(name)));
-        sources.find_map(|source| Some(source.key(key)).filter(|path| diagnostics.has(path)))
     }
 }

@@ -2,7 +2,7 @@
 
 use canspec_runtime::{ByteOrder, Place};
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Encoding, Protocol, Signal, Unit};
 use crate::number::Rational;
@@ -15,7 +15,29 @@ pub struct Repair {
     pub at: Path,
     /// The key with its new value.
     pub text: String,
-    signal: Signal,
+    change: Change,
+}
+
+/// What a field has in place of what is written.
+enum Change {
+    Place(Place),
+    Unit(Unit),
+    Encoding(Encoding),
+}
+
+impl Change {
+    fn of(&self, signal: &Signal) -> Signal {
+        match self {
+            Self::Place(place) => Signal { place: *place, ..signal.clone() },
+            Self::Unit(unit) => Signal { unit: Some(*unit), ..signal.clone() },
+            Self::Encoding(encoding) => Signal { encoding: encoding.clone(), ..signal.clone() },
+        }
+    }
+
+    /// Tells whether it moves a field onto bits of another one.
+    fn overlaps(&self, field: &Field) -> bool {
+        matches!(self, Self::Place(place) if u64::from_be_bytes(place.mask()) & field.taken != 0)
+    }
 }
 
 /// Farthest that a place can be off, in bytes or bits.
@@ -27,11 +49,10 @@ fn shifts() -> impl Iterator<Item = (i8, i8)> {
     ends.into_iter().chain((1..=FARTHEST).flat_map(|shift| [(shift, shift), (-shift, -shift)]))
 }
 
-/// Finds the first change with which all of the examples hold.
+/// Finds the first change of fields, or of the type that they share, with which all of their examples hold.
 pub fn find(
     protocol: &Protocol,
-    signal: &Signal,
-    examples: &[&Evidence],
+    fields: &[&Field],
     written: impl Fn(&str) -> Option<Path>,
     diagnostics: &Diagnostics,
 ) -> Option<Repair> {
@@ -39,32 +60,43 @@ pub fn find(
         Content::Text(text) => Some(text.clone()),
         _ => None,
     };
+    let signal = fields.first()?.signal;
+    let examples: Vec<_> =
+        fields.iter().flat_map(|field| field.denials().map(|denial| (field.signal, denial))).collect();
     let places = ["bytes", "bits"].into_iter().find_map(|key| {
         let at = written(key)?;
         Some(moved(signal, key, &text(&at)?, &at))
     });
-    let unit = written("unit").and_then(|at| with_unit(signal, examples, at));
-    let scale = written("scale").and_then(|at| with_scale(signal, examples, &text(&at)?, at));
+    let unit = written("unit").and_then(|at| with_unit(&examples, at));
+    let scale = written("scale").and_then(|at| with_scale(&examples, &text(&at)?, at));
     let holds = |repair: &Repair| {
-        examples.iter().all(|example| {
-            let raw = raw_of_text(&protocol.enumerations, &repair.signal, &example.meaning.text, true);
-            raw == Ok(repair.signal.place.get(&example.data))
+        fields.iter().all(|field| {
+            let signal = repair.change.of(field.signal);
+            let bears_out = |evidence: &Evidence| {
+                let raw = raw_of_text(&protocol.enumerations, &signal, &evidence.meaning.text, true);
+                raw == Ok(signal.place.get(&evidence.data))
+            };
+            !repair.change.overlaps(field) && field.evidence.iter().all(bears_out)
         })
     };
     places.into_iter().flatten().chain(unit).chain(scale).find(holds)
 }
 
-/// Moves one end of the place, or both, by a byte or a bit.
+/// Turns the byte order round, or moves one end of the place, or both, by a byte or a bit.
 fn moved(signal: &Signal, key: &str, text: &str, at: &Path) -> Vec<Repair> {
     let ends = text.split_once("..").unwrap_or((text, text));
     let (Ok(first), Ok(last)) = (ends.0.parse::<i8>(), ends.1.parse::<i8>()) else { return Vec::new() };
+    let repair = |first: i8, last: i8, place: Place| {
+        let ends = if first == last { first.to_string() } else { format!("{first}..{last}") };
+        Repair { at: at.clone(), text: format!("{key}: {ends}"), change: Change::Place(place) }
+    };
+    let reversed = (key == "bytes" && first != last).then(|| Some(repair(last, first, bytes(last, first)?)));
     let shifted = shifts().filter_map(|(of_first, of_last)| {
         let (first, last) = (first + of_first, last + of_last);
         let place = if key == "bytes" { bytes(first, last)? } else { bits(signal.place, of_first, of_last)? };
-        let ends = if first == last { first.to_string() } else { format!("{first}..{last}") };
-        Some(Repair { at: at.clone(), text: format!("{key}: {ends}"), signal: Signal { place, ..signal.clone() } })
+        Some(repair(first, last, place))
     });
-    shifted.collect()
+    reversed.flatten().into_iter().chain(shifted).collect()
 }
 
 fn bytes(first: i8, last: i8) -> Option<Place> {
@@ -82,21 +114,21 @@ fn bits(place: Place, of_first: i8, of_last: i8) -> Option<Place> {
 }
 
 /// Takes the unit that the examples have.
-fn with_unit(signal: &Signal, examples: &[&Evidence], at: Path) -> Option<Repair> {
-    let (_, symbol) = examples.first().filter(|_| examples.len() > 1)?.meaning.text.split_once(' ')?;
-    let unit = Unit::find(symbol)?;
-    Some(Repair { at, text: format!("unit: {symbol}"), signal: Signal { unit: Some(unit), ..signal.clone() } })
+fn with_unit(examples: &[(&Signal, &Evidence)], at: Path) -> Option<Repair> {
+    let (_, example) = examples.first().filter(|_| examples.len() > 1)?;
+    let (_, symbol) = example.meaning.text.split_once(' ')?;
+    Some(Repair { at, text: format!("unit: {symbol}"), change: Change::Unit(Unit::find(symbol)?) })
 }
 
 /// Takes the scale that the first example has, if it is one that is easily mistaken for the other.
-fn with_scale(signal: &Signal, examples: &[&Evidence], text: &str, at: Path) -> Option<Repair> {
+fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
+    let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
     let Encoding::Number { signed, offset, .. } = signal.encoding else { return None };
-    let example = examples.iter().find(|example| signal.place.get(&example.data) != 0)?;
     let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
     let raw = i128::from(signal.place.get(&example.data));
     let scale = number.minus(offset)?.over(Rational::integer(raw))?;
     let right = scale.fraction();
-    let encoding = Encoding::Number { signed, scale, offset };
+    let change = Change::Encoding(Encoding::Number { signed, scale, offset });
     let is_near = examples.len() > 1 || strsim::osa_distance(&right, text) == 1;
-    is_near.then(|| Repair { at, text: format!("scale: {right}"), signal: Signal { encoding, ..signal.clone() } })
+    is_near.then(|| Repair { at, text: format!("scale: {right}"), change })
 }

@@ -1,0 +1,152 @@
+//! Whom to blame where examples and fields disagree: a field, or a type that several fields share.
+
+use std::collections::HashSet;
+
+use super::evidence::{Evidence, Field, collect, missing_bit};
+use super::repair::{self, Repair};
+use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::model::{Encoding, Protocol, Signal};
+use crate::syntax::tree::{Path, Step};
+
+/// Most examples that are shown beside a field.
+const SHOWN: usize = 3;
+
+/// Keys of a type that say which value bits mean.
+const MEANING: [&str; 6] = ["bytes", "bits", "as", "scale", "offset", "values"];
+
+/// Blames the fields that are rather wrong than their examples; returns the places of what these say, which is thereby explained.
+pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path> {
+    let collected = collect(protocol);
+    let fields: Vec<_> =
+        collected.iter().map(|((message, signal), known)| Field::new(protocol, *message, *signal, known)).collect();
+    let types: Vec<_> = protocol.types.iter().filter_map(|of| Accused::of_type(protocol, &of.path, &fields)).collect();
+    let alone: Vec<_> = fields.iter().map(|field| Accused::of_field(protocol, field)).collect();
+    let verdicts: [(&[Accused], Verdict); 4] = [
+        (&types, Accused::repaired),
+        (&alone, Accused::explained),
+        (&types, Accused::contradicted),
+        (&alone, Accused::contradicted),
+    ];
+    let mut explained = HashSet::new();
+    for (accused, verdict) in
+        verdicts.iter().flat_map(|(all, verdict)| all.iter().map(move |accused| (accused, verdict)))
+    {
+        let places: Vec<_> = accused.denials().map(|denial| denial.meaning.path.clone()).collect();
+        if places.iter().any(|place| explained.contains(place)) {
+            continue;
+        }
+        if let Some(diagnostic) = verdict(accused, diagnostics) {
+            diagnostics.push_first(diagnostic);
+            explained.extend(places);
+        }
+    }
+    explained
+}
+
+/// What is found against somebody accused.
+type Verdict<'a> = fn(&Accused<'a>, &Diagnostics) -> Option<Diagnostic>;
+
+/// Who can be wrong if examples are right: a field, or a type with all fields that take keys from it.
+struct Accused<'a> {
+    protocol: &'a Protocol,
+    name: String,
+    path: Path,
+    fields: Vec<&'a Field<'a>>,
+}
+
+impl<'a> Accused<'a> {
+    fn of_field(protocol: &'a Protocol, field: &'a Field<'a>) -> Self {
+        Self { protocol, name: format!("`{}`", field.name), path: field.signal.doc.path.clone(), fields: vec![field] }
+    }
+
+    /// Accuses a type if the examples of several fields deny it, and its own do not bear it out.
+    fn of_type(protocol: &'a Protocol, path: &Path, fields: &'a [Field<'a>]) -> Option<Self> {
+        let (_, Step::Key(name)) = path.split()? else { return None };
+        let is_its = |field: &&Field| field.signal.types.contains(name) && !is_status(field.signal);
+        let fields: Vec<_> = fields.iter().filter(is_its).collect();
+        let is_denied = fields.iter().filter(|field| field.denials().next().is_some()).count() > 1;
+        let own =
+            protocol.value_examples.iter().filter(|example| example.doc.path.ancestors().any(|outer| outer == path));
+        let is_borne_out =
+            own.clone().any(|example| example.meaning.raw == Ok(example.signal.place.get(&example.data)));
+        (is_denied && !is_borne_out).then(|| Self {
+            protocol,
+            name: format!("the type `{name}`"),
+            path: path.clone(),
+            fields,
+        })
+    }
+
+    fn denials(&self) -> impl Iterator<Item = &'a Evidence<'a>> {
+        self.fields.iter().flat_map(|field| field.denials())
+    }
+
+    /// What is certain of a field alone.
+    fn explained(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+        let (field, first) = (self.fields.first()?, self.denials().next()?);
+        match field.signal.encoding {
+            Encoding::Status(word) => {
+                let bits = &self.protocol.status_words[word].bits;
+                field.moved_bit(first, bits).or_else(|| missing_bit(first, bits))
+            }
+            _ => self.repaired(diagnostics).or_else(|| field.misnumbered(first, diagnostics)),
+        }
+    }
+
+    /// No example holds, and each would after one change.
+    fn repaired(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+        let denials: Vec<_> = self.denials().collect();
+        let is_slip = |denial: &Evidence| self.fields.iter().any(|field| denial.is_slip(field.signal));
+        if self.is_borne_out() || denials.len() == 1 && is_slip(denials[0]) {
+            return None;
+        }
+        let Repair { at, text, .. } =
+            repair::find(self.protocol, &self.fields, |key| self.written(key, diagnostics), diagnostics)?;
+        let help = format!("with `{text}` each of them holds; correct it, or else the examples");
+        Some(self.denied(At::Value(at)).help(help))
+    }
+
+    /// No example holds, and there are several.
+    fn contradicted(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
+        let is_misfit = |denial: &Evidence| denial.meaning.raw.is_err();
+        let says_what_bits_mean = MEANING.iter().any(|key| self.written(key, diagnostics).is_some());
+        let is_several = self.denials().count() > 1 && (self.fields.len() == 1 || says_what_bits_mean);
+        if self.fields.iter().any(|field| is_status(field.signal))
+            || self.is_borne_out()
+            || !is_several
+            || self.denials().any(is_misfit)
+        {
+            return None;
+        }
+        let help = "correct its place, its scale or its kind of number, or else the examples";
+        Some(self.denied(self.path.at_key()).help(help))
+    }
+
+    fn denied(&self, at: At) -> Diagnostic {
+        let contradict = match self.denials().count() {
+            1 => "1 contradicts".to_owned(),
+            count => format!("{count} contradict"),
+        };
+        let text = format!("no example bears out {}, and {contradict} it", self.name);
+        self.denials().take(SHOWN).fold(Diagnostic::error("example", at, text), |diagnostic, denial| {
+            diagnostic.other(denial.meaning.path.at_value(), format!("by the field this frame says {}", denial.read))
+        })
+    }
+
+    /// Tells whether an example agrees with other bits than zeros.
+    fn is_borne_out(&self) -> bool {
+        self.fields.iter().any(|field| field.is_borne_out(|bits| bits != 0))
+    }
+
+    /// Finds where all of the fields have a key from: of a type only if it is its own.
+    fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
+        let at = self.fields.first()?.written(key, diagnostics)?;
+        let is_shared = self.fields.len() == 1 || at == self.path.key(key);
+        let is_everywhere = self.fields.iter().all(|field| field.written(key, diagnostics).as_ref() == Some(&at));
+        (is_shared && is_everywhere).then_some(at)
+    }
+}
+
+fn is_status(signal: &Signal) -> bool {
+    matches!(signal.encoding, Encoding::Status(_))
+}
