@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::source::Source;
+use crate::source::{Source, visible};
 use crate::syntax::tree::{Node, Path};
 
 /// Most errors, and most warnings, that the later stages report of one spec.
@@ -89,20 +89,20 @@ impl Diagnostic {
     /// Sets what to say at the place.
     #[must_use]
     pub fn label(self, text: impl Into<String>) -> Self {
-        Self { label: Some(text.into()), ..self }
+        Self { label: Some(visible(&text.into())), ..self }
     }
 
     /// Adds another place and what to say there.
     #[must_use]
     pub fn other(mut self, at: impl Into<At>, text: impl Into<String>) -> Self {
-        self.others.push((at.into(), text.into()));
+        self.others.push((at.into(), visible(&text.into())));
         self
     }
 
     /// Sets what to do about it.
     #[must_use]
     pub fn help(self, text: impl Into<String>) -> Self {
-        Self { help: Some(text.into()), ..self }
+        Self { help: Some(visible(&text.into())), ..self }
     }
 
     /// Sets what to write at the place.
@@ -111,9 +111,8 @@ impl Diagnostic {
         Self { replacement: Some(text.into()), ..self }
     }
 
-    /// Control characters that the message repeats from the file would act on a terminal.
     fn new(rule: &'static str, severity: Severity, at: At, message: &str) -> Self {
-        let message = message.replace(char::is_control, "\u{FFFD}");
+        let message = visible(message);
         Self { rule, severity, message, at, label: None, others: Vec::new(), help: None, replacement: None }
     }
 }

@@ -64,7 +64,7 @@ impl Source {
         }
     }
 
-    /// Returns the name of the file.
+    /// Returns the name of the file, without what would begin a line or act on a terminal.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -106,7 +106,7 @@ impl Source {
                 Some(*characters)
             }))
             .collect();
-        Self { name, text, lines, blocks }
+        Self { name: visible(&name), text, lines, blocks }
     }
 
     fn characters_before(&self, offset: usize) -> usize {
@@ -138,6 +138,11 @@ pub(crate) fn forbidden(character: char) -> Option<&'static str> {
         _ if character.is_control() => Some("control character"),
         _ => None,
     }
+}
+
+/// Replaces what would begin a line or act on a terminal.
+pub(crate) fn visible(text: &str) -> String {
+    text.replace(|character: char| character.is_control() || forbidden(character).is_some(), "\u{FFFD}")
 }
 
 fn starts_character(byte: u8) -> bool {

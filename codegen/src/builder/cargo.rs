@@ -1,13 +1,17 @@
 //! What a build script tells cargo.
 
+use std::fmt::Display;
 use std::io;
 use std::path::PathBuf;
 
 use crate::diagnostic::{Diagnostics, Located};
+use crate::source::visible;
 
 /// Asks to run the build script again when one of the paths changes, and what is in it.
+///
+/// Of a path that cannot stand in a line cargo finds nothing, so that it runs the build script each time.
 pub fn rerun<'a>(paths: impl Iterator<Item = &'a PathBuf>) -> Vec<String> {
-    paths.map(|path| format!("cargo::rerun-if-changed={}", path.display())).collect()
+    paths.map(|path| directive("rerun-if-changed", path.display())).collect()
 }
 
 /// Reports each diagnostic with its place, in a line.
@@ -16,11 +20,16 @@ pub fn diagnostics(diagnostics: &Diagnostics) -> Vec<String> {
 }
 
 fn diagnostic(found: &Located) -> String {
-    let help = found.help.map(|help| format!("; help: {help}"));
-    format!("cargo::{}={found}{}", found.severity, help.unwrap_or_default())
+    let help = found.help.map(|help| format!("; help: {help}")).unwrap_or_default();
+    directive(&found.severity.to_string(), format_args!("{found}{help}"))
 }
 
 /// Reports that the generated code cannot be written.
 pub fn unwritten(error: &io::Error) -> String {
-    format!("cargo::error=the generated code cannot be written: {error}")
+    directive("error", format_args!("the generated code cannot be written: {error}"))
+}
+
+/// Returns one line; what it repeats of specs and names of files cannot begin another, which cargo would obey.
+fn directive(name: &str, value: impl Display) -> String {
+    format!("cargo::{name}={}", visible(&value.to_string()))
 }
