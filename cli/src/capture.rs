@@ -118,15 +118,15 @@ fn half(number: u64) -> u32 {
 
 /// Returns a frame as Linux has it: identifier with its flags, length, flags of FD, data.
 fn socketcan(frame: &Frame, digit: u8) -> Vec<u8> {
-    let width = if frame.extended { EXTENDED } else { 0 };
     let count = u8::try_from(frame.data.len()).unwrap_or(u8::MAX);
-    let (form, count, flags) = match frame.form {
-        Form::Data => (0, count, 0),
-        Form::Remote => (REMOTE, digit, 0),
+    let width = if frame.extended { EXTENDED } else { 0 };
+    let (bits, count, flags) = match frame.form {
+        Form::Data => (width, count, 0),
+        Form::Remote => (width | REMOTE, digit, 0),
         Form::Error => (ERROR, count, 0),
-        Form::Fd => (0, count, FD | digit),
+        Form::Fd => (width, count, FD | digit),
     };
-    [&(frame.id | width | form).to_be_bytes()[..], &[count, flags, 0, 0], &frame.data].concat()
+    [&(frame.id | bits).to_be_bytes()[..], &[count, flags, 0, 0], &frame.data].concat()
 }
 
 /// Returns a decimal number of seconds in nanoseconds, without ever making it a floating-point number.
@@ -190,7 +190,7 @@ mod tests {
         let packets = |line: &str| blocks(&[line])[1][56..].to_owned();
         assert!(packets("12345678#01").starts_with("9234567801000000"));
         assert!(packets("123#R5").starts_with("4000012305000000"));
-        assert!(packets("20000004#0000000000000000").starts_with("a000000408000000"));
+        assert!(packets("20000004#0000000000000000").starts_with("2000000408000000"));
         assert!(packets("123##3AABB").starts_with("0000012302070000aabb"));
     }
 

@@ -117,7 +117,7 @@ impl Filter {
         extended == self.extended
             && self.matches_id(id)
             && self.matches_data(&padded(frame.data()))
-            && !frame.is_remote_frame()
+            && frame.is_data_frame()
     }
 
     /// Tests an identifier of the right width.

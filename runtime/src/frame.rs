@@ -112,7 +112,7 @@ pub fn raw_id(id: Id) -> (u32, bool) {
 pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
     let (id, extended) = raw_id(frame.id());
     let length = u8::try_from(frame.data().len()).ok()?;
-    let is_classic = !frame.is_remote_frame() && length <= 8;
+    let is_classic = frame.is_data_frame() && length <= 8;
     is_classic.then(|| Frame::new_raw(id, extended, padded(frame.data()), length))
 }
 

@@ -317,6 +317,7 @@ struct Strange {
     data: [u8; 12],
     length: usize,
     is_remote: bool,
+    is_data: bool,
 }
 
 impl embedded_can::Frame for Strange {
@@ -336,6 +337,10 @@ impl embedded_can::Frame for Strange {
         self.is_remote
     }
 
+    fn is_data_frame(&self) -> bool {
+        self.is_data
+    }
+
     fn id(&self) -> embedded_can::Id {
         frame(0x0107_F003, [0; 4]).id()
     }
@@ -352,13 +357,19 @@ impl embedded_can::Frame for Strange {
 #[test]
 fn what_is_no_classic_data_frame_is_no_reply() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
-    let strange = |length, is_remote| Strange { data: [2, 0xF0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], length, is_remote };
+    let data = [2, 0xF0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+    let strange = |length| Strange { data, length, is_remote: false, is_data: true };
     let values = |strange| request.reply(&strange).map(|reply| reply.values);
-    assert_eq!(values(strange(4, false)), Some(Ok(Heat { power_w: 0.0 })));
-    assert_eq!(values(strange(8, false)), Some(Err(Failure::Length)));
-    assert_eq!(values(strange(12, false)), None);
-    assert_eq!(values(strange(4, true)), None);
-    assert_eq!(Received::<Message>::decode(&strange(12, false)).map(|_| ()), Err(Problem::Frame));
+    assert_eq!(values(strange(4)), Some(Ok(Heat { power_w: 0.0 })));
+    assert_eq!(values(strange(8)), Some(Err(Failure::Length)));
+    let remote = Strange { is_remote: true, is_data: false, ..strange(4) };
+    let error = Strange { is_data: false, ..strange(4) };
+    let filter = request.replies().filter().expect("one heater replies");
+    assert!(filter.matches(&strange(4)) && !filter.matches(&remote) && !filter.matches(&error));
+    for strange in [strange(12), remote, error] {
+        assert_eq!(Received::<Message>::decode(&strange).map(|_| ()), Err(Problem::Frame));
+        assert_eq!(values(strange), None);
+    }
 }
 
 #[test]

@@ -327,4 +327,14 @@ messages:
         let end = r#""},"identifier":{"device":1,"command":2,"target":0,"source":3},"selectors":{}}"#;
         assert!(written.trim_end().ends_with(end), "{written}");
     }
+
+    #[test]
+    fn an_error_remote_or_fd_frame_is_no_message_of_a_protocol_with_11_bits() {
+        let of_frame = r#""message":null,"problem":{"kind":"frame","text":""#;
+        for frame in ["20000113#0000000000000000", "20000113#", "113#R", "113#R8", "113##00000000000000000"] {
+            let written = line(&format!("(1.50) can0 {frame}"));
+            assert!(written.contains(of_frame), "{frame}: {written}");
+        }
+        assert!(line("113#0000000000000000").contains(r#""message":"values""#));
+    }
 }
