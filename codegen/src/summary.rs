@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use indexmap::IndexMap;
+
 use crate::check::Counts;
 use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;
@@ -58,13 +60,13 @@ impl Summary {
     }
 }
 
-/// Counts the values of each selector.
+/// Counts the values of each selector; fields of one name in several places are one.
 fn selectors(protocol: &Protocol) -> Vec<(String, usize)> {
-    let mut values = protocol.selectors.map(|_| BTreeSet::new());
+    let mut values: IndexMap<&str, BTreeSet<u64>> =
+        protocol.selectors.iter().map(|selector| (selector.name.as_str(), BTreeSet::new())).collect();
     for constant in protocol.frames.iter().flat_map(|frame| &frame.constants) {
-        values[constant.selector].insert(constant.value);
+        values.entry(&protocol[constant.selector].name).or_default().insert(constant.value);
     }
-    let selectors = protocol.selectors.iter().zip(&values);
-    let counted = selectors.map(|(selector, values)| (selector.name.clone(), values.len()));
-    counted.filter(|(_, values)| *values > 0).collect()
+    let used = values.into_iter().filter(|(_, values)| !values.is_empty());
+    used.map(|(name, values)| (name.to_owned(), values.len())).collect()
 }

@@ -220,9 +220,12 @@ fn reserved(decoded: &Decoded) -> Option<String> {
     bytes.iter().any(|byte| *byte != 0).then(|| log::hexadecimal(bytes))
 }
 
-impl<K: Serialize, V: Serialize> Serialize for Members<K, V> {
+impl<K: Serialize + PartialEq, V: Serialize> Serialize for Members<K, V> {
+    /// Of members with one name, such as a field that messages have in different places, the first one counts.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+        let is_first = |index: usize, name: &K| self.0[..index].iter().all(|(other, _)| other != name);
+        let members = self.0.iter().enumerate().filter(|(index, (name, _))| is_first(*index, name));
+        serializer.collect_map(members.map(|(_, (name, value))| (name, value)))
     }
 }
 

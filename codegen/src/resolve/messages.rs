@@ -5,10 +5,7 @@ use super::access::{Modes, Times, pattern_of};
 use super::signals::Leaves;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
-use crate::model::{
-    Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    Message, MessageId, ModelId, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel,
-};
+use crate::model::{Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind, Message, MessageId, ModelId, Selector, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -225,9 +222,26 @@ impl Resolver<'_> {
 
     /// Makes a selector of a constant field; it is in the kinds of frames that the field names.
     fn fixed(&mut self, signal: Signal, value: u64) -> (Constant, Vec<Kind>) {
+        self.check_header_name(&signal);
         let kinds = signal.kinds.clone();
         let place = SelectorPlace::Payload(signal.place);
         (Constant { selector: self.add_selector(signal, None), place, value }, kinds)
+    }
+
+    /// Tests that a constant field is not called like a field of the header in another place.
+    fn check_header_name(&mut self, signal: &Signal) {
+        let header = Path::default().key("header");
+        let in_header = |known: &&Selector| known.doc.path.ancestors().any(|outer| *outer == header);
+        let mut named = self.tables.selectors.iter().filter(|known| known.name == signal.name);
+        let Some(known) = named.find(in_header).filter(|known| known.place != SelectorPlace::Payload(signal.place))
+        else {
+            return;
+        };
+        let text =
+            format!("a frame would have two values called `{}`, since the header has a field of that name", known.name);
+        let help = "choose another name, or the place of the header's field";
+        let diagnostic = Diagnostic::error("match", signal.doc.path.at_key(), text).help(help);
+        self.diagnostics.push(diagnostic.other(known.doc.path.at_key(), "the field of the header"));
     }
 
     fn exchanges(
