@@ -66,6 +66,10 @@ impl Decode {
     fn capture(&self, path: &Path) -> Result<Finish, Failure> {
         let failure = |error: io::Error| Failure::input(&path.display().to_string(), &error);
         let log = Input::open(self.file.as_deref())?;
+        if log.is_at(path) {
+            let why = format!("{} is the log itself; name another file for the capture", path.display());
+            return Err(Failure::Call(why));
+        }
         let out = BufWriter::new(File::create(path).map_err(failure)?);
         let mut capture = Capture::begin(out).map_err(failure)?;
         let finish = log.each(io::sink(), |_, line| {

@@ -9,9 +9,30 @@ use crate::failure::{Failure, Finish, tell};
 /// Longer lines are unreadable.
 const LONGEST: usize = 1 << 16;
 
+/// What a file has in common with itself alone, whatever path leads to it: its device and number.
+#[cfg(unix)]
+type Identity = (u64, u64);
+
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<Identity> {
+    use std::os::unix::fs::MetadataExt;
+    let file = path.metadata().ok().filter(std::fs::Metadata::is_file)?;
+    Some((file.dev(), file.ino()))
+}
+
+#[cfg(not(unix))]
+type Identity = std::path::PathBuf;
+
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<Identity> {
+    path.canonicalize().ok()
+}
+
 /// A text to be read line by line.
 pub struct Input {
     name: String,
+    /// Which file it is, if it is one.
+    file: Option<Identity>,
     reader: BufReader<Box<dyn Read>>,
     number: usize,
     line: Vec<u8>,
@@ -33,17 +54,23 @@ impl Input {
     /// Where the file cannot be opened.
     pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
         match path.filter(|path| *path != Path::new("-")) {
-            None => Ok(Self::new("<stdin>", Box::new(io::stdin()))),
+            None => Ok(Self { file: identity(Path::new("/dev/stdin")), ..Self::new("<stdin>", Box::new(io::stdin())) }),
             Some(path) => {
                 let name = path.display().to_string();
                 let file = File::open(path).map_err(|error| Failure::input(&name, &error))?;
-                Ok(Self::new(&name, Box::new(file)))
+                Ok(Self { file: identity(path), ..Self::new(&name, Box::new(file)) })
             }
         }
     }
 
+    /// Tests whether a path leads to the file that is read, so that writing there would destroy it.
+    pub fn is_at(&self, path: &Path) -> bool {
+        self.file.is_some() && self.file == identity(path)
+    }
+
     fn new(name: &str, reader: Box<dyn Read>) -> Self {
-        Self { name: name.to_owned(), reader: BufReader::with_capacity(LONGEST, reader), number: 0, line: Vec::new() }
+        let reader = BufReader::with_capacity(LONGEST, reader);
+        Self { name: name.to_owned(), file: None, reader, number: 0, line: Vec::new() }
     }
 
     /// Reads the next line; `None` at the end.
