@@ -25,22 +25,22 @@ const ERROR: u32 = 1 << 29;
 const FD: u8 = 4;
 
 /// A capture that is being written; each channel of the log is an interface.
-pub struct Capture<W> {
-    out: W,
+pub struct Capture {
     channels: Vec<Option<String>>,
 }
 
-impl<W: Write> Capture<W> {
-    /// Begins a capture.
+impl Capture {
+    /// Begins a capture, which can be read from then on.
     ///
     /// # Errors
     ///
     /// Where `out` cannot be written.
-    pub fn begin(mut out: W) -> io::Result<Self> {
+    pub fn begin(out: &mut impl Write) -> io::Result<Self> {
         let length_unknown = u64::MAX.to_le_bytes();
         let head = [&BYTE_ORDER.to_le_bytes()[..], &1_u16.to_le_bytes(), &0_u16.to_le_bytes(), &length_unknown];
-        block(&mut out, SECTION, &head.concat())?;
-        Ok(Self { out, channels: Vec::new() })
+        block(out, SECTION, &head.concat())?;
+        out.flush()?;
+        Ok(Self { channels: Vec::new() })
     }
 
     /// Writes a frame; one without a stamp is of the time 0, and further digits than those of nanoseconds are cut off.
@@ -48,51 +48,42 @@ impl<W: Write> Capture<W> {
     /// # Errors
     ///
     /// Where the capture cannot be written, or its format has no such time.
-    pub fn frame(&mut self, entry: &Entry<'_>) -> Result<io::Result<()>, String> {
+    pub fn frame(&mut self, out: &mut impl Write, entry: &Entry<'_>) -> Result<io::Result<()>, String> {
         let time = entry.time.as_deref().map_or(Ok(0), |time| {
             let refusal = || format!("a capture has no time `{}`; it counts nanoseconds from 1970 to 2554", time.get());
             nanoseconds(time.get()).ok_or_else(refusal)
         })?;
-        Ok(self.packet(entry, time))
+        Ok(self.packet(out, entry, time))
     }
 
-    fn packet(&mut self, entry: &Entry<'_>, time: u64) -> io::Result<()> {
-        let interface = self.interface(entry.channel)?;
+    fn packet(&mut self, out: &mut impl Write, entry: &Entry<'_>, time: u64) -> io::Result<()> {
+        let interface = self.interface(out, entry.channel)?;
         let [low, high] = [time, time >> 32].map(|half| half & u64::from(u32::MAX));
         let bytes = socketcan(&entry.frame, entry.digit);
         let numbers = [interface, half(high), half(low), length(&bytes), length(&bytes)];
         let head: Vec<u8> = numbers.into_iter().flat_map(u32::to_le_bytes).collect();
-        block(&mut self.out, ENHANCED_PACKET, &[head, bytes].concat())
+        block(out, ENHANCED_PACKET, &[head, bytes].concat())
     }
 
     /// Returns the number of the channel's interface, which is written when it is first needed.
-    fn interface(&mut self, channel: Option<&str>) -> io::Result<u32> {
+    fn interface(&mut self, out: &mut impl Write, channel: Option<&str>) -> io::Result<u32> {
         let known = self.channels.iter().position(|known| known.as_deref() == channel);
         let index = known.unwrap_or(self.channels.len());
         if known.is_none() {
             self.channels.push(channel.map(str::to_owned));
             let head = [SOCKETCAN.to_le_bytes(), [0; 2], [0; 2], [0; 2]].concat();
             let name = channel.map_or_else(Vec::new, |name| option(NAME, name.as_bytes()));
-            block(&mut self.out, INTERFACE, &[head, name, option(RESOLUTION, &[PLACES]), vec![0; 4]].concat())?;
+            block(out, INTERFACE, &[head, name, option(RESOLUTION, &[PLACES]), vec![0; 4]].concat())?;
         }
         Ok(u32::try_from(index).unwrap_or(u32::MAX))
     }
-
-    /// Writes what is left to be written.
-    ///
-    /// # Errors
-    ///
-    /// Where that is not possible.
-    pub fn end(mut self) -> io::Result<()> {
-        self.out.flush()
-    }
 }
 
-/// Writes a block, with its length before and after it.
+/// Writes a block, with its length before and after it; at once, so that a buffer is not passed on in the middle of it.
 fn block(out: &mut impl Write, kind: u32, body: &[u8]) -> io::Result<()> {
     let body = padded(body);
     let total = length(&body).saturating_add(12).to_le_bytes();
-    [&kind.to_le_bytes()[..], &total, &body, &total].into_iter().try_for_each(|part| out.write_all(part))
+    out.write_all(&[&kind.to_le_bytes()[..], &total, &body, &total].concat())
 }
 
 fn option(code: u16, value: &[u8]) -> Vec<u8> {
@@ -157,7 +148,7 @@ mod tests {
         let mut capture = Capture::begin(&mut bytes).expect("a vector takes everything");
         for line in lines {
             let entry = log::read(line).expect("a readable line").expect("a frame");
-            capture.frame(&entry).expect("a time").expect("a vector takes everything");
+            capture.frame(&mut bytes, &entry).expect("a time").expect("a vector takes everything");
         }
         let mut rest = &bytes[28..];
         let mut blocks = Vec::new();

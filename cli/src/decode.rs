@@ -70,15 +70,13 @@ impl Decode {
             let why = format!("{} is the log itself; name another file for the capture", path.display());
             return Err(Failure::Call(why));
         }
-        let out = BufWriter::new(File::create(path).map_err(failure)?);
-        let mut capture = Capture::begin(out).map_err(failure)?;
-        let finish = log.each(io::sink(), |_, line| {
+        let mut out = BufWriter::new(File::create(path).map_err(failure)?);
+        let mut capture = Capture::begin(&mut out).map_err(failure)?;
+        let finish = log.each(out, |out, line| {
             let entry = line.text.and_then(log::read)?;
-            entry.map_or(Ok(Ok(())), |entry| capture.frame(&entry))
+            entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))
         });
-        let finish = finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })?;
-        capture.end().map_err(failure)?;
-        Ok(finish)
+        finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })
     }
 
     fn print(&self) -> Result<Finish, Failure> {

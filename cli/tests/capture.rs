@@ -1,10 +1,13 @@
-//! Captures on disk: they never replace the log that they are made of.
+//! Captures on disk: they never replace the log that they are made of, and a stopped one has every frame that arrived.
 #![cfg(unix)]
 
 use std::fs;
+use std::io::Write;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
@@ -12,6 +15,9 @@ const LOG: &str = "(1.5) can0 123#AB\n(2.5) can1 123#AB\n(3.5) can0 00000123#\n"
 
 /// Kind of the block of a frame.
 const PACKET: u32 = 6;
+
+/// How long the program may take for a few frames, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 fn canspec(folder: &TempDir) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
@@ -78,4 +84,53 @@ fn packets(path: &Path) -> Result<usize, String> {
         at += length as usize;
     }
     if at == bytes.len() && at > 0 { Ok(count) } else { Err(format!("a block ends at {at} of {} bytes", bytes.len())) }
+}
+
+/// Begins a live capture, and waits until three frames are on disk and a fourth has come in part.
+fn live(folder: &TempDir) -> Child {
+    let mut child = canspec(folder)
+        .args(["decode", "--to", "pcapng", "out"])
+        .stdin(Stdio::piped())
+        .spawn()
+        .expect("the command was built");
+    let stdin = child.stdin.as_mut().expect("standard input is a pipe");
+    stdin.write_all(format!("{LOG}(4.5) can0 12").as_bytes()).expect("the command reads");
+    let (out, started) = (folder.path().join("out"), Instant::now());
+    while packets(&out) != Ok(3) && started.elapsed() < PATIENCE {
+        sleep(Duration::from_millis(5));
+    }
+    assert_eq!(packets(&out), Ok(3), "after {PATIENCE:?} of silence");
+    child
+}
+
+#[test]
+fn a_capture_that_is_stopped_has_every_frame_that_arrived() {
+    for signal in ["INT", "TERM", "HUP", "KILL"] {
+        let folder = folder_with_log();
+        let mut child = live(&folder);
+        let number = child.id().to_string();
+        let sent = Command::new("kill").args(["-s", signal, &number]).status().expect("every Unix has it");
+        assert!(sent.success());
+        child.wait().expect("it was started");
+        assert_eq!(packets(&folder.path().join("out")), Ok(3), "{signal}");
+    }
+}
+
+#[test]
+fn a_capture_of_a_closed_pipe_has_every_frame_that_arrived() {
+    let folder = folder_with_log();
+    let mut child = live(&folder);
+    child.stdin.as_mut().expect("standard input is a pipe").write_all(b"3#00").expect("the command reads");
+    let output = child.wait_with_output().expect("it was started");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(packets(&folder.path().join("out")), Ok(4));
+}
+
+#[test]
+fn a_long_log_is_captured_whole() {
+    let folder = folder_with_log();
+    let line = |number: usize| format!("({number}.000001) can{} 123#0011223344556677\n", number % 3);
+    fs::write(folder.path().join("long.log"), (0..20_000).map(line).collect::<String>()).expect("a new name");
+    assert!(convert(&folder, &["out", "long.log"]).status.success());
+    assert_eq!(packets(&folder.path().join("out")), Ok(20_000));
 }
