@@ -13,7 +13,8 @@ use crate::protocols;
 
 /// Compile specs to Rust.
 ///
-/// Nothing is written if a spec has errors, and a file that would not change is left alone.
+/// Nothing is written if a spec has errors, and a file that would not change is left alone. So is one that canspec did
+/// not generate, which is an error.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Compile {
@@ -119,6 +120,7 @@ fn compare(files: &[File]) -> io::Result<Finish> {
             State::Current => continue,
             State::Stale => "is stale",
             State::Missing => "is missing",
+            State::NotOurs => return Err(file.not_ours()),
         };
         tell(format_args!("canspec: {} {what}; the same call without `--check` writes it", file.path().display()));
         finish = Finish::Errors;

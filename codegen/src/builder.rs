@@ -69,7 +69,8 @@ impl Builder {
     /// Sets where to write instead of `OUT_DIR`, by the path from the crate's root.
     ///
     /// A builder needs a folder of its own: it replaces the `protocols.rs` there, and removes the protocols that were listed
-    /// in it and are gone.
+    /// in it and are gone. A file that it did not generate is neither replaced nor removed: where one is in the way, the
+    /// build fails.
     #[must_use]
     pub fn out_dir(self, path: impl Into<PathBuf>) -> Self {
         Self { out_dir: Some(path.into()), ..self }

@@ -4,21 +4,23 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::Generated;
-use crate::files::File;
+use crate::files::{File, MARK};
 
 /// Name of the file without its ending, which therefore no protocol may have.
 pub const NAME: &str = "protocols";
 
 /// Returns the list of protocols.
 pub fn file_in(folder: &Path, generated: &[Generated]) -> File {
-    File::new(path_in(folder), generated.iter().map(module).collect())
+    let modules: String = generated.iter().map(module).collect();
+    File::new(path_in(folder), format!("{MARK}; do not edit.\n\n{modules}"))
 }
 
-/// Returns the files that the list of an earlier build includes.
+/// Returns the files beside it that the list of an earlier build includes.
 pub fn listed(folder: &Path) -> Vec<PathBuf> {
     let list = fs::read_to_string(path_in(folder)).unwrap_or_default();
     let names = list.lines().filter_map(|line| line.strip_prefix("    include!(\"")?.strip_suffix("\");"));
-    names.map(|name| folder.join(name)).collect()
+    let beside = names.filter(|name| Path::new(name).file_name() == Some(name.as_ref()));
+    beside.map(|name| folder.join(name)).collect()
 }
 
 fn path_in(folder: &Path) -> PathBuf {

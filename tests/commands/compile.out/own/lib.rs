@@ -1,0 +1,3 @@
+//! Written by hand.
+
+pub fn handwritten() {}
