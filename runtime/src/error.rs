@@ -9,7 +9,8 @@ use crate::Number;
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
-    /// The value lies outside the documented range, or outside what the signal's bits can hold.
+    /// The value, as given or rounded to be sent, lies outside the documented range, or outside what the signal's bits
+    /// can hold.
     Limits {
         /// Name of the message.
         message: &'static str,
@@ -23,6 +24,19 @@ pub enum Error {
         minimum: Number,
         /// The largest legal value.
         maximum: Number,
+    },
+    /// The value would be rounded to a raw value that means something else.
+    Special {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the signal.
+        signal: &'static str,
+        /// The refused value.
+        value: Number,
+        /// Unit of the value.
+        unit: Option<&'static str>,
+        /// Name of what would be sent.
+        name: &'static str,
     },
     /// The value is infinite or not a number.
     NotFinite {
@@ -81,6 +95,10 @@ impl fmt::Display for Error {
                     formatter,
                     "`{signal}` of `{message}` is {value}{space}{unit}, but its limits are {minimum} and {maximum}{space}{unit}"
                 )
+            }
+            Self::Special { message, signal, value, unit, name } => {
+                let (space, unit) = unit.map_or(("", ""), |unit| (" ", unit));
+                write!(formatter, "`{signal}` of `{message}` is {value}{space}{unit}, which would be sent as `{name}`")
             }
             Self::NotFinite { message, signal } => write!(formatter, "`{signal}` of `{message}` is no finite number"),
             Self::Meaning { message, signal } => write!(formatter, "`{signal}` of `{message}` has no such value"),

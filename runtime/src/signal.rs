@@ -100,8 +100,7 @@ impl<R: Raw, F: Physical> Signal<R, F> {
             return Err(self.meaningless(payload));
         }
         if payload.keeps_limits() && self.is_limited(raw) {
-            let number = self.physical(raw);
-            self.check(F::nearest(number), number, Some(raw.to_bits()), payload)?;
+            self.check_raw(raw, payload)?;
         }
         self.store(raw.to_bits(), || self.physical(raw), payload)
     }
@@ -134,8 +133,17 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         }
     }
 
-    /// Tests a physical value against the limits; a special raw value is legal outside.
-    fn check(&self, value: F, number: Number, bits: Option<u64>, payload: &Payload) -> Result<(), Error> {
+    /// Tests a raw value against the limits; a special one is legal outside.
+    fn check_raw(&self, raw: R, payload: &Payload) -> Result<(), Error> {
+        if self.special(raw.to_bits()).is_some() {
+            return Ok(());
+        }
+        let number = self.physical(raw);
+        self.check(F::nearest(number), number, payload)
+    }
+
+    /// Tests a physical value against the limits.
+    fn check(&self, value: F, number: Number, payload: &Payload) -> Result<(), Error> {
         if !payload.keeps_limits() {
             return Ok(());
         }
@@ -144,12 +152,26 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         }
         let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
         let Some((minimum, maximum)) = limits else { return Ok(()) };
-        let is_special = bits.is_some_and(|bits| self.special(bits).is_some());
         let is_within = |minimum: F, maximum: F| (minimum..=maximum).contains(&value);
-        if is_special || is_within(minimum, maximum) || is_within(minimum.limit::<R>(), maximum.limit::<R>()) {
+        if is_within(minimum, maximum) || is_within(minimum.limit::<R>(), maximum.limit::<R>()) {
             return Ok(());
         }
         Err(self.outside(number, minimum.number(), maximum.number(), payload))
+    }
+
+    /// Tests a physical value, and what it becomes by rounding: another one, or a special raw value.
+    fn check_sent(&self, physical: F, raw: i64, scale: Scale, payload: &Payload) -> Result<(), Error> {
+        let sent = F::scaled(raw, scale);
+        match self.special(raw.cast_unsigned()) {
+            Some(_) if sent == physical => Ok(()),
+            special => {
+                self.check(physical, physical.number(), payload)?;
+                special.map_or_else(
+                    || self.check(sent, sent.number(), payload),
+                    |name| Err(self.hidden(physical.number(), name, payload)),
+                )
+            }
+        }
     }
 
     fn meaningless(&self, payload: &Payload) -> Error {
@@ -162,6 +184,10 @@ impl<R: Raw, F: Physical> Signal<R, F> {
 
     fn outside(&self, value: Number, minimum: Number, maximum: Number, payload: &Payload) -> Error {
         Error::Limits { message: payload.message(), signal: self.name, value, unit: self.unit, minimum, maximum }
+    }
+
+    fn hidden(&self, value: Number, name: &'static str, payload: &Payload) -> Error {
+        Error::Special { message: payload.message(), signal: self.name, value, unit: self.unit, name }
     }
 
     /// Names the limits of what the bits can hold.
@@ -237,9 +263,12 @@ fn encode_scaled<R: Raw, F: Physical>(
 ) -> Result<(), Error> {
     let number = physical.number();
     let raw = physical.raw(scale);
-    let is_exact = |raw: &i64| !signal.specials.is_empty() && F::scaled(*raw, scale) == physical;
-    let exact = raw.filter(is_exact).map(i64::cast_unsigned);
-    signal.check(physical, number, exact, payload)?;
+    if payload.keeps_limits() {
+        match raw {
+            Some(raw) => signal.check_sent(physical, raw, scale, payload)?,
+            None => signal.check(physical, number, payload)?,
+        }
+    }
     match raw {
         Some(raw) if R::SIGNED || raw >= 0 => signal.store(raw.cast_unsigned(), || number, payload),
         _ if physical.is_nan() => Err(signal.not_finite(payload)),
@@ -329,7 +358,7 @@ impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
         if let Some(raw) = self.special_value(meaning).or_else(|| self.unscaled(meaning)) {
             if let Meaning::Number(number @ (Number::Single(_) | Number::Float(_))) = meaning {
-                self.check(F::nearest(number), number, Some(raw.to_bits()), payload)?;
+                self.check(F::nearest(number), number, payload)?;
             }
             return self.put(raw, payload);
         }
@@ -358,6 +387,8 @@ mod tests {
         .specials(&[(255, "broken")]);
     const FREQUENCY: Signal<f32> = Signal::new("frequency", Place::bytes(4, 7)).unit("Hz").limits(45.0, 25.7 + 40.0);
     const GROUP: Signal<u8> = Signal::new("group", Place::byte(0).bits(5, 0)).limits(1.0, 62.0);
+    const LIMIT: Signal<u8> =
+        Signal::new("limit", Place::byte(0)).unit("A").scale(1, 10).limits(0.04, 20.06).specials(&[(0, "unlimited")]);
 
     fn reply() -> Payload {
         Payload::new("report", [0; 8])
@@ -412,6 +443,31 @@ mod tests {
         let mut payload = request();
         assert_eq!(TEMPERATURE.write(Meaning::Name("broken"), &mut payload), Ok(()));
         TEMPERATURE.read(payload.data(), &mut |reading| assert_eq!(reading.meaning, Meaning::Name("broken")));
+    }
+
+    #[test]
+    fn what_is_sent_for_a_value_between_two_steps_lies_inside_the_limits_too() {
+        // 20.06 A would be raw 201.
+        assert_eq!(LIMIT.encode(20.04, &mut request()), Ok(()));
+        let text = refusal(LIMIT.encode(20.06, &mut request()));
+        assert_eq!(text, "`limit` of `report` is 20.1 A, but its limits are 0.04 and 20.06 A");
+        assert_eq!(LIMIT.encode(20.06, &mut reply()), Ok(()));
+        let slope = Signal::<u8>::new("slope", Place::byte(0)).limits(0.5, 9.5);
+        let written = |value| slope.write(Meaning::Number(Number::Float(value)), &mut request()).is_ok();
+        assert_eq!([0.49, 0.5, 9.49, 9.5].map(written), [false, true, true, false]);
+    }
+
+    #[test]
+    fn a_number_that_would_be_sent_as_a_special_value_is_refused() {
+        let text = refusal(LIMIT.encode(0.04, &mut request()));
+        assert_eq!(text, "`limit` of `report` is 0.04 A, which would be sent as `unlimited`");
+        assert_eq!(LIMIT.encode(0.0, &mut request()), Ok(()));
+        assert_eq!(LIMIT.encode(0.05, &mut request()), Ok(()));
+        assert_eq!(LIMIT.encode(0.04, &mut reply()), Ok(()));
+        let unlimited = Signal::<u8>::new("interval", Place::byte(1)).unit("s").specials(&[(0, "never")]);
+        let text = refusal(unlimited.encode(0.4, &mut request()));
+        assert_eq!(text, "`interval` of `report` is 0.4 s, which would be sent as `never`");
+        assert_eq!([0.0, 0.5].map(|value| unlimited.encode(value, &mut request())), [Ok(()), Ok(())]);
     }
 
     #[test]

@@ -40,14 +40,23 @@ pub fn compare_encoding(protocol: &Protocol, message: &Message, signal: &Signal,
     }
 }
 
-/// Returns values around the limits, between the steps, and at random; what is no number refuses them all.
+/// Returns values around the limits, around special values, between the steps, and at random; what is no number refuses
+/// them all.
 pub fn candidates(signal: &Signal, random: &mut fastrand::Rng) -> Vec<f64> {
     let limits = signal.ranges().flat_map(|(range, _)| [range.minimum.to_f64(), range.maximum.to_f64()]);
     let mut values =
         vec![0.0, -0.0, 0.5, 1.5, 2.5, -0.5, -1.5, 0.049_999_999_999_999_99, f64::NAN, f64::INFINITY, 1e300];
     values.extend(limits.flat_map(|limit| [limit, limit.next_up(), limit.next_down()]));
+    let specials = signal.specials.iter().flat_map(|special| [special.raw - 1, special.raw, special.raw + 1]);
+    let specials = specials.filter_map(|raw| signal.encoding.value_of(raw)).map(Rational::to_f64);
+    values.extend(specials.collect::<Vec<_>>().windows(2).flat_map(|steps| between(steps[0], steps[1])));
     values.extend((0..40).map(|_| random.f64() * 2_f64.powi(random.i32(-12..40)) * f64::from(random.i8(-1..=1))));
     values
+}
+
+/// Returns values from one step to the next.
+fn between(one: f64, other: f64) -> impl Iterator<Item = f64> {
+    (0..=8).map(move |eighth| one + (other - one) * f64::from(eighth) / 8.0)
 }
 
 /// What either engine says of a frame.

@@ -171,9 +171,9 @@ impl Encoder<'_> {
         };
         let raw =
             if self.signal.encoding.is_unscaled() { nearest(value) } else { runtime_scale(scale, offset).raw(value) };
-        let special = |raw: &i64| self.is_special(i128::from(*raw));
-        let exact = |raw: &i64| scaled(i128::from(*raw), scale, offset).partial_cmp(&value) == Some(Ordering::Equal);
-        if !raw.as_ref().is_some_and(|raw| special(raw) && exact(raw)) {
+        if let Some(raw) = raw.map(i128::from) {
+            self.check_sent(value, scaled(raw, scale, offset), self.special(raw))?;
+        } else {
             self.check_range(value)?;
         }
         let raw = raw.ok_or_else(|| self.misfit(value))?;
@@ -182,21 +182,21 @@ impl Encoder<'_> {
 
     /// Encodes an unscaled number.
     fn whole(&self, value: i128, signed: bool) -> Result<u64, String> {
-        if !self.is_special(value) {
+        if self.special(value).is_none() {
             self.check_shown(as_double(value), &value)?;
         }
         self.bits(value, signed).map_err(|_| self.misfit(value))
     }
 
-    fn is_special(&self, raw: i128) -> bool {
-        self.signal.specials.iter().any(|special| special.raw == raw)
+    fn special(&self, raw: i128) -> Option<&NamedValue> {
+        self.signal.specials.iter().find(|special| special.raw == raw)
     }
 
     /// Encodes a raw number, which in a request must lie in the range too.
     fn raw_number(&self, raw: i128, signed: bool) -> Result<u64, String> {
         let Encoding::Number { scale, offset, .. } = self.signal.encoding else { return self.bits(raw, signed) };
         let bits = self.bits(raw, signed)?;
-        if !self.is_special(raw) {
+        if self.special(raw).is_none() {
             self.check_range(scaled(raw, scale, offset))?;
         }
         Ok(bits)
@@ -225,11 +225,31 @@ impl Encoder<'_> {
 
     /// Tests a number that a double may only come near to.
     fn check_shown(&self, value: f64, shown: &dyn Display) -> Result<(), String> {
-        let Limits::Range(model) = self.limits else { return Ok(()) };
-        let range = self.signal.range_for(model).filter(|range| !in_range(self.signal, range, value));
-        let Some(range) = range else { return Ok(()) };
+        self.limits_missed(value).map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", self.unit())))
+    }
+
+    /// Tests a number to send, and what it becomes by rounding: another number, or a special value.
+    fn check_sent(&self, value: f64, sent: f64, special: Option<&NamedValue>) -> Result<(), String> {
+        let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
+        if self.limits == Limits::Bits || is_exact && special.is_some() {
+            return Ok(());
+        }
+        self.check_range(value)?;
         let unit = self.unit();
-        Err(format!("{shown}{unit} is outside {}..{}{unit}", range.minimum, range.maximum))
+        match (special, self.limits_missed(sent)) {
+            (Some(NamedValue { name, .. }), _) => Err(format!("{value}{unit} would be sent as `{name}`")),
+            (None, Some(limits)) => {
+                Err(format!("{value}{unit} would be sent as {sent}{unit}, which is outside {limits}"))
+            }
+            (None, None) => Ok(()),
+        }
+    }
+
+    /// Returns the limits outside which a number lies.
+    fn limits_missed(&self, value: f64) -> Option<String> {
+        let Limits::Range(model) = self.limits else { return None };
+        let range = self.signal.range_for(model).filter(|range| !in_range(self.signal, range, value))?;
+        Some(format!("{}..{}{}", range.minimum, range.maximum, self.unit()))
     }
 
     fn unit(&self) -> String {

@@ -55,7 +55,7 @@ fn a_special_value_is_legal_outside_the_range() {
     let delay = |delay| output(&[("temperature", "15"), ("delay", delay), ("power", "0")]);
     assert_eq!(delay("forbid").as_deref(), Some("001203F0#02176E0000000000"));
     assert_eq!(delay("0").as_deref(), Some("001203F0#02176E0000000000"));
-    assert_eq!(delay("7"), None);
+    assert_eq!([delay("7"), delay("7.9")], [None, None]);
     // Raw 0 is 8 s.
     let fans = protocol("tests/downstream/specs/fan.yaml");
     let turn =
@@ -63,6 +63,37 @@ fn a_special_value_is_legal_outside_the_range() {
     assert_eq!(turn("never").as_deref(), Ok("019101E1#0100000001"));
     assert_eq!(turn("8 s").as_deref(), Ok("019101E1#0100000001"));
     assert!(turn("8.4 s").is_err() && turn("9.9 s").is_err());
+}
+
+fn limit(current: &str, interval: &str, slope: &str) -> Result<String, String> {
+    let signals = [("current", current), ("interval", interval), ("slope", slope), ("cold", "0")];
+    let charger = feature("limits_between_steps");
+    requested(&charger, None, "set_limit", "charger", &signals).map_err(|refusal| refusal.to_string())
+}
+
+#[test]
+fn what_is_sent_for_a_value_between_two_steps_lies_inside_the_range_too() {
+    // The range is 0.04..20.06 A in steps of 0.1 A: 20.04 A is raw 200 = 0xC8, 20.06 A would be 201.
+    let sent = |current| limit(current, "10", "5").ok();
+    assert_eq!(sent("20.04").as_deref(), Some("006#C80A0500"));
+    assert_eq!(sent("0.05").as_deref(), Some("006#010A0500"));
+    let refused = limit("20.06", "10", "5").expect_err("20.1 A would be sent");
+    assert_eq!(refused, "set_limit.current: 20.06 A would be sent as 20.1 A, which is outside 0.04..20.06 A");
+    // The range is 0.5..9.5 in steps of 1.
+    assert_eq!(["0.5", "9.49", "9.5"].map(|slope| limit("1", "10", slope).is_ok()), [true, true, false]);
+}
+
+#[test]
+fn a_number_that_would_be_sent_as_a_special_value_is_refused() {
+    let refused = limit("0.04", "10", "5").expect_err("raw 0 would be sent");
+    assert_eq!(refused, "set_limit.current: 0.04 A would be sent as `unlimited`");
+    assert_eq!(limit("0", "10", "5").as_deref(), Ok("006#000A0500"));
+    assert_eq!(limit("unlimited", "10", "5").as_deref(), Ok("006#000A0500"));
+    // There is no range at all.
+    let refused = limit("1", "0.4", "5").expect_err("raw 0 would be sent");
+    assert_eq!(refused, "set_limit.interval: 0.4 s would be sent as `never`");
+    assert_eq!(limit("1", "0", "5").as_deref(), Ok("006#0A000500"));
+    assert_eq!(limit("1", "0.5", "5").as_deref(), Ok("006#0A010500"));
 }
 
 #[test]
