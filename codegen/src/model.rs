@@ -131,6 +131,11 @@ impl Protocol {
         mode.target.filter(alone).map_or(&mode.name, |known| &self[known].name)
     }
 
+    /// Returns the device models that have a message.
+    pub fn models_of(&self, message: &Message) -> impl Iterator<Item = ModelId> {
+        self.models.ids().filter(|model| message.is_of(*model))
+    }
+
     /// Returns the remarks of every item that can refer to an erratum.
     pub fn docs(&self) -> Vec<&Doc> {
         let mut docs: Vec<&Doc> = Vec::new();

@@ -22,7 +22,7 @@ impl Payload {
         Self { message, data, keeps_limits: true, model: None }
     }
 
-    /// Returns the same bytes for a device model, by its number: limits of its own count in place of the general ones.
+    /// Returns the same bytes for a device model, by its number: its limits count in place of those that hold for any.
     #[must_use]
     pub const fn for_model(self, model: Option<u8>) -> Self {
         Self { model, ..self }

@@ -239,13 +239,36 @@ impl Exchange {
         message: &impl Layout,
     ) -> Result<Request<T::Protocol, R>, Error> {
         let choice = route.into().choice();
-        self.built(&choice, &|payload| message.encode(payload)).map(|built| Request { built, reply: PhantomData })
+        let built = self.built(&choice, None, &|payload| message.encode(payload));
+        built.map(|built| Request { built, reply: PhantomData })
+    }
+
+    /// Builds the request to a device model that carries `message`; generated code calls it.
+    ///
+    /// # Errors
+    ///
+    /// As [`request_to`](Self::request_to), within the limits of the model.
+    #[doc(hidden)]
+    pub fn request_within<T: Destination, R>(
+        &self,
+        model: impl Into<u8>,
+        route: impl Into<Route<T>>,
+        message: &impl Layout,
+    ) -> Result<Request<T::Protocol, R>, Error> {
+        let choice = route.into().choice();
+        let built = self.built(&choice, Some(model.into()), &|payload| message.encode(payload));
+        built.map(|built| Request { built, reply: PhantomData })
     }
 
     /// Builds a request whose values `encode` writes; all messages share this code.
-    fn built(&self, choice: &Choice, encode: &dyn Fn(&mut Payload) -> Result<(), Error>) -> Result<Built, Error> {
+    fn built(
+        &self,
+        choice: &Choice,
+        model: Option<u8>,
+        encode: &dyn Fn(&mut Payload) -> Result<(), Error>,
+    ) -> Result<Built, Error> {
         let Addressed { request: filter, replies, refusal } = self.addressed(choice)?;
-        let mut payload = Payload::within_limits(self.message, filter.data_value());
+        let mut payload = Payload::within_limits(self.message, filter.data_value()).for_model(model);
         encode(&mut payload)?;
         let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), self.length);
         Ok(Built { frame, replies, refusal })

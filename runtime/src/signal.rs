@@ -33,7 +33,7 @@ pub struct Signal<R: 'static, F: 'static = f64> {
     unit: Option<&'static str>,
     scale: Option<Scale>,
     limits: Option<(F, F)>,
-    model_limits: &'static [(u8, F, F)],
+    model_limits: &'static [(u8, Option<(F, F)>)],
     specials: &'static [(i64, &'static str)],
     raw: PhantomData<R>,
 }
@@ -50,15 +50,15 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         Self { unit: Some(unit), ..self }
     }
 
-    /// Adds the documented limits of the physical value, both legal.
+    /// Adds the documented limits of the physical value, both legal: those that hold where no device model is chosen.
     #[must_use]
     pub const fn limits(self, minimum: F, maximum: F) -> Self {
         Self { limits: Some((minimum, maximum)), ..self }
     }
 
-    /// Adds the limits of device models that have their own: number of the model, minimum and maximum.
+    /// Adds the limits of device models, minimum and maximum, by number of the model; some have none.
     #[must_use]
-    pub const fn model_limits(self, model_limits: &'static [(u8, F, F)]) -> Self {
+    pub const fn model_limits(self, model_limits: &'static [(u8, Option<(F, F)>)]) -> Self {
         Self { model_limits, ..self }
     }
 
@@ -73,7 +73,7 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         self.place
     }
 
-    /// Returns the documented limits of the physical value, both legal.
+    /// Returns the documented limits of the physical value, both legal: what holds where no device model is chosen.
     pub const fn documented_limits(&self) -> Option<(F, F)> {
         self.limits
     }
@@ -81,8 +81,8 @@ impl<R: Raw, F: Physical> Signal<R, F> {
     /// Returns the documented limits of the physical value for a device model, both legal.
     pub fn limits_for(&self, model: impl Into<u8>) -> Option<(F, F)> {
         let model = model.into();
-        let own = self.model_limits.iter().find(|(known, ..)| *known == model);
-        own.map(|(_, minimum, maximum)| (*minimum, *maximum)).or(self.limits)
+        let own = self.model_limits.iter().find(|(known, _)| *known == model);
+        own.map_or(self.limits, |(_, limits)| *limits)
     }
 
     /// Returns the raw value.
@@ -311,7 +311,7 @@ pub trait AnySignal {
     /// Returns the place in the data.
     fn place(&self) -> Place;
 
-    /// Returns the documented limits of the physical value, both legal.
+    /// Returns the documented limits of the physical value, both legal: what holds where no device model is chosen.
     fn limits(&self) -> Option<(Number, Number)>;
 
     /// Shows what the signal says in a frame.
@@ -498,10 +498,12 @@ mod tests {
 
     #[test]
     fn a_device_model_can_have_limits_of_its_own() {
-        const SPEED: Signal<u16> =
-            Signal::new("speed", Place::bytes(0, 1)).limits(0.0, 6000.0).model_limits(&[(3, 300.0, 3000.0)]);
+        const SPEED: Signal<u16> = Signal::new("speed", Place::bytes(0, 1))
+            .limits(0.0, 6000.0)
+            .model_limits(&[(3, Some((300.0, 3000.0))), (4, None)]);
         let takes = |model, speed| SPEED.put(speed, &mut request().for_model(model)).is_ok();
         assert_eq!([299, 300, 3000, 3001].map(|speed| takes(Some(3), speed)), [false, true, true, false]);
+        assert!(takes(Some(4), 6001) && takes(Some(4), u16::MAX));
         assert_eq!([0, 6000, 6001].map(|speed| takes(Some(1), speed)), [true, true, false]);
         assert_eq!([0, 6000, 6001].map(|speed| takes(None, speed)), [true, true, false]);
     }

@@ -3,9 +3,9 @@
 use std::string::ToString;
 
 use crate::{
-    Address, AddressType, AnySignal, Bits, Data, Destination, Entry, Error, Exchange, Failure, Filter, Frame,
-    IdentifierFields, Kind, Layout, Meaning, Mode, Number, Pattern, Payload, Place, Problem, Protocol, Reading,
-    Received, Recognised, Replies, Request, Route, Selector, Signal, StatusBit, Who,
+    Address, AddressType, AnySignal, Bits, Data, Decode, Destination, Encode, Entry, Error, Exchange, Failure, Filter,
+    Frame, IdentifierFields, Kind, Layout, Meaning, Mode, Number, Pattern, Payload, Place, Problem, Protocol, Reading,
+    Received, Recognised, Replies, Request, Route, Selector, Signal, Single, StatusBit, Who,
 };
 
 const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -422,6 +422,26 @@ fn a_message_of_some_device_models_is_refused_for_the_others() {
     let refused = Err(Error::Model { message: "boost" });
     assert_eq!([0, 1, 2, 4].map(|model: u8| BOOST.within(model, &HEAT)), [refused, Ok(()), refused, Ok(())]);
     assert_eq!(Heat::SET.within(2_u8, &HEAT), Ok(()));
+}
+
+#[test]
+fn a_request_to_a_device_model_keeps_to_the_limits_of_that_model_alone() {
+    struct Boost(u16);
+
+    impl Single for Boost {
+        const SIGNAL: &'static dyn AnySignal = &BOOST;
+        const DECODE: Decode<Self> = |data| Self(BOOST.get(data));
+        const ENCODE: Encode<Self> = |boost, payload| BOOST.put(boost.0, payload);
+    }
+
+    const BOOST: Signal<u16> = Heat::POWER.limits(0.0, 500.0).model_limits(&[(1, Some((0.0, 300.0))), (2, None)]);
+    let takes = |model: u8, raw| {
+        let request: Result<Request<Message, ()>, Error> = Heat::SET.request_within(model, To::All, &Boost(raw));
+        request.is_ok()
+    };
+    assert!(takes(1, 30) && !takes(1, 31) && takes(2, 200) && takes(3, 50) && !takes(3, 51));
+    let general: Result<Request<Message, ()>, Error> = Heat::SET.request_to(To::All, &Boost(51));
+    assert!(general.is_err());
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use canspec_codegen::interpret::{self, Frame, Input, Limits, Value, raw_of};
 use canspec_codegen::model::{Encoding, Message, ModelId, Protocol, Signal};
+use canspec_codegen::number::Rational;
 use canspec_runtime::{AnySignal, Meaning, Number, Payload, Problem, Reading};
 use embedded_can::Frame as _;
 

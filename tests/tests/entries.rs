@@ -42,7 +42,8 @@ impl Visitor for Listed {
                 assert_eq!(listed.name(), signal.name, "{name}");
                 assert_eq!(listed.unit(), signal.unit.map(|unit| unit.symbol), "{name}");
                 assert_eq!(listed.place().mask(), signal.place.mask(), "{name}");
-                let range = signal.range.map(|range| [range.minimum, range.maximum].map(Rational::to_f64));
+                let range = signal.hull(protocol.models_of(message));
+                let range = range.map(|range| [range.minimum, range.maximum].map(Rational::to_f64));
                 let limits = listed.limits().map(|(minimum, maximum)| [minimum, maximum]);
                 assert_eq!(limits, range.map(|range| range.map(Number::Float)), "{name}");
             }

@@ -1,6 +1,6 @@
 //! Device models in the generated code: limits, layouts and messages of their own.
 
-use canspec_protocols::infy;
+use canspec_protocols::{infy, megmeet};
 use canspec_runtime::Frame;
 use canspec_tests::{features_model_layouts as layouts, features_model_limits as limits};
 
@@ -41,11 +41,42 @@ fn a_refusal_names_the_limits_of_the_model() {
 }
 
 #[test]
+fn without_a_model_a_request_keeps_to_the_hull_of_the_printed_limits() {
+    let takes =
+        |voltage_v, current_a| infy::SetModuleOutput { voltage_v, current_a }.set(infy::Target::Module(3)).is_ok();
+    assert!(takes(50.0, 0.1) && takes(750.0, 50.0));
+    assert!(!takes(49.999, 1.0) && !takes(750.001, 1.0) && !takes(4_000_000.0, 15.0));
+    assert!(!takes(500.0, 0.099) && !takes(500.0, 50.001));
+    let received =
+        infy::Message::decode(&Frame::new_raw(0x029C_03F0, true, [0xEE, 0x6B, 0x28, 0, 0, 0, 0x3A, 0x98], 8));
+    let received = received.expect("decoding knows no limits");
+    let text = received.encode().expect_err("4,000,000 V").to_string();
+    assert_eq!(text, "`voltage` of `set_module_output` is 4000000 V, but its limits are 50 and 750 V");
+}
+
+#[test]
+fn a_model_without_limits_is_not_held_to_those_of_the_others() {
+    // The document prints limits for modules of 48 V alone: 41.5 to 58.5 V in 2.2.2.
+    let set = |value_v| megmeet::OutputVoltageSetting { value_v };
+    let target = megmeet::Target::Module(1);
+    assert!(set(41.5).set(target).is_ok() && set(58.5).set(target).is_ok());
+    assert!(set(27.0).set(target).is_err() && set(80.0).set(target).is_err());
+    let of = |model, value_v| set(value_v).within(model).and_then(|output| output.set(target));
+    assert!(of(megmeet::Model::V48, 27.0).is_err() && of(megmeet::Model::V72, 80.0).is_ok());
+    // 27 V = 27648 / 1024, and 27648 = 0x6C00.
+    let request = of(megmeet::Model::V24, 27.0).expect("24 V modules have no printed limits");
+    assert_eq!(request.frame().bytes(), [0x01, 0x00, 0, 0, 0, 0, 0x6C, 0x00]);
+}
+
+#[test]
 fn limits_can_be_asked_for() {
     let speed = limits::SetSpeed::SPEED;
     assert_eq!(speed.limits_for(limits::Model::P10a), Some((300.0, 3000.0)));
     assert_eq!(speed.limits_for(limits::Model::P20a), Some((0.0, 6000.0)));
     assert_eq!(limits::SetSpeed::FLOW.limits_for(limits::Model::P20a), None);
+    // Only P10a and P48vDc have the message.
+    assert_eq!(speed.documented_limits(), Some((0.0, 3000.0)));
+    assert_eq!(limits::SetSpeed::FLOW.documented_limits(), Some((-30.0, 30.5)));
 }
 
 #[test]

@@ -149,7 +149,7 @@ impl SetPoint {
 fn every_set_point_in_steps_of_a_millivolt_meets_its_own_raw_value_in_the_interpreter() {
     let voltage = SetPoint::of("infy", "set_module_output", "voltage");
     for millivolts in 0..=1_000_000 {
-        assert_eq!(voltage.raw(volts(millivolts), Limits::Range(None)), Some(millivolts.into()));
+        assert_eq!(voltage.raw(volts(millivolts), Limits::Bits), Some(millivolts.into()));
     }
 }
 

@@ -84,7 +84,7 @@ pub fn in_range(signal: &Signal, range: &Range, value: f64) -> bool {
 pub enum Limits {
     /// What the bits hold, as in a reply.
     Bits,
-    /// The range too, as in a request: that of a device model, if one is chosen.
+    /// The range too, as in a request: that of a device model, or where none is chosen the hull of those of all models.
     Range(Option<ModelId>),
 }
 
@@ -107,7 +107,7 @@ pub fn raw_of(
     input: &Input,
     limits: Limits,
 ) -> Result<u64, Refusal> {
-    Encoder { protocol, signal, limits }
+    Encoder { protocol, message, signal, limits }
         .raw(input)
         .map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
 }
@@ -115,6 +115,7 @@ pub fn raw_of(
 /// Encodes one signal.
 struct Encoder<'a> {
     protocol: &'a Protocol,
+    message: &'a Message,
     signal: &'a Signal,
     limits: Limits,
 }
@@ -248,8 +249,22 @@ impl Encoder<'_> {
     /// Returns the limits outside which a number lies.
     fn limits_missed(&self, value: f64) -> Option<String> {
         let Limits::Range(model) = self.limits else { return None };
-        let range = self.signal.range_for(model).filter(|range| !in_range(self.signal, range, value))?;
-        Some(format!("{}..{}{}", range.minimum, range.maximum, self.unit()))
+        let range = self.range(model).filter(|range| !in_range(self.signal, range, value))?;
+        Some(format!("{}..{}{}{}", range.minimum, range.maximum, self.unit(), self.advice(model)))
+    }
+
+    fn range(&self, model: Option<ModelId>) -> Option<Range> {
+        match model {
+            Some(_) => self.signal.range_for(model),
+            None => self.signal.hull(self.protocol.models_of(self.message)),
+        }
+    }
+
+    fn advice(&self, model: Option<ModelId>) -> &'static str {
+        if model.is_some() || self.signal.model_ranges.is_empty() {
+            return "";
+        }
+        ", the limits of the models taken together; choose a model for its own"
     }
 
     fn unit(&self) -> String {

@@ -132,9 +132,16 @@ pub struct OfModel<T> {
 }
 
 impl Signal {
-    /// Returns the physical limits that hold for a device model, or where none is chosen.
+    /// Returns the physical limits that a device model states, or else those of the type.
     pub fn range_for(&self, model: Option<ModelId>) -> Option<Range> {
         own(&self.model_ranges, model).or(self.range)
+    }
+
+    /// Returns the limits of a request to one of these device models, whichever it is: the hull of what they state.
+    ///
+    /// A model that states none has those of the type; if there are none either, it does not widen the hull.
+    pub fn hull(&self, models: impl Iterator<Item = ModelId>) -> Option<Range> {
+        models.filter_map(|model| self.range_for(Some(model))).reduce(Range::hull).or(self.range)
     }
 
     /// Returns the raw value that a device model starts with, or a device of which the model is not known.
@@ -233,6 +240,13 @@ pub struct Range {
     pub minimum: Rational,
     /// Highest value.
     pub maximum: Rational,
+}
+
+impl Range {
+    /// Returns the least range that holds both.
+    fn hull(self, other: Self) -> Self {
+        Self { minimum: self.minimum.min(other.minimum), maximum: self.maximum.max(other.maximum) }
+    }
 }
 
 /// A unit of the spec language.

@@ -5,7 +5,10 @@ use super::access::{Modes, Times, pattern_of};
 use super::signals::Leaves;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind, Message, MessageId, ModelId, Selector, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel};
+use crate::model::{
+    Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
+    Message, MessageId, ModelId, Selector, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel,
+};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 

@@ -118,6 +118,54 @@ fn a_model_has_limits_and_a_default_of_its_own() {
 }
 
 #[test]
+fn without_a_model_a_request_keeps_to_the_hull_of_what_the_models_state() {
+    // Section 3.3 prints eight models: from 50 V and 0.1 A, to 750 V and 50 A.
+    let infy = protocol("specs/infy.yaml");
+    let takes = |volts, amperes| {
+        let signals = [("voltage", volts), ("current", amperes)];
+        requested(&infy, None, "set_module_output", "module:3", &signals).is_ok()
+    };
+    assert!(takes("50", "0.1") && takes("750", "50"));
+    assert!(!takes("49.999", "1") && !takes("750.001", "1") && !takes("4000000", "15"));
+    assert!(!takes("500", "0.099") && !takes("500", "50.001"));
+}
+
+#[test]
+fn a_model_that_states_no_limits_has_those_of_the_type_or_does_not_widen_the_hull() {
+    let pumps = feature("model_limits");
+    let refusal = |model_name: Option<&str>, speed, flow| {
+        let known = model_name.map(|name| model(&pumps, name));
+        requested(&pumps, known, "set_speed", "pump", &[("speed", speed), ("flow", flow)]).err().map(|why| why.0)
+    };
+    // P_20A, for which the type's 0..6000 rpm would count, does not have the message.
+    assert_eq!([refusal(None, "0", "-30"), refusal(None, "3000", "30.5")], [const { None }; 2]);
+    let hull = "the limits of the models taken together; choose a model for its own";
+    assert_eq!(refusal(None, "3001", "0"), Some(format!("set_speed.speed: 3001 rpm is outside 0..3000 rpm, {hull}")));
+    assert_eq!(refusal(None, "300", "31"), Some(format!("set_speed.flow: 31 % is outside -30..30.5 %, {hull}")));
+    // P_10A states no limits of the flow, and neither does the type.
+    assert_eq!(refusal(Some("P_10A"), "300", "31"), None);
+    // F_400 states none, and the type has -1500.5..1500.5 rpm.
+    let fans = protocol("tests/downstream/specs/fan.yaml");
+    let turns = |speed| {
+        let signals = [("speed", speed), ("delay", "10"), ("power", "on")];
+        requested(&fans, None, "set_speed", "fan:1", &signals).is_ok()
+    };
+    assert!(turns("1500.5") && turns("-1500.5") && !turns("1501") && !turns("-1501"));
+}
+
+#[test]
+fn a_model_without_limits_is_not_held_to_those_of_the_others() {
+    let modules = protocol("specs/megmeet.yaml");
+    let set = |name: Option<&str>, volts| {
+        let known = name.map(|name| model(&modules, name));
+        requested(&modules, known, "set output_voltage_setting", "module:1", &[("value", volts)]).is_ok()
+    };
+    // Section 2.2.2 prints 41.5 to 58.5 V for 48 V alone.
+    assert!(set(Some("V24"), "27") && set(Some("V72"), "80") && !set(Some("V48"), "27"));
+    assert!(set(None, "41.5") && set(None, "58.5") && !set(None, "27") && !set(None, "80"));
+}
+
+#[test]
 fn on_and_off_are_sent_by_name() {
     let switches = feature("named_values");
     let set = |power| requested(&switches, None, "switch", "heater:9", &[("power", power), ("lamp", "dark")]).ok();

@@ -14,9 +14,10 @@ fn a_model_takes_its_own_speeds_only() {
 }
 
 #[test]
-fn without_a_model_the_general_range_counts() {
-    assert!(SetSpeed { speed_rpm: 6000 }.set(Target::Pump(3)).is_ok());
-    assert!(SetSpeed { speed_rpm: 6001 }.set(Target::Pump(3)).is_err());
+fn without_a_model_the_hull_of_what_both_models_take_counts() {
+    // The P30 takes 300 to 3000 rpm, the P60 300 to 4500.
+    let takes = |speed_rpm| SetSpeed { speed_rpm }.set(Target::Pump(3)).is_ok();
+    assert_eq!([299, 300, 4500, 4501].map(takes), [false, true, true, false]);
 }
 
 #[test]

@@ -120,18 +120,33 @@ impl From<Model> for u8 {
     }
 }
 
+/// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within<M> {
+    values: M,
+    model: Model,
+}
+
 /// Limits of `speed` by device model.
-const SPEED_LIMITS: &[(u8, f64, f64)] = &[(Model::P10a as u8, 300.0, 3000.0), (Model::P48vDc as u8, 0.0, 1500.0)];
+const SPEED_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::P10a as u8, Some((300.0, 3000.0))),
+    (Model::P20a as u8, Some((0.0, 6000.0))),
+    (Model::P48vDc as u8, Some((0.0, 1500.0))),
+];
 
 /// Limits of `flow` by device model.
-const FLOW_LIMITS: &[(u8, f64, f64)] = &[(Model::P48vDc as u8, -30.0, 30.5)];
+const FLOW_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::P10a as u8, None),
+    (Model::P20a as u8, None),
+    (Model::P48vDc as u8, Some((-30.0, 30.5))),
+];
 
 /// Set speed. Section 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetSpeed {
-    /// Speed in rpm: bytes 0..1, `0..=6000`. The limits depend on the device model.
+    /// Speed in rpm: bytes 0..1, `0..=3000`. The limits depend on the device model.
     pub speed_rpm: u16,
-    /// Flow in %: bytes 2..3, steps of 0.1 %. The limits depend on the device model.
+    /// Flow in %: bytes 2..3, steps of 0.1 %, `-30..=30.5`. The limits depend on the device model.
     pub flow_percent: f64,
 }
 
@@ -139,12 +154,13 @@ impl SetSpeed {
     /// The signal `speed`.
     pub const SPEED: Signal<u16> = Signal::new("speed", Place::bytes(0, 1))
         .unit("rpm")
-        .limits(0.0, 6000.0)
+        .limits(0.0, 3000.0)
         .model_limits(SPEED_LIMITS);
     /// The signal `flow`.
     pub const FLOW: Signal<i16> = Signal::new("flow", Place::bytes(2, 3))
         .unit("%")
         .scale(1, 10)
+        .limits(-30.0, 30.5)
         .model_limits(FLOW_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
@@ -154,14 +170,14 @@ impl SetSpeed {
         .length(4)
         .models(&[Model::P10a as u8, Model::P48vDc as u8]);
 
-    /// Returns the values if a device model takes them.
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
     ///
     /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Self, Error> {
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
-        Ok(self)
+        Ok(Within { values: self, model })
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
@@ -171,6 +187,17 @@ impl SetSpeed {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.request_to(route, self)
+    }
+}
+
+impl Within<SetSpeed> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        SetSpeed::SET.request_within(self.model, route, &self.values)
     }
 }
 

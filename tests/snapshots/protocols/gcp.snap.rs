@@ -373,6 +373,13 @@ impl From<Model> for u8 {
     }
 }
 
+/// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within<M> {
+    values: M,
+    model: Model,
+}
+
 /// Cause of an error, or that the module is starting up. Section 3.2.1, 3.2.4.
 ///
 /// While modules start up they send each other frames with error code 7, and no command may be sent.
@@ -1140,14 +1147,14 @@ impl LimitInputCurrent {
         .of("limit_input_current", FRAME.id(Identifier::COMMAND, 0x0F).data(SUB_COMMAND_SELECTOR.place, 0x1205))
         .models(&[Model::PsM2_3ac1000dc30kw as u8, Model::Ps3ac500dc20kw as u8, Model::PsM2_3ac500dc20kw as u8]);
 
-    /// Returns the values if a device model takes them.
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
     ///
     /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Self, Error> {
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET_UNANSWERED.within(model, &self)?;
-        Ok(self)
+        Ok(Within { values: self, model })
     }
 
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
@@ -1157,6 +1164,17 @@ impl LimitInputCurrent {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.request_to(route, self)
+    }
+}
+
+impl Within<LimitInputCurrent> {
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        LimitInputCurrent::SET_UNANSWERED.request_within(self.model, route, &self.values)
     }
 }
 
@@ -1198,14 +1216,14 @@ impl SetOperatingMode {
         .answers(&[Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody), Some(Who::Nobody)])
         .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
-    /// Returns the values if a device model takes them.
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
     ///
     /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Self, Error> {
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET_UNANSWERED.within(model, &self)?;
-        Ok(self)
+        Ok(Within { values: self, model })
     }
 
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
@@ -1218,6 +1236,20 @@ impl SetOperatingMode {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.request_to(route, self)
+    }
+}
+
+impl Within<SetOperatingMode> {
+    /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
+    ///
+    /// `point_to_point`: nobody answers. `mppt`: nobody answers. `group`: nobody answers. `broadcast`:
+    /// nobody answers.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        SetOperatingMode::SET_UNANSWERED.request_within(self.model, route, &self.values)
     }
 }
 

@@ -383,28 +383,35 @@ impl From<Model> for u8 {
     }
 }
 
+/// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within<M> {
+    values: M,
+    model: Model,
+}
+
 /// Limits of `output_voltage` by device model.
-const OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[
-    (Model::Reg85750 as u8, 100.0, 750.0),
-    (Model::Reg85500 as u8, 100.0, 550.0),
-    (Model::Reg75020 as u8, 100.0, 750.0),
-    (Model::Reg50025 as u8, 100.0, 550.0),
-    (Model::Reg75030 as u8, 100.0, 750.0),
-    (Model::Reg50040 as u8, 100.0, 550.0),
-    (Model::Reg75035 as u8, 50.0, 750.0),
-    (Model::Reg50050 as u8, 50.0, 550.0),
+const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::Reg85750 as u8, Some((100.0, 750.0))),
+    (Model::Reg85500 as u8, Some((100.0, 550.0))),
+    (Model::Reg75020 as u8, Some((100.0, 750.0))),
+    (Model::Reg50025 as u8, Some((100.0, 550.0))),
+    (Model::Reg75030 as u8, Some((100.0, 750.0))),
+    (Model::Reg50040 as u8, Some((100.0, 550.0))),
+    (Model::Reg75035 as u8, Some((50.0, 750.0))),
+    (Model::Reg50050 as u8, Some((50.0, 550.0))),
 ];
 
 /// Limits of `output_current` by device model.
-const OUTPUT_CURRENT_LIMITS: &[(u8, f64, f64)] = &[
-    (Model::Reg85750 as u8, 0.1, 15.0),
-    (Model::Reg85500 as u8, 0.12, 20.0),
-    (Model::Reg75020 as u8, 0.13, 16.7),
-    (Model::Reg50025 as u8, 0.2, 23.0),
-    (Model::Reg75030 as u8, 0.2, 25.7),
-    (Model::Reg50040 as u8, 0.3, 35.0),
-    (Model::Reg75035 as u8, 0.26, 33.0),
-    (Model::Reg50050 as u8, 0.4, 50.0),
+const OUTPUT_CURRENT_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::Reg85750 as u8, Some((0.1, 15.0))),
+    (Model::Reg85500 as u8, Some((0.12, 20.0))),
+    (Model::Reg75020 as u8, Some((0.13, 16.7))),
+    (Model::Reg50025 as u8, Some((0.2, 23.0))),
+    (Model::Reg75030 as u8, Some((0.2, 25.7))),
+    (Model::Reg50040 as u8, Some((0.3, 35.0))),
+    (Model::Reg75035 as u8, Some((0.26, 33.0))),
+    (Model::Reg50050 as u8, Some((0.4, 50.0))),
 ];
 
 /// Cause of an error in the data, or that the module is starting up. Section 2.2.
@@ -1514,7 +1521,8 @@ impl Single for SwitchModules {
 /// Erratum D39: printed is "command 0x18 sets a total current of 90 A", used is "command 0x1B".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetTotalOutput {
-    /// Output voltage in V: bytes 0..3, steps of 0.001 V. The limits depend on the device model.
+    /// Output voltage in V: bytes 0..3, steps of 0.001 V, `50..=750`. The limits depend on the device
+    /// model.
     pub voltage_v: f64,
     /// Sum of the output currents of all modules addressed in A: bytes 4..7, steps of 0.001 A. Section 3.3.
     ///
@@ -1528,6 +1536,7 @@ impl SetTotalOutput {
     pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
         .unit("V")
         .scale(1, 1000)
+        .limits(50.0, 750.0)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`.
     pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
@@ -1536,14 +1545,14 @@ impl SetTotalOutput {
     /// How it travels by `set_total`.
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
-    /// Returns the values if a device model takes them.
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
     ///
     /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Self, Error> {
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET_TOTAL.within(model, &self)?;
-        Ok(self)
+        Ok(Within { values: self, model })
     }
 
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
@@ -1553,6 +1562,17 @@ impl SetTotalOutput {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.request_to(route, self)
+    }
+}
+
+impl Within<SetTotalOutput> {
+    /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<SetTotalOutput>, Error> {
+        SetTotalOutput::SET_TOTAL.request_within(self.model, route, &self.values)
     }
 }
 
@@ -1576,14 +1596,14 @@ impl Layout for SetTotalOutput {
 /// Added in V1.06 and changed in V1.08.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetModuleOutput {
-    /// Output voltage in V: bytes 0..3, steps of 0.001 V. The limits depend on the device model. Section
-    /// 3.3.
+    /// Output voltage in V: bytes 0..3, steps of 0.001 V, `50..=750`. The limits depend on the device
+    /// model. Section 3.3.
     ///
     /// Outside the limits of the model it is ignored, and the last one stays or, if there was none, the
     /// default of the model.
     pub voltage_v: f64,
-    /// Output current of one module in A: bytes 4..7, steps of 0.001 A. The limits depend on the device
-    /// model. Section 3.3.
+    /// Output current of one module in A: bytes 4..7, steps of 0.001 A, `0.1..=50`. The limits depend on
+    /// the device model. Section 3.3.
     ///
     /// Outside the limits of the model it is ignored as a voltage is; from V1.07 on too high a current is
     /// limited instead.
@@ -1595,25 +1615,27 @@ impl SetModuleOutput {
     pub const VOLTAGE: Signal<u32> = Signal::new("voltage", Place::bytes(0, 3))
         .unit("V")
         .scale(1, 1000)
+        .limits(50.0, 750.0)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`.
     pub const CURRENT: Signal<u32> = Signal::new("current", Place::bytes(4, 7))
         .unit("A")
         .scale(1, 1000)
+        .limits(0.1, 50.0)
         .model_limits(OUTPUT_CURRENT_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00; 8];
     /// How it travels by `set`.
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
-    /// Returns the values if a device model takes them.
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
     ///
     /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Self, Error> {
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
-        Ok(self)
+        Ok(Within { values: self, model })
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
@@ -1623,6 +1645,17 @@ impl SetModuleOutput {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
+    }
+}
+
+impl Within<SetModuleOutput> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetModuleOutput>, Error> {
+        SetModuleOutput::SET.request_within(self.model, route, &self.values)
     }
 }
 

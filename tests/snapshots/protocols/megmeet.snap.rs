@@ -280,14 +280,33 @@ impl From<Model> for u8 {
     }
 }
 
+/// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within<M> {
+    values: M,
+    model: Model,
+}
+
 /// Limits of `output_voltage` by device model.
-const OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 41.5, 58.5)];
+const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::V48 as u8, Some((41.5, 58.5))),
+    (Model::V24 as u8, None),
+    (Model::V72 as u8, None),
+];
 
 /// Limits of `default_output_voltage` by device model.
-const DEFAULT_OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 48.0, 58.0)];
+const DEFAULT_OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::V48 as u8, Some((48.0, 58.0))),
+    (Model::V24 as u8, None),
+    (Model::V72 as u8, None),
+];
 
 /// Limits of `overvoltage_point` by device model.
-const OVERVOLTAGE_POINT_LIMITS: &[(u8, f64, f64)] = &[(Model::V48 as u8, 58.5, 60.5)];
+const OVERVOLTAGE_POINT_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::V48 as u8, Some((58.5, 60.5))),
+    (Model::V24 as u8, None),
+    (Model::V72 as u8, None),
+];
 
 /// Command. Section 2.1.
 ///
@@ -1558,8 +1577,8 @@ impl Layout for HardwareAddress {
 /// Best sent to all modules in each polling cycle, and so `current_limit_setting`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputVoltageSetting {
-    /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V. The limits depend
-    /// on the device model.
+    /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `41.5..=58.5`.
+    /// The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -1568,6 +1587,7 @@ impl OutputVoltageSetting {
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
         .unit("V")
         .scale(1, 1024)
+        .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
@@ -1575,6 +1595,16 @@ impl OutputVoltageSetting {
     pub const READ: Exchange = READ_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
     /// How it travels by `set`.
     pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
+
+    /// Returns the values for a device model if it takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -1592,6 +1622,17 @@ impl OutputVoltageSetting {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
+    }
+}
+
+impl Within<OutputVoltageSetting> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
+        OutputVoltageSetting::SET.request_within(self.model, route, &self.values)
     }
 }
 
@@ -1612,8 +1653,8 @@ impl Single for OutputVoltageSetting {
 /// 48 V level".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultOutputVoltage {
-    /// Default output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V. The
-    /// limits depend on the device model.
+    /// Default output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
+    /// `48..=58`. The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -1622,6 +1663,7 @@ impl DefaultOutputVoltage {
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
         .unit("V")
         .scale(1, 1024)
+        .limits(48.0, 58.0)
         .model_limits(DEFAULT_OUTPUT_VOLTAGE_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
@@ -1631,6 +1673,16 @@ impl DefaultOutputVoltage {
     pub const SET: Exchange = SET_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
     /// How it travels by `store`.
     pub const STORE: Exchange = STORE_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
+
+    /// Returns the values for a device model if it takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -1657,6 +1709,26 @@ impl DefaultOutputVoltage {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
+    }
+}
+
+impl Within<DefaultOutputVoltage> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
+        DefaultOutputVoltage::SET.request_within(self.model, route, &self.values)
+    }
+
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
+        DefaultOutputVoltage::STORE.request_within(self.model, route, &self.values)
     }
 }
 
@@ -1669,8 +1741,8 @@ impl Single for DefaultOutputVoltage {
 /// DC output overvoltage protection point. Section 2.2.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OvervoltageProtectionPoint {
-    /// Overvoltage point within the limits of the model in V: bytes 4..7, steps of 1/1024 V. The limits
-    /// depend on the device model.
+    /// Overvoltage point within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `58.5..=60.5`.
+    /// The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -1679,6 +1751,7 @@ impl OvervoltageProtectionPoint {
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
         .unit("V")
         .scale(1, 1024)
+        .limits(58.5, 60.5)
         .model_limits(OVERVOLTAGE_POINT_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
@@ -1689,6 +1762,16 @@ impl OvervoltageProtectionPoint {
     /// How it travels by `store`.
     pub const STORE: Exchange = STORE_ACCESS
         .of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
+
+    /// Returns the values for a device model if it takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -1715,6 +1798,26 @@ impl OvervoltageProtectionPoint {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
+    }
+}
+
+impl Within<OvervoltageProtectionPoint> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtectionPoint>, Error> {
+        OvervoltageProtectionPoint::SET.request_within(self.model, route, &self.values)
+    }
+
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtectionPoint>, Error> {
+        OvervoltageProtectionPoint::STORE.request_within(self.model, route, &self.values)
     }
 }
 
@@ -2706,6 +2809,16 @@ impl AddressModeSwitch {
         .of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D))
         .models(&[Model::V48 as u8]);
 
+    /// Returns the values for a device model if it takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
+
     /// Builds the request [`read`](READ_ACCESS).
     ///
     /// # Errors
@@ -2731,6 +2844,26 @@ impl AddressModeSwitch {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
+    }
+}
+
+impl Within<AddressModeSwitch> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<AddressModeSwitch>, Error> {
+        AddressModeSwitch::SET.request_within(self.model, route, &self.values)
+    }
+
+    /// Builds the request [`store`](STORE_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<AddressModeSwitch>, Error> {
+        AddressModeSwitch::STORE.request_within(self.model, route, &self.values)
     }
 }
 
@@ -3144,8 +3277,8 @@ impl Single for PvCurrentLimitSetting {
 /// Erratum M40: printed is "no default", used is "none".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RectifierOutputVoltageSetting {
-    /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V. The limits depend
-    /// on the device model.
+    /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `41.5..=58.5`.
+    /// The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -3154,6 +3287,7 @@ impl RectifierOutputVoltageSetting {
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
         .unit("V")
         .scale(1, 1024)
+        .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
@@ -3163,6 +3297,16 @@ impl RectifierOutputVoltageSetting {
     /// How it travels by `set`.
     pub const SET: Exchange = SET_ACCESS
         .of("rectifier_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22F));
+
+    /// Returns the values for a device model if it takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -3180,6 +3324,18 @@ impl RectifierOutputVoltageSetting {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
+    }
+}
+
+impl Within<RectifierOutputVoltageSetting> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<RectifierOutputVoltageSetting>, Error> {
+        RectifierOutputVoltageSetting::SET
+            .request_within(self.model, route, &self.values)
     }
 }
 
@@ -3194,8 +3350,8 @@ impl Single for RectifierOutputVoltageSetting {
 /// Erratum M40: printed is "no default", used is "none".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PvOutputVoltageSetting {
-    /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V. The limits depend
-    /// on the device model.
+    /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `41.5..=58.5`.
+    /// The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -3204,6 +3360,7 @@ impl PvOutputVoltageSetting {
     pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7))
         .unit("V")
         .scale(1, 1024)
+        .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
@@ -3211,6 +3368,16 @@ impl PvOutputVoltageSetting {
     pub const READ: Exchange = READ_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
     /// How it travels by `set`.
     pub const SET: Exchange = SET_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
+
+    /// Returns the values for a device model if it takes them.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
+    }
 
     /// Builds the request [`read`](READ_ACCESS).
     ///
@@ -3228,6 +3395,17 @@ impl PvOutputVoltageSetting {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
+    }
+}
+
+impl Within<PvOutputVoltageSetting> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<PvOutputVoltageSetting>, Error> {
+        PvOutputVoltageSetting::SET.request_within(self.model, route, &self.values)
     }
 }
 

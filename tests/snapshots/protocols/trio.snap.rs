@@ -225,13 +225,20 @@ impl From<Model> for u8 {
     }
 }
 
+/// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within<M> {
+    values: M,
+    model: Model,
+}
+
 /// Limits of `output_voltage` by device model.
-const OUTPUT_VOLTAGE_LIMITS: &[(u8, f64, f64)] = &[
-    (Model::Pm1ac24dc1500wPt as u8, 18.5, 29.5),
-    (Model::Pm1ac24dc2500w as u8, 23.5, 29.8),
-    (Model::Pm1ac24dc2500wPt as u8, 23.5, 29.8),
-    (Model::Pm1ac48dc1500wPt as u8, 38.0, 58.0),
-    (Model::Pm1ac48dc2500wPt as u8, 45.0, 59.0),
+const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
+    (Model::Pm1ac24dc1500wPt as u8, Some((18.5, 29.5))),
+    (Model::Pm1ac24dc2500w as u8, Some((23.5, 29.8))),
+    (Model::Pm1ac24dc2500wPt as u8, Some((23.5, 29.8))),
+    (Model::Pm1ac48dc1500wPt as u8, Some((38.0, 58.0))),
+    (Model::Pm1ac48dc2500wPt as u8, Some((45.0, 59.0))),
 ];
 
 /// Who controls the module. Section 3.3.
@@ -681,7 +688,7 @@ pub struct Control {
     /// Erratum T12: printed is "Control Mode over byte 0 and again over byte 1", used is "operation in byte
     /// 1".
     pub operation: Operation,
-    /// Output voltage in V: bytes 2..3, steps of 0.1 V. The limits depend on the device model.
+    /// Output voltage in V: bytes 2..3, steps of 0.1 V, `18.5..=59`. The limits depend on the device model.
     ///
     /// Takes effect in `remote` mode only.
     ///
@@ -702,20 +709,21 @@ impl Control {
     pub const VOLTAGE: Signal<u16> = Signal::new("voltage", Place::bytes(2, 3))
         .unit("V")
         .scale(1, 10)
+        .limits(18.5, 59.0)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The bits that the document reserves.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// How it travels by `set`.
     pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x10));
 
-    /// Returns the values if a device model takes them.
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
     ///
     /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Self, Error> {
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
         Self::SET.within(model, &self)?;
-        Ok(self)
+        Ok(Within { values: self, model })
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
@@ -725,6 +733,17 @@ impl Control {
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.request_to(route, self)
+    }
+}
+
+impl Within<Control> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    ///
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        Control::SET.request_within(self.model, route, &self.values)
     }
 }
 

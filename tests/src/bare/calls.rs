@@ -3,8 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::{ToTokens, format_ident, quote};
 use syn::{
-    Fields, File, FnArg, ImplItem, ImplItemConst, Item, ItemEnum, ItemImpl, ItemStruct, PathSegment, ReceiverKind,
-    ReturnType, Signature, Type,
+    Fields, File, FnArg, Generics, ImplItem, ImplItemConst, Item, ItemEnum, ItemImpl, ItemStruct, PathSegment,
+    ReceiverKind, ReturnType, Signature, Type,
 };
 
 /// The source of one generated module, read.
@@ -186,7 +186,7 @@ fn is_signal(constant: &ImplItemConst) -> bool {
 
 fn unknown_struct(item: &ItemStruct) -> TokenStream {
     let value = fields(&item.fields);
-    implementation(&item.ident, &quote!(Self #value))
+    implementation(&item.ident, &item.generics, &quote!(Self #value))
 }
 
 fn unknown_enum(item: &ItemEnum) -> TokenStream {
@@ -197,11 +197,13 @@ fn unknown_enum(item: &ItemEnum) -> TokenStream {
     let values: Vec<_> = values.collect();
     let (last, others) = values.split_last().expect("generated enums have variants");
     let numbers = 0_u16..;
-    implementation(&item.ident, &quote!(match unknown::<u16>() { #(#numbers => #others,)* _ => #last }))
+    implementation(&item.ident, &item.generics, &quote!(match unknown::<u16>() { #(#numbers => #others,)* _ => #last }))
 }
 
-fn implementation(name: &syn::Ident, value: &TokenStream) -> TokenStream {
-    quote!(impl crate::unknown::Unknown for #name { fn unknown() -> Self { #value } })
+fn implementation(name: &syn::Ident, generics: &Generics, value: &TokenStream) -> TokenStream {
+    let types: Vec<_> = generics.type_params().map(|parameter| &parameter.ident).collect();
+    let unknown = quote!(crate::unknown::Unknown);
+    quote!(impl<#(#types: #unknown),*> #unknown for #name<#(#types),*> { fn unknown() -> Self { #value } })
 }
 
 /// Returns unknown values of the fields of a struct or of a variant.

@@ -8,12 +8,12 @@ use super::derives::Derives;
 use super::doc;
 use super::exchange::{exchange, modes, shared_name};
 use super::literal::{data, decimal, physical, physical_type};
-use super::model::model_limits;
+use super::model::{depends_on_model, model_limits};
 use super::names::{MessageNames, Names, Struct};
 use super::place::Written;
 use super::word::{integer, text_type};
 use crate::emit::Float;
-use crate::model::{Encoding, FrameLayout, Kind, Message, NamedValue, Protocol, Signal, SignalId};
+use crate::model::{Encoding, FrameLayout, Kind, Message, NamedValue, Protocol, Range, Signal, SignalId};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -64,7 +64,7 @@ impl Emitter<'_> {
         let signal = &self.message[id];
         let (name, kind) = (&self.names.fields[id], self.field_type(id));
         let paragraphs =
-            doc::paragraphs(self.protocol, &signal.doc, &Self::member_sentence(signal), Some(&self.message.doc));
+            doc::paragraphs(self.protocol, &signal.doc, &self.member_sentence(signal), Some(&self.message.doc));
         let comment = doc::comment(paragraphs.into_iter().chain(self.type_notes(signal)));
         let float = matches!(signal.encoding, Encoding::Float).then(|| self.derives.float());
         quote!(#comment #float pub #name: #kind)
@@ -83,10 +83,11 @@ impl Emitter<'_> {
         docs.filter_map(|doc| Some(doc::sentence_of(&doc::plain(doc.note.as_ref()?))))
     }
 
-    fn member_sentence(signal: &Signal) -> String {
+    fn member_sentence(&self, signal: &Signal) -> String {
         let title = doc::title(&signal.doc, &signal.name);
         let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
-        let facts = [Some(Written::new(signal.place).text()), step(signal), range(signal), specials(signal)];
+        let range = self.range(signal).map(|range| format!("`{}..={}`", range.minimum, range.maximum));
+        let facts = [Some(Written::new(signal.place).text()), step(signal), range, specials(signal)];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
         let depends = !signal.model_ranges.is_empty();
         let model = if depends { " The limits depend on the device model." } else { "" };
@@ -121,9 +122,15 @@ impl Emitter<'_> {
             exchanges.map(|id| exchange(self.protocol, self.all, self.message, &self.names.exchanges[id], id));
         let requests = self.requests().filter(|frame| frame.set.is_none() && self.host(frame) == name);
         let requests: Vec<_> = requests.collect();
-        let within = requests.first().and_then(|frame| self.within(frame));
         let methods = requests.iter().map(|frame| self.method(frame));
-        quote!(impl #name { #(#signals)* #reserved #(#exchanges)* #within #(#methods)* })
+        let dependent = requests.iter().filter(|frame| depends_on_model(self.protocol, frame));
+        let dependent: Vec<_> = dependent.copied().collect();
+        let within = dependent.first().map(|frame| self.within(frame));
+        let of_model = within.as_ref().map(|_| {
+            let methods = dependent.iter().map(|frame| self.method_of_model(frame));
+            quote!(impl Within<#name> { #(#methods)* })
+        });
+        quote!(impl #name { #(#signals)* #reserved #(#exchanges)* #within #(#methods)* } #of_model)
     }
 
     /// Returns the requests of the message.
@@ -131,24 +138,46 @@ impl Emitter<'_> {
         self.protocol.frames_of(self.message).filter(|frame| frame.kind == Kind::Request)
     }
 
-    /// Emits the method that tests values against a device model, if anything depends on it.
-    fn within(&self, frame: &FrameLayout) -> Option<TokenStream> {
-        let own = |id: &SignalId| !self.message[*id].model_ranges.is_empty();
-        let depends = !self.message.models.is_empty() || frame.signals.iter().any(own);
+    /// Emits the method that tests values against a device model.
+    fn within(&self, frame: &FrameLayout) -> TokenStream {
         let exchange = self.exchange_path(frame);
-        (depends && !frame.signals.is_empty()).then(|| {
-            quote! {
-                /// Returns the values if a device model takes them.
-                ///
-                /// # Errors
-                ///
-                /// Refuses a model that does not have the message, and values outside its limits.
-                pub fn within(self, model: Model) -> Result<Self, Error> {
-                    #exchange.within(model, &self)?;
-                    Ok(self)
-                }
+        quote! {
+            /// Returns the values for a device model if it takes them.
+            ///
+            /// # Errors
+            ///
+            /// Refuses a model that does not have the message, and values outside its limits.
+            pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+                #exchange.within(model, &self)?;
+                Ok(Within { values: self, model })
             }
-        })
+        }
+    }
+
+    /// Emits the method that builds a request to a device model.
+    fn method_of_model(&self, frame: &FrameLayout) -> TokenStream {
+        let (method, exchange) = (&self.names.methods[frame.exchange], &self.names.exchanges[frame.exchange]);
+        let home = self.home();
+        let reply = self.reply(frame).map_or_else(|| quote!(()), |name| quote!(#name));
+        let comment = doc::comment(self.method_comment(frame, " with these values", ""));
+        quote! {
+            #comment
+            pub fn #method(&self, route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
+                #home::#exchange.request_within(self.model, route, &self.values)
+            }
+        }
+    }
+
+    /// Returns the struct that the reply carries.
+    fn reply(&self, frame: &FrameLayout) -> Option<&Ident> {
+        let mut others = self.protocol.frames_of(self.message).filter(|other| other.exchange == frame.exchange);
+        let reply = others.find(|other| other.kind == Kind::Reply);
+        reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name)
+    }
+
+    /// Returns the limits where no device model is chosen.
+    fn range(&self, signal: &Signal) -> Option<Range> {
+        signal.hull(self.protocol.models_of(self.message))
     }
 
     /// Returns the path to the exchange by which a kind of frame travels, from the struct that hosts its method.
@@ -170,8 +199,8 @@ impl Emitter<'_> {
         let refinements = [
             unit(signal),
             scale(signal),
-            limits(signal, self.float),
-            model_limits(self.all, signal),
+            self.range(signal).map(|range| limits(range, self.float)),
+            model_limits(self.protocol, self.all, signal),
             special_list(signal),
         ];
         let refinements = refinements.into_iter().flatten();
@@ -205,36 +234,33 @@ impl Emitter<'_> {
     /// Emits the method that builds a request.
     pub fn method(&self, frame: &FrameLayout) -> TokenStream {
         let (method, exchange) = (&self.names.methods[frame.exchange], self.exchange_path(frame));
-        let mut others = self.protocol.frames_of(self.message).filter(|other| other.exchange == frame.exchange);
-        let reply = others.find(|other| other.kind == Kind::Reply);
-        let reply = reply.and_then(|reply| self.names.carried(reply)).map(|known| &known.name);
-        let reply_type = match reply {
+        let reply = match self.reply(frame) {
             None => quote!(()),
             Some(name) if name == self.host(frame) => quote!(Self),
             Some(name) => quote!(#name),
         };
         let carries = self.names.carried(frame).is_some();
-        let comment = doc::comment(self.method_comment(frame, carries));
+        let (values, refused) =
+            if carries { (" with these values", "values outside their limits, ") } else { ("", "") };
+        let comment = doc::comment(self.method_comment(frame, values, refused));
         let (receiver, content) = if carries { (Some(quote!(&self,)), quote!(self)) } else { (None, quote!(&())) };
         quote! {
             #comment
-            pub fn #method(#receiver route: impl Into<Route<Target>>) -> Result<Request<#reply_type>, Error> {
+            pub fn #method(#receiver route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
                 #exchange.request_to(route, #content)
             }
         }
     }
 
     /// Describes a method; what holds for all messages stands at the access.
-    fn method_comment(&self, frame: &FrameLayout, carries: bool) -> Vec<String> {
+    fn method_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> Vec<String> {
         let own = &self.message[frame.exchange];
         let access = &self.protocol[frame.access];
-        let values = if carries { " with these values" } else { "" };
         let shared = shared_name(self.protocol, self.all, self.message, frame.exchange);
         let shared = shared.map_or_else(String::new, |shared| format!("({shared})"));
         let first = format!("Builds the request [`{}`]{shared}{values}.", access.name);
         let modes = (own.answers != access.answers).then(|| modes(self.protocol, &own.answers));
-        let values = if carries { "values outside their limits, " } else { "" };
-        let errors = format!("Refuses {values}other addressing modes, and undocumented addresses.");
+        let errors = format!("Refuses {refused}other addressing modes, and undocumented addresses.");
         std::iter::once(first).chain(modes).chain(["# Errors".to_owned(), errors]).collect()
     }
 
@@ -304,10 +330,9 @@ fn scale(signal: &Signal) -> Option<TokenStream> {
     Some(quote!(#scale #offset))
 }
 
-fn limits(signal: &Signal, float: Float) -> Option<TokenStream> {
-    let range = signal.range?;
+fn limits(range: Range, float: Float) -> TokenStream {
     let (minimum, maximum) = (physical(range.minimum, float), physical(range.maximum, float));
-    Some(quote!(.limits(#minimum, #maximum)))
+    quote!(.limits(#minimum, #maximum))
 }
 
 fn special_list(signal: &Signal) -> Option<TokenStream> {
@@ -325,11 +350,6 @@ fn step(signal: &Signal) -> Option<String> {
     let offset = (*offset != Rational::ZERO).then(|| format!("raw 0 is {offset}{unit}"));
     let facts: Vec<_> = step.into_iter().chain(offset).collect();
     (!facts.is_empty()).then(|| facts.join(", "))
-}
-
-fn range(signal: &Signal) -> Option<String> {
-    let range = signal.range?;
-    Some(format!("`{}..={}`", range.minimum, range.maximum))
 }
 
 fn specials(signal: &Signal) -> Option<String> {

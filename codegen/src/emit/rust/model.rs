@@ -8,22 +8,23 @@ use super::doc;
 use super::literal::{physical, physical_type};
 use super::names::{Names, model_variants};
 use crate::emit::Float;
-use crate::model::{Message, ModelId, Protocol, Range, Signal, Table};
+use crate::model::{FrameLayout, Kind, Message, ModelId, Protocol, Range, Signal, SignalId, Table};
 use crate::syntax::tree::Step;
 
 /// Limits by device model, which signals share.
 pub struct Limits {
     pub name: Ident,
-    ranges: Vec<(ModelId, Range)>,
+    ranges: Table<ModelId, Option<Range>>,
     of: String,
 }
 
 /// Returns every table of limits by device model once.
 pub fn limits(protocol: &Protocol) -> Vec<Limits> {
     let mut known: Vec<Limits> = Vec::new();
-    for signal in protocol.messages.iter().flat_map(|message| &message.signals) {
-        let ranges = ranges(signal);
-        if ranges.is_empty() || known.iter().any(|limits| limits.ranges == ranges) {
+    let signals = protocol.messages.iter().flat_map(|message| &message.signals);
+    for signal in signals.filter(|signal| !signal.model_ranges.is_empty()) {
+        let ranges = ranges(protocol, signal);
+        if known.iter().any(|limits| limits.ranges == ranges) {
             continue;
         }
         let of = type_name(signal).unwrap_or(&signal.name).to_owned();
@@ -36,8 +37,8 @@ pub fn limits(protocol: &Protocol) -> Vec<Limits> {
     known
 }
 
-fn ranges(signal: &Signal) -> Vec<(ModelId, Range)> {
-    signal.model_ranges.iter().map(|own| (own.model, own.value)).collect()
+fn ranges(protocol: &Protocol, signal: &Signal) -> Table<ModelId, Option<Range>> {
+    protocol.models.ids().map(|model| signal.range_for(Some(model))).collect()
 }
 
 /// Returns the type that a model changes: the last step but one of `models.MODEL.types.TYPE.range`.
@@ -62,6 +63,7 @@ pub fn models(protocol: &Protocol, names: &Names, derives: Derives, float: Float
     let count = proc_macro2::Literal::usize_unsuffixed(variants.len());
     let tables = names.limits.iter().map(|limits| table(limits, &variants, float));
     let all: Vec<_> = variants.iter().collect();
+    let within = within(protocol);
     (!variants.is_empty()).then(|| {
         quote! {
             /// A device model.
@@ -87,7 +89,23 @@ pub fn models(protocol: &Protocol, names: &Names, derives: Derives, float: Float
                 }
             }
 
+            #within
+
             #(#tables)*
+        }
+    })
+}
+
+/// Emits what values become that a device model takes, if any depend on it.
+fn within(protocol: &Protocol) -> Option<TokenStream> {
+    protocol.frames.iter().any(|frame| depends_on_model(protocol, frame)).then(|| {
+        quote! {
+            /// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Within<M> {
+                values: M,
+                model: Model,
+            }
         }
     })
 }
@@ -95,19 +113,25 @@ pub fn models(protocol: &Protocol, names: &Names, derives: Derives, float: Float
 fn table(limits: &Limits, variants: &Table<ModelId, Ident>, float: Float) -> TokenStream {
     let name = &limits.name;
     let comment = doc::line(format!("Limits of `{}` by device model.", limits.of));
-    let rows = limits.ranges.iter().map(|(model, range)| {
-        let [minimum, maximum] = [range.minimum, range.maximum].map(|limit| physical(limit, float));
-        let model = &variants[*model];
-        quote!((Model::#model as u8, #minimum, #maximum))
+    let rows = limits.ranges.iter().zip(variants).map(|(range, model)| {
+        let range = range.map_or_else(
+            || quote!(None),
+            |range| {
+                let [minimum, maximum] = [range.minimum, range.maximum].map(|limit| physical(limit, float));
+                quote!(Some((#minimum, #maximum)))
+            },
+        );
+        quote!((Model::#model as u8, #range))
     });
     let kind = physical_type(float);
-    quote!(#comment const #name: &[(u8, #kind, #kind)] = &[#(#rows),*];)
+    quote!(#comment const #name: &[(u8, Option<(#kind, #kind)>)] = &[#(#rows),*];)
 }
 
 /// Refers to the limits that a signal has by device model.
-pub fn model_limits(names: &Names, signal: &Signal) -> Option<TokenStream> {
-    let ranges = ranges(signal);
-    let name = names.limits.iter().find(|limits| limits.ranges == ranges).map(|limits| &limits.name)?;
+pub fn model_limits(protocol: &Protocol, names: &Names, signal: &Signal) -> Option<TokenStream> {
+    let ranges = ranges(protocol, signal);
+    let own = names.limits.iter().filter(|_| !signal.model_ranges.is_empty());
+    let name = own.into_iter().find(|limits| limits.ranges == ranges).map(|limits| &limits.name)?;
     Some(quote!(.model_limits(#name)))
 }
 
@@ -116,4 +140,11 @@ pub fn models_of(protocol: &Protocol, message: &Message) -> Option<TokenStream> 
     let variants = model_variants(protocol);
     let models = message.models.iter().map(|model| &variants[*model]);
     (!message.models.is_empty()).then(|| quote!(.models(&[#(Model::#models as u8),*])))
+}
+
+/// Tests whether a frame is a request with values that depend on the device model.
+pub fn depends_on_model(protocol: &Protocol, frame: &FrameLayout) -> bool {
+    let has_own_limits = |(_, signal): (SignalId, &Signal)| !signal.model_ranges.is_empty();
+    let depends = !protocol[frame.message].models.is_empty() || protocol.signals_of(frame).any(has_own_limits);
+    frame.kind == Kind::Request && frame.set.is_none() && depends && !frame.signals.is_empty()
 }

@@ -11,7 +11,7 @@ use crate::model::{
 };
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 79] = [
+const TAKEN: [&str; 80] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -90,6 +90,7 @@ const TAKEN: [&str; 79] = [
     "Target",
     "Text",
     "Who",
+    "Within",
     "Word",
 ];
 
