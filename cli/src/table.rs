@@ -127,7 +127,7 @@ fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usi
             let texts: Vec<String> = signals.map(|text| text + GAP).collect();
             let pieces = texts.iter().flat_map(|text| text.split_inclusive(", "));
             let mut lines = wrap(pieces, "", room + 1);
-            lines.extend(decoded.notes.iter().flat_map(|Note { rule, text }| remark(rule, text, room)));
+            lines.extend(decoded.notes.iter().flat_map(|Note { rule, text }| remark(rule.name(), text, room)));
             lines
         }
         Err(Unrecognised { problem, text, .. }) => {

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use crate::rules::Rule;
 use crate::source::{Source, visible};
 use crate::syntax::tree::{Node, Path};
 
@@ -57,8 +58,8 @@ impl From<Range<usize>> for At {
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Id of the rule that is broken.
-    pub rule: &'static str,
+    /// The rule that is broken.
+    pub rule: &'static Rule,
     /// How bad it is.
     pub severity: Severity,
     /// One sentence in lower case without a full stop.
@@ -77,12 +78,12 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// Creates an error.
-    pub fn error(rule: &'static str, at: impl Into<At>, message: impl Into<String>) -> Self {
+    pub fn error(rule: &'static Rule, at: impl Into<At>, message: impl Into<String>) -> Self {
         Self::new(rule, Severity::Error, at.into(), &message.into())
     }
 
     /// Creates a warning.
-    pub fn warning(rule: &'static str, at: impl Into<At>, message: impl Into<String>) -> Self {
+    pub fn warning(rule: &'static Rule, at: impl Into<At>, message: impl Into<String>) -> Self {
         Self::new(rule, Severity::Warning, at.into(), &message.into())
     }
 
@@ -111,7 +112,7 @@ impl Diagnostic {
         Self { replacement: Some(text.into()), ..self }
     }
 
-    fn new(rule: &'static str, severity: Severity, at: At, message: &str) -> Self {
+    fn new(rule: &'static Rule, severity: Severity, at: At, message: &str) -> Self {
         let message = visible(message);
         Self { rule, severity, message, at, label: None, others: Vec::new(), help: None, replacement: None }
     }
@@ -171,7 +172,7 @@ impl Diagnostics {
             At::Key(path) | At::Value(path) => path.ancestors().any(|outer| outer.to_string() == place),
             At::File | At::Span(_) => false,
         };
-        self.items.retain(|item| item.severity == Severity::Error || item.rule != rule || !is_inside(&item.at));
+        self.items.retain(|item| item.severity == Severity::Error || item.rule.name != rule || !is_inside(&item.at));
         self.items.len() < before
     }
 
@@ -254,7 +255,7 @@ impl Diagnostics {
 
     fn locate<'a>(&'a self, item: &'a Diagnostic) -> Located<'a> {
         Located {
-            rule: item.rule,
+            rule: item.rule.name,
             severity: item.severity,
             message: &item.message,
             file: self.source.name(),

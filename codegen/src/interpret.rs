@@ -13,7 +13,7 @@ pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
-use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, SelectorId, SignalId, Table, Travel};
+use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, NoteRule, SelectorId, SignalId, Table, Travel};
 
 /// A frame as it stood on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,24 +120,11 @@ pub enum Value {
 /// Something about a recognised frame that the document does not foresee.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// One of [`NOTES`].
-    pub rule: &'static str,
+    /// What is noted.
+    pub rule: NoteRule,
     /// What was found, in one sentence without a full stop.
     pub text: String,
 }
-
-/// The rules of notes.
-pub const NOTES: [&str; 9] = [
-    "error_code",
-    "addressing",
-    "address",
-    "unknown_value",
-    "unknown_bit",
-    "out_of_range",
-    "not_finite",
-    "reserved_bit",
-    "model_dependent",
-];
 
 /// A frame that is not recognised, as far as it could be split.
 #[derive(Clone, Debug, PartialEq, Eq)]

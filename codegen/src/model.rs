@@ -8,6 +8,7 @@ mod example;
 mod id;
 mod identifier;
 mod message;
+mod note;
 mod recognition;
 mod set;
 mod signal;
@@ -21,6 +22,7 @@ pub use id::{
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Travel, Who};
+pub use note::NoteRule;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{

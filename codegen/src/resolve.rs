@@ -19,7 +19,7 @@ use indexmap::IndexSet;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{self, EnumerationId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table};
-use crate::rules::RULES;
+use crate::rules::{RULES, Rule};
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -116,7 +116,7 @@ impl Resolver<'_> {
     }
 
     /// Reports an error and what to do about it.
-    fn error_with_help(&mut self, rule: &'static str, at: At, message: String, help: impl Into<String>) {
+    fn error_with_help(&mut self, rule: &'static Rule, at: At, message: String, help: impl Into<String>) {
         self.diagnostics.push(Diagnostic::error(rule, at, message).help(help));
     }
 }

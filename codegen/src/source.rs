@@ -7,6 +7,7 @@ use std::path::Path;
 use std::string::FromUtf8Error;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::rules;
 
 /// Largest spec file that is read, in bytes.
 pub const SIZE_LIMIT: usize = 4 << 20;
@@ -175,7 +176,7 @@ fn unreadable(name: String, error: &io::Error) -> Diagnostics {
         io::ErrorKind::PermissionDenied => ("the file may not be read".to_owned(), "change its permissions"),
         _ => (format!("the file cannot be read: {error}"), "check that the file is there and complete"),
     };
-    refused(name, String::new(), Diagnostic::error("file", At::File, message).help(help))
+    refused(name, String::new(), Diagnostic::error(&rules::FILE, At::File, message).help(help))
 }
 
 fn too_large(name: String) -> Diagnostics {
@@ -183,21 +184,21 @@ fn too_large(name: String) -> Diagnostics {
     refused(
         name,
         String::new(),
-        Diagnostic::error("file", At::File, message).help("check that this is the spec you mean"),
+        Diagnostic::error(&rules::FILE, At::File, message).help("check that this is the spec you mean"),
     )
 }
 
 fn not_utf8(name: &str, error: &FromUtf8Error) -> Diagnostics {
     let at = error.utf8_error().valid_up_to();
     let message = format!("byte {at} of the file, 0x{:02X}, is not UTF-8", error.as_bytes()[at]);
-    let problem = Diagnostic::error("encoding", at..at + char::REPLACEMENT_CHARACTER.len_utf8(), message);
+    let problem = Diagnostic::error(&rules::ENCODING, at..at + char::REPLACEMENT_CHARACTER.len_utf8(), message);
     let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
     refused(name.to_owned(), text, problem.help("save the file as UTF-8"))
 }
 
 fn forbidden_character(span: Range<usize>, character: char, what: &str) -> Diagnostic {
     let message = format!("the {what} U+{:04X} may not stand in a spec", u32::from(character));
-    Diagnostic::error("encoding", span, message).help("remove it")
+    Diagnostic::error(&rules::ENCODING, span, message).help("remove it")
 }
 
 /// Reports a problem with a file that is not read any further.

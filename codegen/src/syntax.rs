@@ -6,6 +6,7 @@ mod reader;
 pub mod tree;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::rules;
 use crate::source::Source;
 
 /// Reads a spec, and reports all that is wrong with its syntax at once; there is a spec only if nothing is.
@@ -34,14 +35,14 @@ fn read_tree(tree: &tree::Node, problems: &mut Vec<Diagnostic>) -> Option<ast::S
 /// where it refused something else, that explains the key.
 fn add(item: Diagnostic, tree: &tree::Node, problems: &mut Vec<Diagnostic>) {
     let refused = match &item.at {
-        At::Key(path) if item.rule == "unknown_key" => tree.get(path),
+        At::Key(path) if *item.rule == rules::UNKNOWN_KEY => tree.get(path),
         _ => None,
     };
     match refused.filter(|value| value.content == tree::Content::Refused) {
         None => problems.push(item),
         Some(value) => {
             let at = At::Span(value.span.clone());
-            let word = problems.iter().position(|known| known.rule == "plain_word" && known.at == at);
+            let word = problems.iter().position(|known| *known.rule == rules::PLAIN_WORD && known.at == at);
             if let Some(word) = word {
                 problems[word] = item;
             }

@@ -126,7 +126,7 @@ struct NoteObject<'a> {
 
 impl<'a> NoteObject<'a> {
     fn new(note: &'a Note) -> Self {
-        Self { rule: note.rule, text: &note.text }
+        Self { rule: note.rule.name(), text: &note.text }
     }
 }
 

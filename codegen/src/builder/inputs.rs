@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::rules;
 use crate::source;
 
 /// What is to be compiled.
@@ -59,7 +60,7 @@ fn distinct(mut paths: Vec<PathBuf>) -> Vec<PathBuf> {
 fn misnamed(path: &Path) -> Diagnostics {
     let name = path.with_extension("yaml");
     let what = format!("the folder's specs end in `.yaml`, this file in `.{}`", ending(path));
-    refused(path, Diagnostic::error("file", At::File, what).help(format!("rename it to {}", name.display())))
+    refused(path, Diagnostic::error(&rules::FILE, At::File, what).help(format!("rename it to {}", name.display())))
 }
 
 fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
@@ -68,7 +69,10 @@ fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
         io::ErrorKind::NotADirectory => "this is a file, not a folder of specs".to_owned(),
         _ => format!("the folder cannot be read: {error}"),
     };
-    refused(folder, Diagnostic::error("file", At::File, what).help("check the path and the folder it starts from"))
+    refused(
+        folder,
+        Diagnostic::error(&rules::FILE, At::File, what).help("check the path and the folder it starts from"),
+    )
 }
 
 fn refused(path: &Path, problem: Diagnostic) -> Diagnostics {

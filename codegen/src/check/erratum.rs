@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
+use crate::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let docs = protocol.docs();
@@ -12,7 +13,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 "add `erratum: {}` to the item that departs from the document, or take the erratum out",
                 erratum.name
             );
-            diagnostics.push(Diagnostic::warning("erratum", erratum.path.at_key(), text).help(help));
+            diagnostics.push(Diagnostic::warning(&rules::ERRATUM, erratum.path.at_key(), text).help(help));
         }
     }
     for doc in &docs {
@@ -21,7 +22,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 let text = format!("there is no erratum `{name}`");
                 let at = doc.path.key("erratum").at_value();
                 diagnostics
-                    .push(Diagnostic::error("erratum", at, text).help("correct the name, or add it to `errata`"));
+                    .push(Diagnostic::error(&rules::ERRATUM, at, text).help("correct the name, or add it to `errata`"));
             }
         }
     }

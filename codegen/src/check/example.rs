@@ -12,7 +12,10 @@ use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
 };
-use crate::model::{Example, Failure, Kind, Meaning, Message, Misfit, Protocol, Signal, SignalId, ValueExample};
+use crate::model::{
+    Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, SignalId, ValueExample,
+};
+use crate::rules;
 
 /// How many examples hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,7 +99,7 @@ impl<'a> Checker<'a> {
     fn unreadable(&self, problem: &Unrecognised) -> Box<Diagnostic> {
         let text = format!("this frame cannot be read: {}", problem.text);
         let help = format!("if the document prints it so, add `fails: {}` and an erratum", problem.problem.name());
-        Box::new(Diagnostic::error("example", self.frame_at(), text).help(help))
+        Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }
 
     fn holds(&self, decoded: &Decoded) -> Checked {
@@ -123,8 +126,8 @@ impl<'a> Checker<'a> {
     }
 
     fn is_addressed(&self, decoded: &Decoded) -> Checked {
-        let expected = |rule: &str| self.example.notes.iter().any(|note| note == rule);
-        let note = decoded.notes.iter().find(|note| note.rule == "addressing" && !expected(note.rule));
+        let expected = |rule: NoteRule| self.example.notes.contains(&rule);
+        let note = decoded.notes.iter().find(|note| note.rule == NoteRule::Addressing && !expected(note.rule));
         note.map_or(Ok(()), |note| Err(self.unexpected(note, decoded)))
     }
 
@@ -192,16 +195,16 @@ impl<'a> Checker<'a> {
     }
 
     fn has_notes(&self, decoded: &Decoded) -> Checked {
-        let unexpected = decoded.notes.iter().find(|note| !self.example.notes.iter().any(|rule| rule == note.rule));
+        let unexpected = decoded.notes.iter().find(|note| !self.example.notes.contains(&note.rule));
         if let Some(note) = unexpected {
             let diagnostic = self.unexpected(note, decoded);
-            let reserved = (note.rule == "reserved_bit").then(|| u64::from_be_bytes(decoded.reserved));
+            let reserved = (note.rule == NoteRule::ReservedBit).then(|| u64::from_be_bytes(decoded.reserved));
             return Err(match reserved {
                 Some(reserved) => Box::new(diagnostic.label(bits(reserved))),
                 None => diagnostic,
             });
         }
-        let missing = |rule: &String| !decoded.notes.iter().any(|note| note.rule == rule);
+        let missing = |rule: &NoteRule| !decoded.notes.iter().any(|note| note.rule == *rule);
         self.example.notes.iter().position(missing).map_or(Ok(()), |index| Err(self.missing(index, decoded)))
     }
 
@@ -211,16 +214,16 @@ impl<'a> Checker<'a> {
         }
         let text = format!("this frame has the note `{}`: {}", note.rule, note.text);
         let help = match note.rule {
-            "reserved_bit" => "add the field that has these bits; \
+            NoteRule::ReservedBit => "add the field that has these bits; \
                  if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
                 .to_owned(),
             rule => format!("if the document shows it so, add `{rule}` to its `notes`"),
         };
-        Box::new(Diagnostic::error("example", self.frame_at(), text).help(help))
+        Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }
 
     fn missing(&self, index: usize, decoded: &Decoded) -> Box<Diagnostic> {
-        let rule = &self.example.notes[index];
+        let rule = self.example.notes[index];
         let at = self.example.doc.path.key("notes").index(index).at_value();
         if let Some(diagnostic) = self.limit(rule, decoded, at.clone()) {
             return Box::new(diagnostic);
@@ -231,12 +234,12 @@ impl<'a> Checker<'a> {
             [] => "take it out: the frame has no note".to_owned(),
             _ => format!("take it out: the frame has only {}", notes.join(", ")),
         };
-        Box::new(Diagnostic::error("example", at, text).help(help))
+        Box::new(Diagnostic::error(&rules::EXAMPLE, at, text).help(help))
     }
 
     /// Blames the range for a note that is there or missing against what the example says.
-    fn limit(&self, rule: &str, decoded: &Decoded, at: At) -> Option<Diagnostic> {
-        if rule == "out_of_range" { limit::report(self.protocol, self.example, decoded, at) } else { None }
+    fn limit(&self, rule: NoteRule, decoded: &Decoded, at: At) -> Option<Diagnostic> {
+        if rule == NoteRule::OutOfRange { limit::report(self.protocol, self.example, decoded, at) } else { None }
     }
 
     fn encodes_back(&self, decoded: &Decoded) -> Checked {
@@ -270,7 +273,7 @@ impl<'a> Checker<'a> {
             Some(seen) => format!("write `fails: {}`, or correct the frame", seen.name()),
         };
         let at = self.example.doc.path.key("fails").at_value();
-        Err(Box::new(Diagnostic::error("expected_failure", at, text).help(help)))
+        Err(Box::new(Diagnostic::error(&rules::EXPECTED_FAILURE, at, text).help(help)))
     }
 
     /// Returns how a frame fails in fact.
@@ -325,17 +328,17 @@ fn unnamed_bits(value: &Value, read: &str) -> Option<String> {
 }
 
 fn wrong(at: At, text: String) -> Box<Diagnostic> {
-    Box::new(Diagnostic::error("example", at, text))
+    Box::new(Diagnostic::error(&rules::EXAMPLE, at, text))
 }
 
 fn contradicted(at: At, text: String, (other, what): (At, &str)) -> Box<Diagnostic> {
-    Box::new(Diagnostic::error("example", at, text).other(other, what))
+    Box::new(Diagnostic::error(&rules::EXAMPLE, at, text).other(other, what))
 }
 
 /// Says that a text is no value of its signal.
 fn no_value(meaning: &Meaning, misfit: &Misfit) -> Diagnostic {
     let Misfit { why, help } = misfit.clone();
-    Diagnostic { help, ..Diagnostic::error("value", meaning.path.at_value(), why) }
+    Diagnostic { help, ..Diagnostic::error(&rules::VALUE, meaning.path.at_value(), why) }
 }
 
 /// Runs an example of a type: bytes alone, and what they mean.
@@ -347,7 +350,7 @@ fn check_value(protocol: &Protocol, example: &ValueExample, diagnostics: &mut Di
             let value = physical(protocol, &example.signal, bits);
             let read = shown(protocol, &example.signal, &value, bits);
             let text = format!("these bytes say {read}, not {}", example.meaning.text);
-            diagnostics.push(Diagnostic::error("example", example.meaning.path.at_value(), text));
+            diagnostics.push(Diagnostic::error(&rules::EXAMPLE, example.meaning.path.at_value(), text));
         }
         Ok(_) => {}
     }

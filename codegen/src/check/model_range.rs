@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
+use crate::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -22,7 +23,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     signal.name
                 );
                 let help = "widen the general range, or take it out and give each model its own";
-                let diagnostic = Diagnostic::error("model_range", own.path.at_value(), text).help(help);
+                let diagnostic = Diagnostic::error(&rules::MODEL_RANGE, own.path.at_value(), text).help(help);
                 diagnostics.push_first(diagnostic.other(signal.range_path.at_value(), "the general range"));
             }
         }

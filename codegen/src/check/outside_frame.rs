@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::Protocol;
+use crate::rules;
 use crate::syntax::tree::Path;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -18,7 +19,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 );
                 let help = "correct the place, or the `length` of the message";
                 let at = place(&signal.doc.path, diagnostics);
-                diagnostics.push_first(Diagnostic::error("outside_frame", at, text).help(help));
+                diagnostics.push_first(Diagnostic::error(&rules::OUTSIDE_FRAME, at, text).help(help));
             }
         }
     }

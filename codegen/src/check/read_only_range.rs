@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Kind, Message, Protocol, SignalId};
+use crate::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -15,7 +16,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 );
                 let help =
                     "take the range out, since what is read is not limited, or allow it with a reason in `allow`";
-                diagnostics.push(Diagnostic::warning("read_only_range", signal.range_path.at_value(), text).help(help));
+                diagnostics
+                    .push(Diagnostic::warning(&rules::READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
             }
         }
     }

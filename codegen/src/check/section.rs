@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
+use crate::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let messages = protocol.messages.iter().map(|message| ("message", &message.name, &message.doc));
@@ -13,7 +14,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let text = format!("the {what} `{name}` has no section");
             let help =
                 "say where the document has it, for instance `section: \"2.4\"`, or allow it with a reason in `allow`";
-            diagnostics.push(Diagnostic::warning("section", doc.path.at_key(), text).help(help));
+            diagnostics.push(Diagnostic::warning(&rules::SECTION, doc.path.at_key(), text).help(help));
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{
     Access, Constant, Exchange, FrameLayout, IdentifierField, Kind, Message, MessageId, Protocol, SelectorPlace, Set,
 };
+use crate::rules;
 use crate::syntax::tree::Path;
 
 /// The most members that a set can have: one bit each in the machine's widest integer.
@@ -29,7 +30,7 @@ fn check_fields(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     if let Some(first) = docs.next() {
         for other in docs {
             let text = "two fields say whether more frames follow";
-            let diagnostic = Diagnostic::error("set", other.path.key("continues").at_key(), text);
+            let diagnostic = Diagnostic::error(&rules::SET, other.path.key("continues").at_key(), text);
             let diagnostic = diagnostic.help("leave `continues` to one of the two");
             diagnostics.push(diagnostic.other(first.path.key("continues").at_key(), "the other field"));
         }
@@ -44,7 +45,7 @@ fn check_fields(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         );
         let help = "let a field of the identifier say it, or another value of `continues`";
         let at = selector.doc.path.key("continues").at_value();
-        diagnostics.push(Diagnostic::error("set", at, text).help(help));
+        diagnostics.push(Diagnostic::error(&rules::SET, at, text).help(help));
     }
 }
 
@@ -55,12 +56,12 @@ fn check_sent(field: &IdentifierField, diagnostics: &mut Diagnostics) {
         let text = format!("`{}` is sent as {sent}, so every frame would say that more follow", field.name);
         let help = format!("give it another value to send, for instance `send: {}`", u32::from(sent == 0));
         let at = field.doc.path.key("continues").at_value();
-        diagnostics.push(Diagnostic::error("set", at, text).help(help));
+        diagnostics.push(Diagnostic::error(&rules::SET, at, text).help(help));
     }
 }
 
 fn wrong(at: At, text: impl Into<String>) -> Diagnostic {
-    Diagnostic::error("set", at, text)
+    Diagnostic::error(&rules::SET, at, text)
 }
 
 struct Checker<'a> {

@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Protocol, Range, Signal};
+use crate::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -26,7 +27,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     "them out of the range, or their names"
                 };
                 let help = format!("take {what} out of `values`");
-                diagnostics.push_first(Diagnostic::error("special_value", path.at_value(), text).help(help));
+                diagnostics.push_first(Diagnostic::error(&rules::SPECIAL_VALUE, path.at_value(), text).help(help));
             }
         }
     }

@@ -25,7 +25,7 @@ impl Diagnostics {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let title = level.primary_title(&item.message).id(item.rule);
+        let title = level.primary_title(&item.message).id(item.rule.name);
         let group = match self.span(&item.at) {
             Some(span) => self.excerpts(title, item, span),
             None => title.element(Origin::path(self.source.name())),

@@ -7,7 +7,7 @@ use super::value::{float, in_range, named, physical};
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
 use crate::model::{
     AddressPattern, Course, Direction, Encoding, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId,
-    Protocol, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
+    NoteRule, Protocol, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
 /// Decodes a frame that goes to a device model, or comes from one.
@@ -228,7 +228,7 @@ impl<'a> Decoder<'a> {
                 format!("it is {}", texts.join(", and "))
             }
         };
-        Some(Note { rule: "model_dependent", text })
+        Some(Note { rule: NoteRule::ModelDependent, text })
     }
 
     /// Names a message and the device models that have it.
@@ -326,7 +326,7 @@ impl<'a> Decoder<'a> {
         notes.extend(signals.iter().filter_map(note));
         if reserved != [0; 8] {
             let bits = hex(&reserved[..self.frame.data.len()]);
-            notes.push(Note { rule: "reserved_bit", text: format!("bits are set that no field has: 0x{bits}") });
+            notes.push(Note { rule: NoteRule::ReservedBit, text: format!("bits are set that no field has: 0x{bits}") });
         }
         Decoded {
             frame: id,
@@ -367,7 +367,7 @@ impl<'a> Decoder<'a> {
                     Some(meaning) => format!("{name} {value}: {}", meaning.name),
                     None => format!("{name} {value}, which the document does not name"),
                 };
-                Note { rule: "error_code", text }
+                Note { rule: NoteRule::ErrorCode, text }
             })
             .collect()
     }
@@ -376,11 +376,11 @@ impl<'a> Decoder<'a> {
         let mut notes = Vec::new();
         let Some((travel, pattern)) = addressing.travel else {
             let text = format!("no addressing mode of this protocol fits a {}", frame.kind.name());
-            return vec![Note { rule: "addressing", text }];
+            return vec![Note { rule: NoteRule::Addressing, text }];
         };
         if addressing.fit >= Fit::DocumentedElsewhere {
             let text = format!("`{}` is not addressed by `{}`", message.name, self.protocol[travel.mode].name);
-            notes.push(Note { rule: "addressing", text });
+            notes.push(Note { rule: NoteRule::Addressing, text });
         }
         for address in &pattern.addresses {
             let address_type = &self.protocol[address.address_type];
@@ -390,7 +390,7 @@ impl<'a> Decoder<'a> {
                 let field = &self.protocol[address.field].name;
                 let range = format!("{}..{}", hexadecimal(first), hexadecimal(last));
                 let text = format!("{field} {} is outside {range} of `{}`", hexadecimal(raw), address_type.name);
-                notes.push(Note { rule: "address", text });
+                notes.push(Note { rule: NoteRule::Address, text });
             }
         }
         notes
@@ -401,11 +401,13 @@ fn signal_note(signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Op
     let name = &signal.name;
     let note = |rule, text| Some(Note { rule, text });
     match (&signal.encoding, &reading.value) {
-        (Encoding::Float, Value::None) => note("not_finite", format!("{name} is {}", float(reading.bits))),
-        (Encoding::Named(_), Value::None) => note("unknown_value", format!("{name} {:#X} has no name", reading.bits)),
-        (_, Value::None) => note("unknown_value", format!("{name} is not a text of the documented form")),
+        (Encoding::Float, Value::None) => note(NoteRule::NotFinite, format!("{name} is {}", float(reading.bits))),
+        (Encoding::Named(_), Value::None) => {
+            note(NoteRule::UnknownValue, format!("{name} {:#X} has no name", reading.bits))
+        }
+        (_, Value::None) => note(NoteRule::UnknownValue, format!("{name} is not a text of the documented form")),
         (_, Value::Status { unknown, .. }) if *unknown != 0 => {
-            note("unknown_bit", format!("{name} has bits {unknown:#X} set that have no name"))
+            note(NoteRule::UnknownBit, format!("{name} has bits {unknown:#X} set that have no name"))
         }
         (_, Value::Integer(whole)) => {
             #[allow(clippy::cast_precision_loss, reason = "ranges of unscaled signals lie below 2^53")]
@@ -421,7 +423,7 @@ fn range_note(signal: &Signal, model: Option<ModelId>, value: f64, shown: &dyn D
     let range = signal.range_for(model).filter(|range| !in_range(signal, range, value))?;
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
-    Some(Note { rule: "out_of_range", text })
+    Some(Note { rule: NoteRule::OutOfRange, text })
 }
 
 /// Names the kinds of frames, for texts.

@@ -2,10 +2,10 @@
 
 use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
-use crate::model::{FrameLayout, Kind, Message, MessageId, ModelId, Protocol, SelectorPlace};
+use crate::model::{FrameLayout, Kind, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace};
 
 /// Notes that a request does not get: it is refused.
-const FORBIDDEN: [&str; 3] = ["address", "addressing", "model_dependent"];
+const FORBIDDEN: [NoteRule; 3] = [NoteRule::Address, NoteRule::Addressing, NoteRule::ModelDependent];
 
 /// Makes the frame that shows `content`, for a device model or for any.
 ///

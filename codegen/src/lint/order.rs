@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use super::table::Table;
 use crate::diagnostic::{At, Diagnostic};
 use crate::number::Rational;
+use crate::rules;
 use crate::syntax::tree::{Node, Path};
 
 /// How many siblings show an order.
@@ -111,7 +112,7 @@ fn misplaced(sequence: &Sequence) -> Option<Diagnostic> {
     let text = format!("`{text}` is out of order: it stands between `{before}` and `{after}`");
     let others = steps.len() - 1;
     let help = format!("the {others} others are in order: correct the number, or move the entry to its place");
-    Some(Diagnostic::warning("order", at.clone(), text).help(help))
+    Some(Diagnostic::warning(&rules::ORDER, at.clone(), text).help(help))
 }
 
 fn is_before(left: Range, right: Range, may_repeat: bool) -> bool {

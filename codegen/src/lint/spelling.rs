@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 
 use super::table::{Name, Table};
 use crate::diagnostic::Diagnostic;
+use crate::rules;
 use crate::syntax::tree::{Node, Path};
 use words::{Vocabulary, words};
 
@@ -44,7 +45,7 @@ fn mistyped(name: &Name, meant: &str) -> Diagnostic {
     let text = format!("`{}`: is `{meant}` meant?", name.text);
     let help = format!("write `{meant}`; if `{}` is right, its `title` can say so", name.text);
     let label = "the spec has no such word elsewhere";
-    Diagnostic::warning("spelling", name.at.clone(), text).label(label).help(help)
+    Diagnostic::warning(&rules::SPELLING, name.at.clone(), text).label(label).help(help)
 }
 
 /// Tells whether a name has a word that the spec has nowhere else.
@@ -107,7 +108,7 @@ fn misnumbered(name: &Name) -> Option<Diagnostic> {
     }
     let text = format!("`{}` has the number {number}, but its title has {}", name.text, others.join(", "));
     let help = format!("its title is `{title}`: correct the one that is wrong");
-    Some(Diagnostic::warning("spelling", name.at.clone(), text).help(help))
+    Some(Diagnostic::warning(&rules::SPELLING, name.at.clone(), text).help(help))
 }
 
 /// Returns the numbers in a text, without leading zeros.

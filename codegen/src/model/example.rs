@@ -1,6 +1,6 @@
 //! The document's frames and what they mean.
 
-use crate::model::{Doc, Kind, MessageId, ModelId, Signal, SignalId};
+use crate::model::{Doc, Kind, MessageId, ModelId, NoteRule, Signal, SignalId};
 use crate::syntax::tree::Path;
 
 /// A frame of the document and what it means.
@@ -24,7 +24,7 @@ pub struct Example {
     /// Raw values of the message's signals, and the text that says so.
     pub means: Vec<Meaning>,
     /// Rules of the notes that decoding must report.
-    pub notes: Vec<String>,
+    pub notes: Vec<NoteRule>,
     /// How the frame fails, if it has to.
     pub fails: Option<Failure>,
     /// The document does not print it.

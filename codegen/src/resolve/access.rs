@@ -4,6 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Table, Timing, TimingId, Who};
+use crate::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 use crate::words::ANSWERS;
@@ -25,7 +26,7 @@ impl Resolver<'_> {
         let kinds: Vec<_> = Kind::ALL.into_iter().filter(|kind| pattern_of(access, *kind).is_some()).collect();
         if kinds.is_empty() {
             let help = "write `request: {}`, `reply: {}` or `report: {}`";
-            self.error_with_help("access", path.at_key(), format!("the access `{name}` has no frames"), help);
+            self.error_with_help(&rules::ACCESS, path.at_key(), format!("the access `{name}` has no frames"), help);
         }
         self.check_not_empty(path, &["in"]);
         let named = self.kinds(&path.key("in"), &access.kinds);
@@ -46,7 +47,7 @@ impl Resolver<'_> {
             if kind.is_some_and(|kind| !kinds.contains(&kind)) {
                 let help = format!("add `{word}: {{}}` to the access, or take it out of `in`");
                 let at = path.key("in").index(index).at_value();
-                self.error_with_help("access", at, format!("the access `{name}` has no {word}"), help);
+                self.error_with_help(&rules::ACCESS, at, format!("the access `{name}` has no {word}"), help);
             }
         }
     }
@@ -71,17 +72,22 @@ impl Resolver<'_> {
         if who != Who::Nobody && mode.reply(who).is_none() {
             let message = format!("the addressing mode `{}` has no `{word}`", mode.name);
             let help = format!("add `{word}:` to `addressing.{}`, or say here who else answers", mode.name);
-            let diagnostic = Diagnostic::error("addressing", at.at_value(), message).help(help);
+            let diagnostic = Diagnostic::error(&rules::ADDRESSING, at.at_value(), message).help(help);
             self.diagnostics.push(diagnostic.other(mode.doc.path.at_key(), "the mode"));
         }
         if kinds.contains(&Kind::Request) && mode.request.is_none() {
             let message = format!("the addressing mode `{}` has no request", mode.name);
             let help = format!("add `request:` to `addressing.{}`, or leave the mode out here", mode.name);
-            self.error_with_help("addressing", at.at_key(), message, help);
+            self.error_with_help(&rules::ADDRESSING, at.at_key(), message, help);
         }
         if who != Who::Nobody && kinds == [Kind::Request] {
             let help = "add `reply: {}` to the access, or write `nobody`";
-            self.error_with_help("access", at.at_value(), format!("`{word}` answers, but there is no reply"), help);
+            self.error_with_help(
+                &rules::ACCESS,
+                at.at_value(),
+                format!("`{word}` answers, but there is no reply"),
+                help,
+            );
         }
     }
 
@@ -89,7 +95,7 @@ impl Resolver<'_> {
     pub fn misplaced_every(&mut self, path: &Path, what: &str, otherwise: &str) {
         let text = format!("`every` means nothing for {what} without a report");
         let help = format!("take it out, or {otherwise}");
-        self.error_with_help("misplaced_key", path.key("every").at_key(), text, help);
+        self.error_with_help(&rules::MISPLACED_KEY, path.key("every").at_key(), text, help);
     }
 
     /// Finds the time of a cyclic report.

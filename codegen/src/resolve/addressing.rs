@@ -9,6 +9,7 @@ use crate::model::{
     Mode, ModeId, Table,
 };
 use crate::number::Rational;
+use crate::rules;
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
 use crate::words::OUTSIDE;
@@ -29,7 +30,12 @@ impl Resolver<'_> {
         self.check_own_keys(&path, field, Role::ADDRESS);
         let Some(text) = &field.range else {
             let help = "say which numbers the document names, for instance `range: 0..0x3B`";
-            self.error_with_help("addressing", path.at_key(), format!("the address type `{name}` has no range"), help);
+            self.error_with_help(
+                &rules::ADDRESSING,
+                path.at_key(),
+                format!("the address type `{name}` has no range"),
+                help,
+            );
             return None;
         };
         let (first, last) = self.whole_range(&path.key("range"), text)?;
@@ -39,7 +45,7 @@ impl Resolver<'_> {
             Some(other) => {
                 let message = format!("an address cannot be scaled by `{other}`");
                 self.error_with_help(
-                    "addressing",
+                    &rules::ADDRESSING,
                     path.key("scale").at_value(),
                     message,
                     "write `scale: -1`, or leave `scale` out",
@@ -65,7 +71,7 @@ impl Resolver<'_> {
             if number.is_none() {
                 let message = format!("the addresses `{text}` end in {end}, which no identifier can hold");
                 let help = "write whole numbers that fit the field, as in `range: 0..0x3B`";
-                self.error_with_help("addressing", path.at_value(), message, help);
+                self.error_with_help(&rules::ADDRESSING, path.at_value(), message, help);
             }
             number
         };
@@ -89,7 +95,7 @@ impl Resolver<'_> {
                 field.name
             );
             let help = format!("correct the addresses, or give `{}` more bits", field.name);
-            let diagnostic = Diagnostic::error("addressing", doc.path.key(key).at_value(), message).help(help);
+            let diagnostic = Diagnostic::error(&rules::ADDRESSING, doc.path.key(key).at_value(), message).help(help);
             self.diagnostics.push_first(diagnostic.other(at.at_value(), format!("here `{}` holds them", field.name)));
         }
     }
@@ -174,7 +180,7 @@ impl Resolver<'_> {
             "name `{name}` here for the field that holds the sender; \
              as it is, the reply of every `{name}` is taken for the answer"
         );
-        self.diagnostics.push(Diagnostic::warning("addressing", path.key("one").at_key(), text).help(help));
+        self.diagnostics.push(Diagnostic::warning(&rules::ADDRESSING, path.key("one").at_key(), text).help(help));
     }
 
     /// Finds an address type; nothing is said of one that was refused before.
@@ -211,7 +217,7 @@ impl Resolver<'_> {
             let names: Vec<_> = free.iter().map(|index| format!("`{}`", types[*index].name)).collect();
             let message = format!("this request leaves {} addresses open: {}", free.len(), names.join(" and "));
             let help = "give all but one of these types a `send`, the address with which all requests are sent";
-            let diagnostic = Diagnostic::error("addressing", path.at_key(), message).help(help);
+            let diagnostic = Diagnostic::error(&rules::ADDRESSING, path.at_key(), message).help(help);
             let open = free.iter().map(|index| types[*index].doc.path.at_key());
             self.diagnostics.push(open.fold(diagnostic, |known, at| known.other(at, "has no `send`")));
         }

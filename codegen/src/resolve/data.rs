@@ -7,6 +7,7 @@ use crate::model::{
     DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, Timing, TimingId, TypeOfModel, Unit,
 };
 use crate::number::Rational;
+use crate::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 use crate::words::ERRATUM_KINDS;
@@ -20,7 +21,7 @@ impl Resolver<'_> {
         if version != VERSION {
             let message = format!("this spec is written in version `{version}` of the language");
             let help = format!("this compiler reads version {VERSION}");
-            self.error_with_help("version", Path::default().key("canspec").at_value(), message, help);
+            self.error_with_help(&rules::VERSION, Path::default().key("canspec").at_value(), message, help);
         }
     }
 
@@ -43,7 +44,7 @@ impl Resolver<'_> {
                 let rate = bit_rate(text);
                 if rate.is_none() {
                     let message = format!("`{text}` is not a bit rate");
-                    self.error_with_help("number", path.at_value(), message, "write `125 kbit/s` or `1 Mbit/s`");
+                    self.error_with_help(&rules::NUMBER, path.at_value(), message, "write `125 kbit/s` or `1 Mbit/s`");
                 }
                 rate
             })
@@ -61,7 +62,7 @@ impl Resolver<'_> {
         let at = path.key("time");
         let Some((numbers, symbol)) = timing.time.split_once(' ') else {
             let message = format!("the time `{}` has no unit", timing.time);
-            self.error_with_help("unit", at.at_value(), message, "write `10 s` or `50..200 ms`");
+            self.error_with_help(&rules::UNIT, at.at_value(), message, "write `10 s` or `50..200 ms`");
             return None;
         };
         let unit = self.time_unit(&at, symbol)?;
@@ -78,7 +79,7 @@ impl Resolver<'_> {
             return Some(unit);
         }
         let message = format!("`{symbol}` is not a unit of time");
-        self.error_with_help("unit", path.at_value(), message, "the units of time are s ms min h");
+        self.error_with_help(&rules::UNIT, path.at_value(), message, "the units of time are s ms min h");
         None
     }
 

@@ -7,11 +7,11 @@ use super::Resolver;
 use super::signals::first_byte;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
-use crate::interpret::NOTES;
 use crate::model::{
-    Doc, Encoding, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, Signal, SignalId,
-    StatusBit, Table, ValueExample,
+    Doc, Encoding, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Signal,
+    SignalId, StatusBit, Table, ValueExample,
 };
+use crate::rules;
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;
 use crate::texts::raw_of_text;
@@ -74,7 +74,7 @@ impl Resolver<'_> {
         let at = path.key("message");
         let Some(set) = &messages[outer].set else {
             let text = "`message` means nothing here: the example is of the message in which it stands".to_owned();
-            self.error_with_help("misplaced_key", at.at_key(), text, "take it out");
+            self.error_with_help(&rules::MISPLACED_KEY, at.at_key(), text, "take it out");
             return Some(outer);
         };
         let names = set.members.iter().map(|member| messages[*member].name.as_str());
@@ -87,7 +87,7 @@ impl Resolver<'_> {
         let Some(name) = &example.message else {
             if !matches!(example.fails.as_deref(), Some("identifier" | "foreign" | "unknown_message")) {
                 let text = "an example of a sequence needs its message".to_owned();
-                self.error_with_help("example", path.at_key(), text, "write `message: NAME`");
+                self.error_with_help(&rules::EXAMPLE, path.at_key(), text, "write `message: NAME`");
             }
             return None;
         };
@@ -130,11 +130,11 @@ impl Resolver<'_> {
     }
 
     /// Reads the rules of notes that decoding must report.
-    fn notes(&mut self, path: &Path, names: &[String]) -> Vec<String> {
+    fn notes(&mut self, path: &Path, names: &[String]) -> Vec<NoteRule> {
+        let known = NoteRule::ALL.iter().map(|(_, name)| *name);
         let places = names.iter().enumerate();
-        let known =
-            places.filter(|(index, name)| self.lookup(&path.index(*index), "note", name, NOTES.into_iter()).is_some());
-        known.map(|(_, name)| name.clone()).collect()
+        let found = places.filter_map(|(index, name)| self.lookup(&path.index(index), "note", name, known.clone()));
+        found.map(|index| NoteRule::ALL[index].0).collect()
     }
 
     fn failure(&mut self, path: &Path, word: &str) -> Option<Failure> {
@@ -151,7 +151,7 @@ impl Resolver<'_> {
             let help =
                 "write one of `request`, `reply` and `report`, for instance `request: ID#DATA` in hexadecimal digits";
             let found = if first.is_none() { "no frame" } else { "more than one frame" };
-            self.error_with_help("example", path.at_key(), format!("this example shows {found}"), help);
+            self.error_with_help(&rules::EXAMPLE, path.at_key(), format!("this example shows {found}"), help);
             return None;
         }
         first
@@ -167,7 +167,7 @@ impl Resolver<'_> {
         if number.is_none() && matches!(id.len(), 8 | 3) && u32::from_str_radix(id, 16).is_ok() {
             let (bits, digits) = if extended { (29, "0 or 1") } else { (11, "0 to 7") };
             let message = format!("the identifier `{id}` has more than {bits} bits");
-            self.error_with_help("example", path.at_value(), message, format!("its first digit is {digits}"));
+            self.error_with_help(&rules::EXAMPLE, path.at_value(), message, format!("its first digit is {digits}"));
             return None;
         }
         match (number, bytes) {
@@ -175,7 +175,7 @@ impl Resolver<'_> {
             (Some(id), Some(Some(bytes))) => Some(Printed { id, extended, data: Some(bytes) }),
             _ => {
                 let help = "write 8 or 3 hexadecimal digits, `#`, and two digits for each of up to 8 data bytes";
-                self.error_with_help("example", path.at_value(), format!("`{text}` is not a frame"), help);
+                self.error_with_help(&rules::EXAMPLE, path.at_value(), format!("`{text}` is not a frame"), help);
                 None
             }
         }
@@ -187,7 +187,7 @@ impl Resolver<'_> {
             let (found, digits) = if identifier.extended { (3, 8) } else { (8, 3) };
             let message = format!("this identifier has {found} digits, those of this protocol have {digits}");
             let help = "8 digits are an identifier of 29 bits, 3 digits one of 11; correct the frame or `identifier`";
-            self.error_with_help("example", example.doc.path.key(example.kind.name()).at_value(), message, help);
+            self.error_with_help(&rules::EXAMPLE, example.doc.path.key(example.kind.name()).at_value(), message, help);
         }
     }
 
@@ -207,7 +207,7 @@ impl Resolver<'_> {
                     }
                     let text = format!("`{}` has {} signals", message.name, message.signals.len());
                     let help = "write a value for each signal: `means: {voltage: 500 V, ...}`";
-                    self.error_with_help("example", path.at_key(), text, help);
+                    self.error_with_help(&rules::EXAMPLE, path.at_key(), text, help);
                     return Vec::new();
                 };
                 self.meaning(path, SignalId::new(0), signal, means).into_iter().collect()
@@ -227,7 +227,7 @@ impl Resolver<'_> {
     /// Reports a message without fields of which an example says a value.
     fn nothing_to_mean(&mut self, path: &Path, message: &Message) {
         let text = format!("`{}` has no field, but an example says what it means", message.name);
-        let diagnostic = Diagnostic::error("example", message.doc.path.at_key(), text);
+        let diagnostic = Diagnostic::error(&rules::EXAMPLE, message.doc.path.at_key(), text);
         let diagnostic = diagnostic.help("add its `value` or its `fields`, or take `means` out of the example");
         self.diagnostics.push_first(diagnostic.other(path.at_key(), "what it means"));
     }
@@ -250,7 +250,7 @@ impl Resolver<'_> {
             Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?),
             Means::Signals(_) => {
                 let text = format!("`{}` is one value, not a map", signal.name);
-                self.error_with_help("example", path.at_key(), text, "write its value alone");
+                self.error_with_help(&rules::EXAMPLE, path.at_key(), text, "write its value alone");
                 return None;
             }
         };
@@ -260,7 +260,7 @@ impl Resolver<'_> {
     fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
         let Encoding::Status(index) = signal.encoding else {
             let text = format!("`{}` is no status word, so it has no list of bits", signal.name);
-            self.error_with_help("example", path.at_value(), text, "write its value without brackets");
+            self.error_with_help(&rules::EXAMPLE, path.at_value(), text, "write its value without brackets");
             return None;
         };
         let bits = &self.tables.status_words[index].bits;
@@ -293,7 +293,7 @@ impl Resolver<'_> {
         let Some(bytes) = bytes else {
             let message = format!("`{}` is not 1 to 8 bytes", example.bytes);
             let help = "write two hexadecimal digits for each byte, without spaces";
-            self.error_with_help("example", path.key("bytes").at_value(), message, help);
+            self.error_with_help(&rules::EXAMPLE, path.key("bytes").at_value(), message, help);
             return None;
         };
         let mut data = [0; 8];

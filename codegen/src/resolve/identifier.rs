@@ -5,6 +5,7 @@ use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{Identifier, IdentifierField, Table};
+use crate::rules;
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{Field, IdentifierEntry};
 use crate::syntax::tree::Path;
@@ -79,7 +80,7 @@ impl Resolver<'_> {
         self.check_keys(&merged, Role::IDENTIFIER);
         let Some(text) = &merged.field.bits else {
             let help = "say which bits, for instance `bits: 28..26`";
-            self.error_with_help("place", path.at_key(), format!("the field `{name}` has no place"), help);
+            self.error_with_help(&rules::PLACE, path.at_key(), format!("the field `{name}` has no place"), help);
             return None;
         };
         let (high, low) = self.bits(&path.key("bits"), text, EXTENDED)?;
@@ -159,7 +160,7 @@ impl Resolver<'_> {
 
     fn report_layout(&mut self, at: At, message: String, other: Option<(&Run, &str)>) {
         let help = "give every bit to one field, to `ones` or to `zeros`";
-        let diagnostic = Diagnostic::error("identifier_layout", at, message).help(help);
+        let diagnostic = Diagnostic::error(&rules::IDENTIFIER_LAYOUT, at, message).help(help);
         self.diagnostics.push(match other {
             Some((run, text)) => diagnostic.other(run.place.at_value(), text),
             None => diagnostic,

@@ -4,6 +4,7 @@ use super::Resolver;
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::Encoding;
+use crate::rules;
 use crate::syntax::ast::Field;
 use crate::syntax::tree::{Node, Path};
 
@@ -131,7 +132,12 @@ impl Resolver<'_> {
             let path = item.key(*key);
             if self.diagnostics.tree().and_then(|tree| tree.get(&path)).is_some_and(Node::is_empty) {
                 let text = format!("`{key}` is empty, so it says nothing");
-                self.error_with_help("misplaced_key", path.at_key(), text, "write what belongs there, or take it out");
+                self.error_with_help(
+                    &rules::MISPLACED_KEY,
+                    path.at_key(),
+                    text,
+                    "write what belongs there, or take it out",
+                );
             }
         }
     }
@@ -152,14 +158,14 @@ impl Resolver<'_> {
             let text = format!("`{key}` of the type `{name}` means nothing for the field that names it, {what}");
             (text, format!("take `type`, or what makes the field {what}, out of it, or take `{key}` out of the type"))
         };
-        let diagnostic = Diagnostic::error("misplaced_key", field.key("type").at_value(), text).help(help);
+        let diagnostic = Diagnostic::error(&rules::MISPLACED_KEY, field.key("type").at_value(), text).help(help);
         self.diagnostics.push_first(diagnostic.other(path.at_key(), "the key of the type"));
     }
 
     fn misplaced(&mut self, path: &Path, key: &str, role: Role) {
         let message = format!("`{key}` means nothing for {}", role.name);
         let help = format!("take it out; {} reads `{}`", role.name, role.keys.join("`, `"));
-        self.error_with_help("misplaced_key", path.at_key(), message, help);
+        self.error_with_help(&rules::MISPLACED_KEY, path.at_key(), message, help);
     }
 }
 

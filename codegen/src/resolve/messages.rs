@@ -9,6 +9,7 @@ use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
     Message, MessageId, ModelId, Selector, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel,
 };
+use crate::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -173,7 +174,7 @@ impl Resolver<'_> {
             let text = format!("`{}` has no access, so it has no frames", message.name);
             let known = spec.access.keys().next().map_or("read", String::as_str);
             let help = format!("name at least one access, for instance `access: [{known}]`");
-            self.error_with_help("access", message.doc.path.key("access").at_key(), text, help);
+            self.error_with_help(&rules::ACCESS, message.doc.path.key("access").at_key(), text, help);
         }
     }
 
@@ -185,7 +186,7 @@ impl Resolver<'_> {
             let Some(model) = self.device_model(&at, name) else { continue };
             if models.contains(&model) {
                 let text = format!("the model `{name}` is named twice");
-                self.error_with_help("name", at.at_value(), text, "take one of the two out");
+                self.error_with_help(&rules::NAME, at.at_value(), text, "take one of the two out");
             } else {
                 models.push(model);
             }
@@ -212,7 +213,7 @@ impl Resolver<'_> {
             Some(value) if !message.fields.is_empty() => {
                 let text = format!("`{name}` has both `fields` and `value`");
                 let help = "`value` is the short form of one field called `value`; write one of the two";
-                self.error_with_help("type", path.key("value").at_key(), text, help);
+                self.error_with_help(&rules::TYPE, path.key("value").at_key(), text, help);
                 let fields = self.message_leaves(&path.key("fields"), &message.fields, doc, name);
                 let value = self.value_leaf(&path.key("value"), value, doc, name);
                 let written = [fields, value].into_iter().flat_map(Leaves::names);
@@ -243,7 +244,7 @@ impl Resolver<'_> {
         let text =
             format!("a frame would have two values called `{}`, since the header has a field of that name", known.name);
         let help = "choose another name, or the place of the header's field";
-        let diagnostic = Diagnostic::error("match", signal.doc.path.at_key(), text).help(help);
+        let diagnostic = Diagnostic::error(&rules::MATCH, signal.doc.path.at_key(), text).help(help);
         self.diagnostics.push(diagnostic.other(known.doc.path.at_key(), "the field of the header"));
     }
 
@@ -260,7 +261,7 @@ impl Resolver<'_> {
             let Some(access) = found else { continue };
             if exchanges.iter().any(|earlier| earlier.access == access) {
                 let text = format!("the access `{name}` is named twice");
-                self.error_with_help("access", at.at_value(), text, "take one of the two out");
+                self.error_with_help(&rules::ACCESS, at.at_value(), text, "take one of the two out");
                 continue;
             }
             let known = &surroundings.accesses[access];
@@ -365,7 +366,8 @@ impl Resolver<'_> {
                     format!("in a {kind} by `{access}`, `{name}` would have to be both {other:#04X} and {value:#04X}");
                 let pattern = Path::default().key("access").key(access).key(kind).key(name);
                 let help = format!("take `{name}` out of `match` or out of the access, or correct one of the two");
-                let diagnostic = Diagnostic::error("match", path.key("match").key(name).at_value(), message).help(help);
+                let diagnostic =
+                    Diagnostic::error(&rules::MATCH, path.key("match").key(name).at_value(), message).help(help);
                 self.diagnostics.push(diagnostic.other(pattern.at_value(), "the access"));
             }
         }

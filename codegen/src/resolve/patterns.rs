@@ -3,6 +3,7 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
+use crate::rules;
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
 
@@ -119,7 +120,7 @@ impl Resolver<'_> {
         let (start, end) = (self.integer(path, first, 0, greatest)?, self.integer(path, last, 0, greatest)?);
         if start > end {
             let message = format!("the range `{text}` ends below its start");
-            self.error_with_help("range", path.at_value(), message, format!("write `{last}..{first}`"));
+            self.error_with_help(&rules::RANGE, path.at_value(), message, format!("write `{last}..{first}`"));
         }
         Some((field, start, end))
     }

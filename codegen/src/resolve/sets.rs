@@ -4,6 +4,7 @@ use super::Resolver;
 use super::messages::{Draft, Owner, Surroundings};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
+use crate::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
@@ -14,7 +15,7 @@ impl Resolver<'_> {
             if !message.kinds.is_empty() {
                 let help = "take it out, or list `members`; to say which frames carry the fields, write `in` in the access or in a field";
                 let text = "`in` means nothing for a message without `members`".to_owned();
-                self.error_with_help("misplaced_key", path.key("in").at_key(), text, help);
+                self.error_with_help(&rules::MISPLACED_KEY, path.key("in").at_key(), text, help);
             }
             return None;
         }
@@ -23,7 +24,7 @@ impl Resolver<'_> {
             let text = format!("a message with `members` has `{other}` of its own");
             let help =
                 "a frame of a set carries one of its members; put the fields into a message, and name it in `members`";
-            self.error_with_help("set", path.key(other).at_key(), text, help);
+            self.error_with_help(&rules::SET, path.key(other).at_key(), text, help);
         }
         let named = self.kinds(&path.key("in"), &message.kinds);
         let kinds = if message.kinds.is_empty() { vec![Kind::Reply] } else { named };
@@ -61,10 +62,10 @@ impl Resolver<'_> {
             };
             if members.contains(&member) {
                 let text = format!("the member `{name}` is named twice");
-                self.error_with_help("set", at.at_value(), text, "take one of the two out");
+                self.error_with_help(&rules::SET, at.at_value(), text, "take one of the two out");
             } else if drafts[member].message.set.is_some() {
                 let help = "name its members instead";
-                self.error_with_help("set", at.at_value(), format!("`{name}` is a set of frames itself"), help);
+                self.error_with_help(&rules::SET, at.at_value(), format!("`{name}` is a set of frames itself"), help);
             } else {
                 members.push(member);
             }
@@ -120,7 +121,7 @@ impl Resolver<'_> {
             self.spec.messages.get(&set.name).and_then(|set| set.members.iter().position(|name| name == member));
         let at = set.doc.path.key("members").index(position.unwrap_or(0));
         let help = format!("take `{name}` out of the `match` of `{member}` or of the set");
-        self.diagnostics.push(Diagnostic::error("match", at.at_value(), text).help(help));
+        self.diagnostics.push(Diagnostic::error(&rules::MATCH, at.at_value(), text).help(help));
     }
 }
 

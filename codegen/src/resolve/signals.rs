@@ -11,6 +11,7 @@ use crate::model::{
     DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, OfModel, PartId, Piece, Signal, Table, TypeOfModel,
 };
 use crate::number::Rational;
+use crate::rules;
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
 use crate::texts::raw_of_text;
@@ -65,7 +66,7 @@ impl Resolver<'_> {
         for (constant, _) in &leaves.constants {
             let message = format!("`{}` cannot be constant here", constant.name);
             let help = "write constants of the header in `match` or in the access; parts of a text have none";
-            self.error_with_help("type", constant.doc.path.key("const").at_key(), message, help);
+            self.error_with_help(&rules::TYPE, constant.doc.path.key("const").at_key(), message, help);
         }
         leaves
     }
@@ -159,7 +160,7 @@ impl Resolver<'_> {
         if self.tables.fields == FIELD_LIMIT + 1 {
             let text = format!("`{owner}` comes to more than {FIELD_LIMIT} fields");
             let help = "a frame has 64 bits; take out fields, or types that bring fields with them";
-            self.error_with_help("type", path.at_key(), text, help);
+            self.error_with_help(&rules::TYPE, path.at_key(), text, help);
         }
         (self.tables.fields <= FIELD_LIMIT).then_some(())
     }
@@ -170,7 +171,7 @@ impl Resolver<'_> {
             return Some(());
         }
         let text = format!("`{name}` has a type that brings `{name}` with it");
-        let problem = Diagnostic::error("type", path.key("type").at_value(), text);
+        let problem = Diagnostic::error(&rules::TYPE, path.key("type").at_value(), text);
         let help = "name another type, or write out the fields that you mean";
         self.diagnostics.push(problem.other(fields.at_key(), "the fields of the type").help(help));
         None
@@ -188,18 +189,18 @@ impl Resolver<'_> {
             (None, Some(_), None) => {
                 let message = format!("`{name}` counts bits, but stands in no word");
                 let help = "write `bytes`, or put it into a word: `word: {bytes: 7..0, fields: {...}}`";
-                self.error_with_help("place", bits.at_key(), message, help);
+                self.error_with_help(&rules::PLACE, bits.at_key(), message, help);
                 None
             }
             (Some(_), Some(_), _) => {
                 let help = "keep `bits` in a word, `bytes` elsewhere";
                 let message = format!("`{name}` has two places: `bytes` and `bits`");
-                self.error_with_help("place", path.at_key(), message, help);
+                self.error_with_help(&rules::PLACE, path.at_key(), message, help);
                 None
             }
             (None, None, _) => {
                 let help = "say where it stands: `bytes: 0..3`, or `bits: 7..4` in a word";
-                self.error_with_help("place", path.at_key(), format!("`{name}` has no place"), help);
+                self.error_with_help(&rules::PLACE, path.at_key(), format!("`{name}` has no place"), help);
                 None
             }
         }
@@ -312,7 +313,7 @@ impl Resolver<'_> {
         let bits = match raw_of_text(&self.tables.enumerations, signal, text, false) {
             Ok(bits) => bits,
             Err(Misfit { why, help }) => {
-                let misfit = Diagnostic { help, ..Diagnostic::error("value", path.at_value(), why) };
+                let misfit = Diagnostic { help, ..Diagnostic::error(&rules::VALUE, path.at_value(), why) };
                 self.diagnostics.push_first(misfit);
                 return None;
             }
@@ -357,12 +358,12 @@ impl Resolver<'_> {
         let at = merged.sources[0].key("as").at_value();
         if place.width() != 32 {
             let text = format!("a float has 32 bits, the place of `{name}` has {}", place.width());
-            self.error_with_help("type", at, text, "give the field four bytes, or take `as: float` out");
+            self.error_with_help(&rules::TYPE, at, text, "give the field four bytes, or take `as: float` out");
             return None;
         }
         if merged.field.scale.is_some() || merged.field.offset.is_some() {
             let message = format!("`{name}` is a float, which is neither scaled nor offset");
-            self.error_with_help("type", at, message, "take `scale` and `offset` out, or `as: float`");
+            self.error_with_help(&rules::TYPE, at, message, "take `scale` and `offset` out, or `as: float`");
             return None;
         }
         Some(Encoding::Float)
@@ -372,7 +373,7 @@ impl Resolver<'_> {
         if !place.width().is_multiple_of(8) {
             let message = format!("a text has whole bytes, the place of `{name}` has {} bits", place.width());
             let help = "give the field whole bytes, or take `as: text` out";
-            self.error_with_help("type", merged.sources[0].key("as").at_value(), message, help);
+            self.error_with_help(&rules::TYPE, merged.sources[0].key("as").at_value(), message, help);
             return None;
         }
         Some(Encoding::Text)
@@ -417,7 +418,12 @@ impl Resolver<'_> {
         while let Some((literal, after)) = rest.split_once('{') {
             let Some((inside, after)) = after.split_once('}') else {
                 let message = format!("the `{{` before `{after}` is not closed");
-                self.error_with_help("format", path.at_value(), message, "write parts as `{name}` or `{name:digits}`");
+                self.error_with_help(
+                    &rules::FORMAT,
+                    path.at_value(),
+                    message,
+                    "write parts as `{name}` or `{name:digits}`",
+                );
                 return None;
             };
             if !literal.is_empty() {
@@ -449,7 +455,7 @@ impl Resolver<'_> {
                     _ => format!("the format shows the part `{}` {times} times", part.name),
                 };
                 let help = "show every part once, or the text cannot be read back";
-                self.error_with_help("format", path.at_value(), message, help);
+                self.error_with_help(&rules::FORMAT, path.at_value(), message, help);
             }
         }
     }
@@ -473,7 +479,7 @@ impl Resolver<'_> {
             let text = format!("nothing shows where the number `{name}` ends and {after} begins");
             let help =
                 format!("say how many digits it has, as in `{{{name}:3}}`, or put what is no digit between the two");
-            self.error_with_help("format", path.at_value(), text, help);
+            self.error_with_help(&rules::FORMAT, path.at_value(), text, help);
         }
     }
 
@@ -498,7 +504,9 @@ fn hidden_by(at: At, key: &str, name: &str, models: &[&DeviceModel]) -> Diagnost
     let text = format!("this {key} leaves the {key} of {} for the type `{name}` without effect", names.join(", "));
     let help = format!("put the general {key} into the type `{name}`, or take a type that no model changes");
     let places = models.iter().map(|model| model.doc.path.key("types").key(name).key(key).at_value());
-    places.fold(Diagnostic::warning("model_range", at, text).help(help), |known, at| known.other(at, "no effect here"))
+    places.fold(Diagnostic::warning(&rules::MODEL_RANGE, at, text).help(help), |known, at| {
+        known.other(at, "no effect here")
+    })
 }
 
 /// Says that parts do not fill whole bytes: between which two there is a gap, or else that their ends do not fit.
@@ -512,10 +520,10 @@ fn unfilled(path: &Path, parts: &[Signal]) -> Diagnostic {
             let text =
                 format!("between the parts `{}` and `{}` are bits that are in neither", pair[0].name, pair[1].name);
             let places = pair.iter().map(|part| part.doc.path.at_key());
-            let diagnostic = Diagnostic::error("format", path.at_value(), text);
+            let diagnostic = Diagnostic::error(&rules::FORMAT, path.at_value(), text);
             places.fold(diagnostic, |known, at| known.other(at, "beside the gap"))
         }
-        None => Diagnostic::error("format", path.at_value(), "the parts do not begin and end with whole bytes"),
+        None => Diagnostic::error(&rules::FORMAT, path.at_value(), "the parts do not begin and end with whole bytes"),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::diagnostic::At;
 use crate::model::{Doc, Id, Kind, Quantity, Range, Table, Unit};
 use crate::multiples;
 use crate::number::Rational;
+use crate::rules;
 use crate::syntax::ast::{Field, Names};
 use crate::syntax::tree::Path;
 
@@ -54,7 +55,7 @@ impl Resolver<'_> {
         let number = Rational::parse(text);
         if number.is_none() {
             let help = "write `12`, `-40`, `0x1F`, `41.5` or `1/1024`";
-            self.error_with_help("number", path.at_value(), format!("`{text}` is not a number"), help);
+            self.error_with_help(&rules::NUMBER, path.at_value(), format!("`{text}` is not a number"), help);
         }
         number
     }
@@ -72,7 +73,7 @@ impl Resolver<'_> {
             let what =
                 if is_whole { format!("lies outside {first}..{last}") } else { "is not a whole number".to_owned() };
             let help = format!("write a whole number from {first} to {last}");
-            self.error_with_help("number", path.at_value(), format!("`{text}` {what}"), help);
+            self.error_with_help(&rules::NUMBER, path.at_value(), format!("`{text}` {what}"), help);
         }
         fitting
     }
@@ -81,13 +82,18 @@ impl Resolver<'_> {
     pub fn range(&mut self, path: &Path, text: &str) -> Option<Range> {
         let Some((minimum, maximum)) = text.split_once("..") else {
             let help = "write both ends with `..` between them, as in `0..100`";
-            self.error_with_help("range", path.at_value(), format!("`{text}` is not a range"), help);
+            self.error_with_help(&rules::RANGE, path.at_value(), format!("`{text}` is not a range"), help);
             return None;
         };
         let range = Range { minimum: self.number(path, minimum)?, maximum: self.number(path, maximum)? };
         if range.minimum > range.maximum {
             let help = format!("write `{}..{}`", maximum.trim(), minimum.trim());
-            self.error_with_help("range", path.at_value(), format!("the range `{text}` ends below its start"), help);
+            self.error_with_help(
+                &rules::RANGE,
+                path.at_value(),
+                format!("the range `{text}` ends below its start"),
+                help,
+            );
             return None;
         }
         Some(range)
@@ -100,7 +106,7 @@ impl Resolver<'_> {
         let low = self.integer(path, low, 0, width - 1)?;
         if high < low {
             let message = format!("bits run from the most to the least significant, `{text}` runs up");
-            self.error_with_help("place", path.at_value(), message, format!("write `{low}..{high}`"));
+            self.error_with_help(&rules::PLACE, path.at_value(), message, format!("write `{low}..{high}`"));
             return None;
         }
         Some((high, low))
@@ -117,7 +123,7 @@ impl Resolver<'_> {
         let ends = text.split_once("..").unwrap_or((text, text));
         if Rational::parse(ends.0).is_none() || Rational::parse(ends.1).is_none() {
             let help = format!("write `{form}` or one number");
-            self.error_with_help("place", path.at_value(), format!("`{text}` is not a place"), help);
+            self.error_with_help(&rules::PLACE, path.at_value(), format!("`{text}` is not a place"), help);
             return None;
         }
         Some(ends)
@@ -144,7 +150,7 @@ impl Resolver<'_> {
                 Some(unit) => format!("did you mean `{}`?", unit.symbol),
                 None => help(),
             };
-            self.error_with_help("unit", path.at_value(), format!("there is no unit `{symbol}`"), help);
+            self.error_with_help(&rules::UNIT, path.at_value(), format!("there is no unit `{symbol}`"), help);
         }
         unit
     }
@@ -241,7 +247,7 @@ impl Resolver<'_> {
             Some(otherwise) if help.ends_with('?') => format!("{help} otherwise {otherwise}"),
             Some(otherwise) => format!("{help}; otherwise {otherwise}"),
         };
-        self.error_with_help("name", at, format!("there is no {what} `{name}`"), help);
+        self.error_with_help(&rules::NAME, at, format!("there is no {what} `{name}`"), help);
     }
 
     /// Reads a list of `request`, `reply` and `report`.
@@ -275,7 +281,7 @@ impl Resolver<'_> {
             Some(respelled) => format!("write `{respelled}`: {form}"),
             None => form.to_owned(),
         };
-        self.error_with_help("identifier_name", at, format!("`{name}` is not a name"), help);
+        self.error_with_help(&rules::IDENTIFIER_NAME, at, format!("`{name}` is not a name"), help);
     }
 }
 

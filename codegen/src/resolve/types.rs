@@ -4,6 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, StatusBit, StatusWord, StatusWordId, raw_limits};
+use crate::rules;
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{self, Field};
 use crate::syntax::tree::Path;
@@ -66,7 +67,7 @@ impl Resolver<'_> {
             let is_used = is_address || self.tables.used_types.contains(name) || !field.examples.is_empty();
             if !is_used && !self.diagnostics.has_errors() {
                 let diagnostic = Diagnostic::warning(
-                    "unused_type",
+                    &rules::UNUSED_TYPE,
                     root.key(name).at_key(),
                     format!("nothing uses the type `{name}`"),
                 );
@@ -80,7 +81,7 @@ impl Resolver<'_> {
         let plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !plain || !name.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
             let help = "names of types and models are letters, digits and `_`, and start with a letter";
-            self.error_with_help("identifier_name", path.at_key(), format!("`{name}` is not a name"), help);
+            self.error_with_help(&rules::IDENTIFIER_NAME, path.at_key(), format!("`{name}` is not a name"), help);
         }
     }
 
@@ -107,7 +108,7 @@ impl Resolver<'_> {
             }
             if outer.len() == CHAIN_LIMIT {
                 let text = format!("more than {CHAIN_LIMIT} types take keys from one another, down to `{name}`");
-                self.error_with_help("type", at.at_value(), text, "write the keys into fewer types");
+                self.error_with_help(&rules::TYPE, at.at_value(), text, "write the keys into fewer types");
                 return None;
             }
             if merged.types.contains(name) {
@@ -140,7 +141,8 @@ impl Resolver<'_> {
         };
         let mut places = places.into_iter();
         let Some(first) = places.next() else { return };
-        let diagnostic = Diagnostic::error("type", first.at_value(), text).help("take one of these `type` keys out");
+        let diagnostic =
+            Diagnostic::error(&rules::TYPE, first.at_value(), text).help("take one of these `type` keys out");
         let diagnostic = places.fold(diagnostic, |known, place| known.other(place.at_value(), "and this one"));
         self.diagnostics.push(diagnostic);
     }
@@ -196,7 +198,7 @@ impl Resolver<'_> {
                 } else {
                     format!("`{name}` is the name of two raw values")
                 };
-                let diagnostic = Diagnostic::error("named_value", at.at_key(), message);
+                let diagnostic = Diagnostic::error(&rules::NAMED_VALUE, at.at_key(), message);
                 let diagnostic = diagnostic.help("correct one of the two, or take it out");
                 self.diagnostics.push(diagnostic.other(Path::at_key(&places[index]), "the other one"));
                 continue;
@@ -222,7 +224,7 @@ impl Resolver<'_> {
                     (format!("the raw value `{text}` does not fit the field, which holds {first} to {last}"), help)
                 }
             };
-            self.error_with_help("value_width", path.at_key(), message, help);
+            self.error_with_help(&rules::VALUE_WIDTH, path.at_key(), message, help);
         }
         fitting
     }
@@ -269,7 +271,7 @@ impl Resolver<'_> {
         let at = merged.path(self.diagnostics, key);
         let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
         let help = "correct the place of the word, or the numbers of the bits";
-        let diagnostic = Diagnostic::error("number", at.at_value(), text).help(help);
+        let diagnostic = Diagnostic::error(&rules::NUMBER, at.at_value(), text).help(help);
         self.diagnostics.push(diagnostic.other(first.clone(), "the first of them"));
         false
     }
@@ -304,7 +306,7 @@ impl Resolver<'_> {
         if number >= width {
             let help = format!("its bits are 0 to {}; correct the bit, or the place of the word", width - 1);
             let message = format!("there is no bit {number} in this word of {width} bits");
-            self.error_with_help("number", path.at_value(), message, help);
+            self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
             return None;
         }
         Some(number)
@@ -318,7 +320,7 @@ impl Resolver<'_> {
             let right = if wrong == later { earlier } else { later };
             let message = format!("bit {} has two names: `{}` and `{}`", bit.bit, bits[earlier].name, bit.name);
             let at = |index: usize| bits[index].doc.path.key("bit").at_value();
-            let diagnostic = Diagnostic::error("status_bit", at(wrong), message);
+            let diagnostic = Diagnostic::error(&rules::STATUS_BIT, at(wrong), message);
             self.diagnostics.push(diagnostic.other(at(right), "the other name"));
         }
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::interpret::NOTES;
+use crate::model::NoteRule;
 use crate::model::{Failure, Kind, Unit};
 use crate::rules::RULES;
 use crate::words::{ANSWERS, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
@@ -52,7 +52,7 @@ fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 14] {
         ("Allowance", "rule", RULES.iter().map(|rule| rule.name).collect()),
         ("Erratum", "kind", ERRATUM_KINDS.to_vec()),
         ("Example", "fails", Failure::ALL.map(|(_, word)| word).to_vec()),
-        ("Example", "notes", NOTES.to_vec()),
+        ("Example", "notes", NoteRule::ALL.map(|(_, name)| name).to_vec()),
         ("Example", "origin", ORIGINS.to_vec()),
         ("Field", "as", NUMBER_FORMATS.to_vec()),
         ("Field", "in", kinds),

@@ -10,6 +10,7 @@ use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 
 use super::tree::{Content, Entry, Node};
 use crate::diagnostic::Diagnostic;
+use crate::rules::{self, Rule};
 use crate::source::{Source, forbidden};
 
 /// Deepest nesting of maps and lists.
@@ -79,7 +80,7 @@ impl Gate<'_> {
             self.take(event, span.clone())?;
             if self.problems.len() >= PROBLEM_LIMIT {
                 let message = format!("more than {PROBLEM_LIMIT} errors, the rest of the file is not read");
-                return Err(stopped("yaml", span, message, "check that this is the spec you mean"));
+                return Err(stopped(&rules::YAML, span, message, "check that this is the spec you mean"));
             }
         }
         Ok(())
@@ -96,9 +97,9 @@ impl Gate<'_> {
             Some(node @ Node { content: Content::Map(_), .. }) => Ok(node),
             Some(node) if node.content != Content::Text(String::new()) => {
                 let message = format!("expected a map of the whole spec, found {}", node.describe());
-                Err(stopped("wrong_kind", node.span, message, "start with `canspec: 1`"))
+                Err(stopped(&rules::WRONG_KIND, node.span, message, "start with `canspec: 1`"))
             }
-            _ => Err(stopped("yaml", 0..0, "the file is empty".to_owned(), "start with `canspec: 1`")),
+            _ => Err(stopped(&rules::YAML, 0..0, "the file is empty".to_owned(), "start with `canspec: 1`")),
         }
     }
 
@@ -106,7 +107,7 @@ impl Gate<'_> {
         match event {
             Event::DocumentStart(_) if self.root.is_some() => {
                 let message = "a second document starts here".to_owned();
-                return Err(stopped("yaml", span, message, "keep one spec to a file, and remove the `---`"));
+                return Err(stopped(&rules::YAML, span, message, "keep one spec to a file, and remove the `---`"));
             }
             Event::Scalar(text, style, anchor, tag) => {
                 self.refuse_properties(anchor, tag.is_some(), &span);
@@ -150,14 +151,16 @@ impl Gate<'_> {
         if style == ScalarStyle::Plain && UNCLEAR_WORDS.iter().any(|word| word.eq_ignore_ascii_case(text)) {
             let message = format!("`{text}` is written without quotes");
             let help = format!("write `\"{text}\"`: readers of YAML disagree on what the plain word means");
-            return Some(Diagnostic::error("plain_word", span, message).help(help).replacement(format!("\"{text}\"")));
+            return Some(
+                Diagnostic::error(&rules::PLAIN_WORD, span, message).help(help).replacement(format!("\"{text}\"")),
+            );
         }
         if is_key && style == ScalarStyle::Plain && text == "<<" {
             return Some(refused(span, "a merge key `<<`", "write out what it stands for"));
         }
         text.chars().find_map(|character| Some((character, forbidden(character)?))).map(|(character, what)| {
             let message = format!("the text holds the {what} U+{:04X}", u32::from(character));
-            Diagnostic::error("encoding", span, message).help("write it without this character")
+            Diagnostic::error(&rules::ENCODING, span, message).help("write it without this character")
         })
     }
 
@@ -175,7 +178,7 @@ impl Gate<'_> {
             Some(key) if !is_key && self.has_no_colon(key) => self.help_on_comma(key),
             _ => "write it, write `\"\"` for an empty text, or remove the line".to_owned(),
         };
-        Diagnostic::error("wrong_kind", span, message).help(help)
+        Diagnostic::error(&rules::WRONG_KIND, span, message).help(help)
     }
 
     /// Tests whether a key is only the end of a text that holds a comma.
@@ -234,7 +237,7 @@ impl Gate<'_> {
         self.nodes += 1;
         if self.nodes > NODE_LIMIT {
             let message = format!("more than {NODE_LIMIT} values in one file");
-            return Err(stopped("yaml", node.span, message, "check that this is the spec you mean"));
+            return Err(stopped(&rules::YAML, node.span, message, "check that this is the spec you mean"));
         }
         if self.expects_key() {
             self.put_key(node);
@@ -314,11 +317,11 @@ fn put_entry(entries: &mut IndexMap<String, Entry>, key: Key, value: Node) -> Op
     if let Some((index, name, first)) = entries.get_full(&key.name) {
         let text = format!("duplicate key `{name}`");
         let problem = if is_out_of_order(entries, index) {
-            Diagnostic::error("duplicate_key", first.key.clone(), text)
+            Diagnostic::error(&rules::DUPLICATE_KEY, first.key.clone(), text)
                 .label("given here, out of order")
                 .other(key.span, "given again here")
         } else {
-            Diagnostic::error("duplicate_key", key.span, text)
+            Diagnostic::error(&rules::DUPLICATE_KEY, key.span, text)
                 .label("given again here")
                 .other(first.key.clone(), "first given here")
         };
@@ -340,9 +343,9 @@ fn is_out_of_order(entries: &IndexMap<String, Entry>, index: usize) -> bool {
 }
 
 fn refused(span: Range<usize>, what: &str, help: &str) -> Diagnostic {
-    Diagnostic::error("yaml", span, format!("{what} may not stand in a spec")).help(help)
+    Diagnostic::error(&rules::YAML, span, format!("{what} may not stand in a spec")).help(help)
 }
 
-fn stopped(rule: &'static str, span: Range<usize>, message: String, help: &str) -> Stopped {
+fn stopped(rule: &'static Rule, span: Range<usize>, message: String, help: &str) -> Stopped {
     Box::new(Diagnostic::error(rule, span, message).help(help))
 }

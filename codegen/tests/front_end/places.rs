@@ -1,6 +1,7 @@
 //! Where things stand.
 
 use canspec_codegen::diagnostic::{At, Diagnostic, Severity};
+use canspec_codegen::rules;
 use canspec_codegen::syntax::tree::{Content, Path};
 
 use super::{WHOLE, first};
@@ -39,14 +40,14 @@ fn the_tree_keeps_the_order_of_the_file() {
 #[test]
 fn diagnostics_are_sorted_by_place_and_counted() {
     let mut diagnostics = first(WHOLE);
-    diagnostics.push(Diagnostic::warning("late", Path::default().key("length").at_value(), "is eight"));
-    diagnostics.push(Diagnostic::error("early", 0..7, "is old").label("here").other(At::File, "there"));
-    diagnostics.push(Diagnostic::error("whole", At::File, "is short"));
+    diagnostics.push(Diagnostic::warning(&rules::ORDER, Path::default().key("length").at_value(), "is eight"));
+    diagnostics.push(Diagnostic::error(&rules::YAML, 0..7, "is old").label("here").other(At::File, "there"));
+    diagnostics.push(Diagnostic::error(&rules::FILE, At::File, "is short"));
     assert_eq!((diagnostics.errors(), diagnostics.warnings()), (2, 1));
     assert_eq!(diagnostics.sorted()[2].severity, Severity::Warning);
     assert_eq!(
         diagnostics.to_string(),
-        "mini.yaml: error[whole]: is short\nmini.yaml:1:1: error[early]: is old\nmini.yaml:5:9: warning[late]: is eight"
+        "mini.yaml: error[file]: is short\nmini.yaml:1:1: error[yaml]: is old\nmini.yaml:5:9: warning[order]: is eight"
     );
 }
 

@@ -1,6 +1,7 @@
 //! How it is shown.
 
 use canspec_codegen::diagnostic::{At, Diagnostic};
+use canspec_codegen::rules;
 use canspec_codegen::source::Source;
 
 use super::{WHOLE, first};
@@ -62,10 +63,11 @@ error[plain_word]: `on` is written without quotes
 #[test]
 fn a_warning_about_the_whole_file_names_it() {
     let mut diagnostics = first(WHOLE);
-    diagnostics
-        .push(Diagnostic::warning("quiet", At::File, "says little").other(At::File, "as others do").help("say more"));
+    diagnostics.push(
+        Diagnostic::warning(&rules::SECTION, At::File, "says little").other(At::File, "as others do").help("say more"),
+    );
     let expected = "\
-warning[quiet]: says little
+warning[section]: says little
 --> mini.yaml
  = note: as others do
  = help: say more";

@@ -109,7 +109,7 @@ fn note_texts(protocol: &Protocol, text: &str) -> Vec<String> {
 
 /// Returns the rules of a frame's notes.
 fn notes(protocol: &Protocol, text: &str) -> Vec<&'static str> {
-    decoded(protocol, text).notes.iter().map(|note| note.rule).collect()
+    decoded(protocol, text).notes.iter().map(|note| note.rule.name()).collect()
 }
 
 /// Makes a request of texts as a person types them.

@@ -8,7 +8,7 @@ use std::env;
 use std::io::{self, BufWriter, Write};
 
 use canspec_codegen::interpret::{Frame, decode};
-use canspec_codegen::model::Protocol;
+use canspec_codegen::model::{NoteRule, Protocol};
 use canspec_tests::{Frames, protocol};
 
 fn main() -> io::Result<()> {
@@ -37,7 +37,9 @@ fn number(text: &str) -> io::Result<u64> {
 /// Tests whether canspec recognises a frame, at any address or at those that the document foresees.
 fn is_known(protocol: &Protocol, frame: &Frame, at_any_address: bool) -> bool {
     let decoded = decode(protocol, None, frame);
-    decoded.is_ok_and(|known| at_any_address || !known.notes.iter().any(|note| note.rule.starts_with("address")))
+    decoded.is_ok_and(|known| {
+        at_any_address || !known.notes.iter().any(|note| matches!(note.rule, NoteRule::Address | NoteRule::Addressing))
+    })
 }
 
 /// Writes a frame as `candump -L` does, one each millisecond.

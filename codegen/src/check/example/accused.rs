@@ -6,6 +6,7 @@ use super::evidence::{Evidence, Field, collect, missing_bit};
 use super::repair::{self, Repair};
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Encoding, Protocol, Signal};
+use crate::rules;
 use crate::syntax::tree::{Path, Step};
 
 /// Most examples that are shown beside a field.
@@ -128,7 +129,7 @@ impl<'a> Accused<'a> {
             count => format!("{count} contradict"),
         };
         let text = format!("no example bears out {}, and {contradict} it", self.name);
-        self.denials().take(SHOWN).fold(Diagnostic::error("example", at, text), |diagnostic, denial| {
+        self.denials().take(SHOWN).fold(Diagnostic::error(&rules::EXAMPLE, at, text), |diagnostic, denial| {
             diagnostic.other(denial.meaning.path.at_value(), format!("by the field this frame says {}", denial.read))
         })
     }

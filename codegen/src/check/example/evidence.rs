@@ -9,6 +9,7 @@ use super::shown;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{Frame, Reading, decode};
 use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
+use crate::rules;
 use crate::syntax::tree::{Content, Path};
 
 /// What one example says of a field.
@@ -62,7 +63,7 @@ pub fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> 
     let below = bits.iter().rfind(|bit| u32::from(bit.bit) < number).or(bits.first())?;
     let text = format!("bit {number} has no name here, but an example has it as `{name}`");
     let help = format!("add `{name}: {{bit: {number}}}`, or correct the example");
-    let diagnostic = Diagnostic::error("example", below.doc.path.at_key(), text).help(help);
+    let diagnostic = Diagnostic::error(&rules::EXAMPLE, below.doc.path.at_key(), text).help(help);
     Some(diagnostic.other(denial.meaning.path.at_key(), format!("by the status word this frame says {}", denial.read)))
 }
 
@@ -152,7 +153,7 @@ impl<'a> Field<'a> {
         );
         let at = bit.doc.path.key("bit").at_value();
         Some(
-            Diagnostic::error("example", at, text)
+            Diagnostic::error(&rules::EXAMPLE, at, text)
                 .help("correct the bit, or else the example")
                 .other(denial.meaning.path.at_key(), format!("by the status word this frame says {}", denial.read)),
         )
@@ -170,7 +171,7 @@ impl<'a> Field<'a> {
             return None;
         }
         let text = format!("`{}` is {number} here, but an example has it as {}", denial.meaning.text, denial.bits);
-        let diagnostic = Diagnostic::error("example", At::Key(at.key(number)), text);
+        let diagnostic = Diagnostic::error(&rules::EXAMPLE, At::Key(at.key(number)), text);
         let shown = format!("by these names this frame says {}", denial.read);
         Some(diagnostic.help("correct the number, or else the example").other(denial.meaning.path.at_value(), shown))
     }

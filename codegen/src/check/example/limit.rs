@@ -6,6 +6,7 @@ use super::shown;
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Decoded, Reading, Value};
 use crate::model::{Example, MessageId, Protocol, Range, Signal};
+use crate::rules;
 use crate::syntax::tree::Path;
 
 /// The range of the field whose value lies outside it, or nearest to one of its ends.
@@ -37,7 +38,7 @@ pub fn report(protocol: &Protocol, example: &Example, decoded: &Decoded, place: 
             help,
         )
     };
-    Some(Diagnostic::error("example", at.at_value(), text).help(help).other(place, said))
+    Some(Diagnostic::error(&rules::EXAMPLE, at.at_value(), text).help(help).other(place, said))
 }
 
 fn limit<'a>(protocol: &'a Protocol, example: &Example, message: MessageId, reading: &Reading) -> Option<Limit<'a>> {

@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, decode};
 use crate::model::{Example, Message, MessageId, Protocol};
+use crate::rules;
 use crate::syntax::tree::Path;
 
 /// Most examples that are shown beside a message.
@@ -29,7 +30,7 @@ pub fn find(protocol: &Protocol) -> IndexMap<MessageId, Vec<Path>> {
 pub fn report(message: &Message, frames: &[Path]) -> Diagnostic {
     let text = format!("none of the {} examples of `{}` is read as such", frames.len(), message.name);
     let help = "correct `match` or what else chooses the message, or else the examples";
-    let diagnostic = Diagnostic::error("example", At::Key(message.doc.path.key("match")), text).help(help);
+    let diagnostic = Diagnostic::error(&rules::EXAMPLE, At::Key(message.doc.path.key("match")), text).help(help);
     let others = frames.iter().take(SHOWN);
     others.fold(diagnostic, |diagnostic, frame| diagnostic.other(frame.at_value(), "this frame, for instance"))
 }

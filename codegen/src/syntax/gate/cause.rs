@@ -3,13 +3,14 @@
 use std::ops::Range;
 
 use crate::diagnostic::Diagnostic;
+use crate::rules;
 
 /// Finds a quote without an end; the parser stops at its start.
 pub(super) fn open_quote(text: &str, at: usize, complaint: &str) -> Option<Diagnostic> {
     let is_open = complaint.contains("indentation in quoted") || complaint.contains("unexpected end of stream");
     let quote = text[at..].chars().next().filter(|character| is_open && matches!(character, '"' | '\''))?;
     let message = format!("this `{quote}` is not closed");
-    Some(Diagnostic::error("yaml", at..at + 1, message).help(format!("close it with another `{quote}`")))
+    Some(Diagnostic::error(&rules::YAML, at..at + 1, message).help(format!("close it with another `{quote}`")))
 }
 
 /// Finds out whether the map or the list that starts at `opened` has no end, or the wrong one.
@@ -19,13 +20,13 @@ pub(super) fn open_bracket(text: &str, at: Range<usize>, opened: Option<usize>) 
     let found = text[at.clone()].chars().next();
     if let Some(wrong) = found.filter(|found| matches!(found, ']' | '}') && *found != end) {
         let message = format!("`{wrong}` does not close this `{bracket}`");
-        let diagnostic = Diagnostic::error("yaml", at, message).other(start..start + 1, "opened here");
+        let diagnostic = Diagnostic::error(&rules::YAML, at, message).other(start..start + 1, "opened here");
         return Some(diagnostic.help(format!("write `{end}`, or add the bracket that is missing")));
     }
     if !goes_on_outside(text, start, at.start) {
         return None;
     }
-    let diagnostic = Diagnostic::error("yaml", start..start + 1, format!("this `{bracket}` is not closed"));
+    let diagnostic = Diagnostic::error(&rules::YAML, start..start + 1, format!("this `{bracket}` is not closed"));
     let diagnostic = diagnostic.other(at, format!("here `,` or `{end}` was expected"));
     Some(diagnostic.help(format!("close it with `{end}`")))
 }
@@ -46,7 +47,7 @@ pub(super) fn line_above(text: &str, at: usize) -> Option<Diagnostic> {
     }
     let (start, item) = entry_above(text, here)?;
     if let Some(rest) = item.strip_prefix('-').filter(|rest| !rest.starts_with(['-', ' '])) {
-        let diagnostic = Diagnostic::error("yaml", start..start + 1, "no blank after the `-`");
+        let diagnostic = Diagnostic::error(&rules::YAML, start..start + 1, "no blank after the `-`");
         return Some(diagnostic.help(format!("write `- {rest}`")));
     }
     let name = item.split(|letter: char| !letter.is_alphanumeric() && letter != '_').next()?;
@@ -56,10 +57,11 @@ pub(super) fn line_above(text: &str, at: usize) -> Option<Diagnostic> {
     }
     if let Some(value) = rest.strip_prefix(':') {
         let colon = start + name.len();
-        let diagnostic = Diagnostic::error("yaml", colon..colon + 1, format!("no blank after the `:` of `{name}`"));
+        let diagnostic =
+            Diagnostic::error(&rules::YAML, colon..colon + 1, format!("no blank after the `:` of `{name}`"));
         return Some(diagnostic.help(format!("write `{name}: {value}`")));
     }
-    let diagnostic = Diagnostic::error("yaml", start..start + item.len(), format!("`{item}` has no `:`"));
+    let diagnostic = Diagnostic::error(&rules::YAML, start..start + item.len(), format!("`{item}` has no `:`"));
     let entry = format!("{name}: {}", rest.trim_start());
     Some(diagnostic.help(format!("write `{}`, or quote the text that it belongs to", entry.trim_end())))
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{DEPTH_LIMIT, cause};
 use crate::diagnostic::Diagnostic;
+use crate::rules;
 
 /// Part of the parser's message, our message, and the help.
 const TRANSLATIONS: [(&str, &str, &str); 19] = [
@@ -70,8 +71,8 @@ pub(super) fn translate(text: &str, at: usize, complaint: &str, opened: Option<u
 
 fn translated(span: Range<usize>, complaint: &str, opened: Option<usize>) -> Diagnostic {
     let diagnostic = match TRANSLATIONS.iter().find(|(part, ..)| complaint.contains(part)) {
-        Some((_, message, help)) => Diagnostic::error("yaml", span, *message).help(*help),
-        None => Diagnostic::error("yaml", span, format!("this is not YAML: {complaint}"))
+        Some((_, message, help)) => Diagnostic::error(&rules::YAML, span, *message).help(*help),
+        None => Diagnostic::error(&rules::YAML, span, format!("this is not YAML: {complaint}"))
             .help("quote the text, or look at the line above: a bracket or a quote may be open there"),
     };
     match opened.filter(|_| complaint.contains("expected ','")) {
@@ -83,5 +84,5 @@ fn translated(span: Range<usize>, complaint: &str, opened: Option<usize>) -> Dia
 /// Reports nesting that no spec needs.
 pub(super) fn too_deep(span: Range<usize>) -> Diagnostic {
     let message = format!("maps and lists are nested deeper than {DEPTH_LIMIT} levels");
-    Diagnostic::error("yaml", span, message).help("check the brackets and the indentation")
+    Diagnostic::error(&rules::YAML, span, message).help("check the brackets and the indentation")
 }

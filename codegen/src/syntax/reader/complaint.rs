@@ -1,6 +1,7 @@
 //! What serde complains about, in words for people.
 
 use crate::diagnostic::Diagnostic;
+use crate::rules;
 use crate::syntax::tree::{Content, Node, Path, Step};
 
 /// An error of the reading.
@@ -75,7 +76,7 @@ fn unknown_key(path: &Path, key: &str, allowed: &[String]) -> Diagnostic {
         Some(what) => format!("{what} allowed here: {listed}"),
         None => format!("allowed here: {listed}"),
     };
-    Diagnostic::error("unknown_key", path.at_key(), format!("unknown key `{key}`")).help(help)
+    Diagnostic::error(&rules::UNKNOWN_KEY, path.at_key(), format!("unknown key `{key}`")).help(help)
 }
 
 fn nearest<'a>(key: &str, allowed: &'a [String]) -> Option<&'a str> {
@@ -95,7 +96,7 @@ fn missing_key(path: &Path, key: &str) -> Diagnostic {
         None => format!("missing key `{key}`"),
         Some(_) => format!("missing key `{key}` in `{path}`"),
     };
-    Diagnostic::error("missing_key", path.at_key(), message).help(format!("add `{key}`"))
+    Diagnostic::error(&rules::MISSING_KEY, path.at_key(), message).help(format!("add `{key}`"))
 }
 
 fn wrong_kind(path: &Path, allowed: &str, expected: Kind, tree: &Node) -> Diagnostic {
@@ -108,7 +109,7 @@ fn wrong_kind(path: &Path, allowed: &str, expected: Kind, tree: &Node) -> Diagno
     };
     let message = format!("expected {allowed} for {whose}, found {found_text}");
     let help = found.and_then(|found| how_to_write(found, expected));
-    Diagnostic { help, ..Diagnostic::error("wrong_kind", path.at_value(), message) }
+    Diagnostic { help, ..Diagnostic::error(&rules::WRONG_KIND, path.at_value(), message) }
 }
 
 /// Says how to write the kind that is expected.

@@ -1,0 +1,53 @@
+//! What can be noted of a recognised frame.
+
+use std::fmt;
+
+/// Something that a document does not foresee in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum NoteRule {
+    /// A reply is not what the spec calls normal: it refuses.
+    ErrorCode,
+    /// No addressing mode fits, or the message does not have the one that does.
+    Addressing,
+    /// An address lies outside its range.
+    Address,
+    /// A value has no name, or a text is not of its form.
+    UnknownValue,
+    /// A status word has bits set that have no name.
+    UnknownBit,
+    /// A value lies outside its range.
+    OutOfRange,
+    /// A floating-point number is infinite or none.
+    NotFinite,
+    /// Bits are set that no field has.
+    ReservedBit,
+    /// The frame means something else on other device models, or nothing on the one that was chosen.
+    ModelDependent,
+}
+
+impl NoteRule {
+    /// Every rule with its word of the spec language and the output formats.
+    pub const ALL: [(Self, &'static str); 9] = [
+        (Self::ErrorCode, "error_code"),
+        (Self::Addressing, "addressing"),
+        (Self::Address, "address"),
+        (Self::UnknownValue, "unknown_value"),
+        (Self::UnknownBit, "unknown_bit"),
+        (Self::OutOfRange, "out_of_range"),
+        (Self::NotFinite, "not_finite"),
+        (Self::ReservedBit, "reserved_bit"),
+        (Self::ModelDependent, "model_dependent"),
+    ];
+
+    /// Returns the word of the spec language.
+    pub fn name(self) -> &'static str {
+        Self::ALL.into_iter().find(|(rule, _)| *rule == self).map_or("", |(_, name)| name)
+    }
+}
+
+impl fmt::Display for NoteRule {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
