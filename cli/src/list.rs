@@ -193,11 +193,11 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     match &signal.encoding {
         Encoding::Number { scale, .. } if *scale != Rational::ONE => items.push(format!("step {scale}")),
         Encoding::Float => items.push("float".to_owned()),
-        Encoding::Named(index) => items.extend(names(&protocol.enumerations[*index])),
-        Encoding::Status(index) => items.extend(bits(&protocol.status_words[*index])),
+        Encoding::Named(id) => items.extend(names(&protocol[*id])),
+        Encoding::Status(id) => items.extend(bits(&protocol[*id])),
         Encoding::Text => items.push(format!("text of {} characters", signal.place.width().div_ceil(8))),
         Encoding::Packed { pieces, parts } => items.push(form(pieces, parts)),
-        _ => {}
+        Encoding::Number { .. } => {}
     }
     items.extend(signal.specials.iter().map(|special| format!("{} = {}", special.raw, special.name)));
     items
@@ -222,8 +222,7 @@ fn form(pieces: &[Piece], parts: &Table<PartId, Signal>) -> String {
     let piece = |piece: &Piece| match piece {
         Piece::Literal(text) => text.clone(),
         Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", parts[*part].name),
-        Piece::Part { part, .. } => format!("{{{}}}", parts[*part].name),
-        _ => String::new(),
+        Piece::Part { part, digits: None } => format!("{{{}}}", parts[*part].name),
     };
     pieces.iter().map(piece).collect()
 }

@@ -40,13 +40,13 @@ impl Source {
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
         let name = name.into();
         if bytes.len() > SIZE_LIMIT {
-            return Err(too_large(name));
+            return Err(too_large(&name));
         }
         let mut text = String::from_utf8(bytes).map_err(|error| not_utf8(&name, &error))?;
         if text.starts_with(BYTE_ORDER_MARK) {
             text.remove(0);
         }
-        let source = Self::index(name, text);
+        let source = Self::index(&name, text);
         let problems = source.forbidden_characters();
         if problems.is_empty() { Ok(source) } else { Err(Diagnostics::new(source).with(problems)) }
     }
@@ -61,7 +61,7 @@ impl Source {
         let name = path.display().to_string();
         match read_limited(path) {
             Ok(bytes) => Self::new(name, bytes),
-            Err(error) => Err(unreadable(name, &error)),
+            Err(error) => Err(unreadable(&name, &error)),
         }
     }
 
@@ -98,7 +98,7 @@ impl Source {
         starts.map(|(at, _)| start + at).nth(position - self.blocks[block]).unwrap_or(self.text.len())
     }
 
-    fn index(name: String, text: String) -> Self {
+    fn index(name: &str, text: String) -> Self {
         let line_ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let lines = std::iter::once(0).chain(line_ends.map(|(at, _)| at + 1)).collect();
         let blocks = std::iter::once(0)
@@ -107,7 +107,7 @@ impl Source {
                 Some(*characters)
             }))
             .collect();
-        Self { name: visible(&name), text, lines, blocks }
+        Self { name: visible(name), text, lines, blocks }
     }
 
     fn characters_before(&self, offset: usize) -> usize {
@@ -168,7 +168,8 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn unreadable(name: String, error: &io::Error) -> Diagnostics {
+fn unreadable(name: &str, error: &io::Error) -> Diagnostics {
+    #[expect(clippy::wildcard_enum_match_arm, reason = "the standard library's enum is open")]
     let (message, help) = match error.kind() {
         io::ErrorKind::FileTooLarge => return too_large(name),
         io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the path and the folder it starts from"),
@@ -179,7 +180,7 @@ fn unreadable(name: String, error: &io::Error) -> Diagnostics {
     refused(name, String::new(), Diagnostic::error(&rules::FILE, At::File, message).help(help))
 }
 
-fn too_large(name: String) -> Diagnostics {
+fn too_large(name: &str) -> Diagnostics {
     let message = format!("the file is larger than {} MiB", SIZE_LIMIT >> 20);
     refused(
         name,
@@ -193,7 +194,7 @@ fn not_utf8(name: &str, error: &FromUtf8Error) -> Diagnostics {
     let message = format!("byte {at} of the file, 0x{:02X}, is not UTF-8", error.as_bytes()[at]);
     let problem = Diagnostic::error(&rules::ENCODING, at..at + char::REPLACEMENT_CHARACTER.len_utf8(), message);
     let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
-    refused(name.to_owned(), text, problem.help("save the file as UTF-8"))
+    refused(name, text, problem.help("save the file as UTF-8"))
 }
 
 fn forbidden_character(span: Range<usize>, character: char, what: &str) -> Diagnostic {
@@ -202,6 +203,6 @@ fn forbidden_character(span: Range<usize>, character: char, what: &str) -> Diagn
 }
 
 /// Reports a problem with a file that is not read any further.
-pub(crate) fn refused(name: String, text: String, problem: Diagnostic) -> Diagnostics {
+pub(crate) fn refused(name: &str, text: String, problem: Diagnostic) -> Diagnostics {
     Diagnostics::new(Source::index(name, text)).with([problem])
 }

@@ -36,7 +36,7 @@ fn read_tree(tree: &tree::Node, problems: &mut Vec<Diagnostic>) -> Option<ast::S
 fn add(item: Diagnostic, tree: &tree::Node, problems: &mut Vec<Diagnostic>) {
     let refused = match &item.at {
         At::Key(path) if *item.rule == rules::UNKNOWN_KEY => tree.get(path),
-        _ => None,
+        At::File | At::Span(_) | At::Key(_) | At::Value(_) => None,
     };
     match refused.filter(|value| value.content == tree::Content::Refused) {
         None => problems.push(item),

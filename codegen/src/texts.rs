@@ -192,10 +192,10 @@ fn write_piece(piece: &Piece, parts: &Table<PartId, Signal>, data: [u8; 8]) -> O
         Piece::Part { part, digits } => {
             let part = &parts[*part];
             let raw = part.place.get(&data);
-            match part.encoding {
-                Encoding::Text => text_of_bits(part, raw),
-                _ => Some(format!("{raw:0width$}", width = digits.unwrap_or(1))),
+            if matches!(part.encoding, Encoding::Text) {
+                return text_of_bits(part, raw);
             }
+            Some(format!("{raw:0width$}", width = digits.unwrap_or(1)))
         }
     }
 }

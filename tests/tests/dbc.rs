@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use can_dbc::{Dbc, MessageId};
 use canspec_codegen::emit::dbc;
-use canspec_codegen::model::{Example, Protocol};
+use canspec_codegen::model::{Example, NoteRule, Protocol};
 use canspec_tests::{protocol, specs};
 
 /// Returns every spec that is right.
@@ -51,8 +51,8 @@ fn another_reader_finds_every_frame_and_no_identifier_twice() {
 
 /// Tests whether the document foresees all of a frame.
 fn is_foreseen(example: &Example) -> bool {
-    let strange = |rule: &String| rule == "address" || rule == "addressing";
-    example.fails.is_none() && !example.notes.iter().any(strange)
+    let strange = [NoteRule::Address, NoteRule::Addressing];
+    example.fails.is_none() && !example.notes.iter().any(|rule| strange.contains(rule))
 }
 
 /// Counts the document's frames, each of which must have a message.

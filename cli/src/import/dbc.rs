@@ -58,11 +58,12 @@ impl Dbc {
     fn write(&self, text: &str) -> Result<(), Failure> {
         let Some(path) = &self.out else { return Ok(io::stdout().lock().write_all(text.as_bytes())?) };
         let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-        written.map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => {
-                Failure::input(&path.display().to_string(), &"there is such a file already; name a new one")
+        written.map_err(|error| {
+            let path = path.display().to_string();
+            if error.kind() == io::ErrorKind::AlreadyExists {
+                return Failure::input(&path, &"there is such a file already; name a new one");
             }
-            _ => Failure::input(&path.display().to_string(), &error),
+            Failure::input(&path, &error)
         })
     }
 }

@@ -163,7 +163,9 @@ fn physical(value: Value) -> Result<Input, String> {
     match value {
         Value::Number(number) => whole(&number).map(Input::Integer).or_else(|| number.as_f64().map(Input::Number)),
         Value::String(text) => Some(Input::Text(text)),
-        other => return Err(format!("`value` is a number, a text or null, not {other}")),
+        other @ (Value::Null | Value::Bool(_) | Value::Array(_) | Value::Object(_)) => {
+            return Err(format!("`value` is a number, a text or null, not {other}"));
+        }
     }
     .ok_or_else(|| "`value` is no number of 64 bits".to_owned())
 }

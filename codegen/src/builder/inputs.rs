@@ -64,6 +64,7 @@ fn misnamed(path: &Path) -> Diagnostics {
 }
 
 fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
+    #[expect(clippy::wildcard_enum_match_arm, reason = "the standard library's enum is open")]
     let what = match error.kind() {
         io::ErrorKind::NotFound => "there is no such folder".to_owned(),
         io::ErrorKind::NotADirectory => "this is a file, not a folder of specs".to_owned(),
@@ -76,5 +77,5 @@ fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
 }
 
 fn refused(path: &Path, problem: Diagnostic) -> Diagnostics {
-    source::refused(path.display().to_string(), String::new(), problem)
+    source::refused(&path.display().to_string(), String::new(), problem)
 }

@@ -213,11 +213,12 @@ impl<'a> Checker<'a> {
             return Box::new(diagnostic);
         }
         let text = format!("this frame has the note `{}`: {}", note.rule, note.text);
-        let help = match note.rule {
-            NoteRule::ReservedBit => "add the field that has these bits; \
-                 if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
-                .to_owned(),
-            rule => format!("if the document shows it so, add `{rule}` to its `notes`"),
+        let help = if note.rule == NoteRule::ReservedBit {
+            "add the field that has these bits; \
+             if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
+                .to_owned()
+        } else {
+            format!("if the document shows it so, add `{}` to its `notes`", note.rule)
         };
         Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }

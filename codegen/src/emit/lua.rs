@@ -1,10 +1,12 @@
 //! Lua: a dissector for Wireshark, which reads the protocol from a table.
 
 mod addressing;
+mod recognition;
 mod signal;
 mod table;
 
 use addressing::{address_type, constants, direction, foreign, mode, who};
+use recognition::course;
 use signal::{names, place, signal, wide};
 use table::Value;
 
@@ -34,6 +36,8 @@ fn table(protocol: &Protocol) -> Value {
         .with("models", Value::list(&protocol.models, |model| Value::text(&model.name)))
         .with("selectors", Value::list(&protocol.selectors, |known| selector(protocol, known)))
         .with("messages", Value::list(&protocol.messages, |known| message(protocol, known)))
+        .with("requests", course(&protocol.recognition.requests))
+        .with("replies", course(&protocol.recognition.replies))
 }
 
 fn identifier(protocol: &Protocol) -> Value {
@@ -69,7 +73,7 @@ fn selector(protocol: &Protocol, selector: &Selector) -> Value {
 
 fn message(protocol: &Protocol, message: &Message) -> Value {
     let refusals = (!message.refusals.is_empty())
-        .then(|| Value::list(&message.refusals, |refusal| frame(protocol, message, refusal)));
+        .then(|| Value::list(&message.refusals, |known| refusal(protocol, message, known)));
     let models = (!message.models.is_empty()).then(|| Value::list(&message.models, |model| Value::id(*model)));
     Value::record()
         .with("name", Value::text(&message.name))
@@ -86,12 +90,15 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
     Value::record()
         .with("access", Value::text(&protocol[frame.access].name))
         .with("kind", Value::text(frame.kind.name()))
-        .with("in_identifier", in_identifier(frame))
-        .with("in_data", in_data(frame))
         .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))
         .with("reserved", Value::integer_of_64_bits(!frame.covered))
         .with("answers", Value::map(answers))
+}
+
+/// Returns a frame that refuses a request, with the constants that it shows.
+fn refusal(protocol: &Protocol, message: &Message, known: &FrameLayout) -> Value {
+    frame(protocol, message, known).with("in_identifier", in_identifier(known)).with("in_data", in_data(known))
 }
 
 /// Returns the constants of the identifier that choose a kind of frame.

@@ -149,7 +149,7 @@ fn collect(tokens: TokenStream, used: &mut Vec<String>) {
                 collect(group.stream(), used);
                 colons = 0;
             }
-            _ => colons = 0,
+            TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Literal(_) => colons = 0,
         }
     }
 }

@@ -251,7 +251,7 @@ impl<'a> Decoder<'a> {
             SelectorPlace::Payload(place) if covered(place.mask(), self.frame.data.len()) => {
                 Some((*id, place.get(&self.data)))
             }
-            _ => None,
+            SelectorPlace::Payload(_) | SelectorPlace::Identifier(_) => None,
         });
         values.collect()
     }

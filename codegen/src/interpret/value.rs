@@ -168,7 +168,7 @@ impl Encoder<'_> {
             Input::Integer(value) if self.signal.encoding.is_unscaled() => return self.whole(*value, signed),
             Input::Integer(value) => as_double(*value),
             Input::Number(value) => *value,
-            other => return Err(self.unwanted(other)),
+            Input::Raw(_) | Input::Status { .. } => return Err(self.unwanted(input)),
         };
         let raw =
             if self.signal.encoding.is_unscaled() { nearest(value) } else { runtime_scale(scale, offset).raw(value) };

@@ -71,7 +71,6 @@ impl Misfit {
 
 /// How a printed frame fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Failure {
     /// Its identifier has the wrong width or a wrong fixed bit, or does not show its direction.
     Identifier,

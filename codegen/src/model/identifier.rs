@@ -85,7 +85,6 @@ pub struct Selector {
 
 /// Where a selector stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum SelectorPlace {
     /// In a field of the identifier.
     Identifier(FieldId),

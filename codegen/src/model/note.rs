@@ -4,7 +4,6 @@ use std::fmt;
 
 /// Something that a document does not foresee in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[non_exhaustive]
 pub enum NoteRule {
     /// A reply is not what the spec calls normal: it refuses.
     ErrorCode,

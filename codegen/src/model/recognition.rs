@@ -112,16 +112,12 @@ impl<T> Choice<T> {
         match self {
             Self::End(outcome) => test(outcome),
             Self::By { selector, cases, otherwise, .. } => {
-                match constants.iter().find(|constant| constant.selector == *selector) {
-                    Some(constant) => {
-                        let next = cases.get(&constant.value).or(otherwise.as_deref())?;
-                        next.find_among(constants, test)
-                    }
-                    None => {
-                        let mut after = cases.values().chain(otherwise.as_deref());
-                        after.find_map(|next| next.find_among(constants, test))
-                    }
+                if let Some(constant) = constants.iter().find(|constant| constant.selector == *selector) {
+                    let next = cases.get(&constant.value).or(otherwise.as_deref())?;
+                    return next.find_among(constants, test);
                 }
+                let mut after = cases.values().chain(otherwise.as_deref());
+                after.find_map(|next| next.find_among(constants, test))
             }
         }
     }
@@ -235,12 +231,11 @@ impl Planner<'_> {
         }
         let mut others = Vec::new();
         for frame in frames {
-            match constant(&frame, selector) {
-                Some(value) => cases.entry(value).or_default().push(frame),
-                None => {
-                    cases.values_mut().for_each(|frames| frames.push(frame));
-                    others.push(frame);
-                }
+            if let Some(value) = constant(&frame, selector) {
+                cases.entry(value).or_default().push(frame);
+            } else {
+                cases.values_mut().for_each(|frames| frames.push(frame));
+                others.push(frame);
             }
         }
         let cases = cases.into_iter();

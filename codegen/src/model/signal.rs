@@ -75,7 +75,6 @@ pub struct StatusBit {
 
 /// How grave a status bit is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Severity {
     /// Describes a condition.
     State,
@@ -176,7 +175,6 @@ fn own<T: Copy>(known: &[OfModel<T>], model: Option<ModelId>) -> Option<T> {
 
 /// What a signal's bits mean.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub enum Encoding {
     /// physical = raw * scale + offset.
     Number {
@@ -219,7 +217,6 @@ impl Encoding {
 
 /// A piece of a packed value's text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Piece {
     /// A text that stands as it is.
     Literal(String),
@@ -295,10 +292,7 @@ pub struct Quantity {
 impl Signal {
     /// Returns the remarks of the signal and of its parts.
     pub(super) fn docs(&self) -> Vec<&Doc> {
-        let parts = match &self.encoding {
-            Encoding::Packed { parts, .. } => &**parts,
-            _ => &[],
-        };
+        let parts = if let Encoding::Packed { parts, .. } = &self.encoding { &**parts } else { &[] };
         std::iter::once(&self.doc).chain(parts.iter().map(|part| &part.doc)).collect()
     }
 }

@@ -464,7 +464,7 @@ impl Resolver<'_> {
     fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &Table<PartId, Signal>) {
         let number = |piece: &Piece| match piece {
             Piece::Part { part, digits } if !matches!(parts[*part].encoding, Encoding::Text) => Some((*part, *digits)),
-            _ => None,
+            Piece::Part { .. } | Piece::Literal(_) => None,
         };
         for pair in pieces.windows(2) {
             let Some((part, None)) = number(&pair[0]) else { continue };

@@ -124,7 +124,7 @@ impl Gate<'_> {
                 self.open(span, Entries::Map { entries: IndexMap::new(), key: None })?;
             }
             Event::SequenceEnd | Event::MappingEnd => self.close(span)?,
-            _ => {}
+            Event::Nothing | Event::StreamStart | Event::StreamEnd | Event::DocumentStart(_) | Event::DocumentEnd => {}
         }
         Ok(())
     }

@@ -49,7 +49,7 @@ impl Node {
     pub fn text(&self) -> Option<&str> {
         match &self.content {
             Content::Text(text) => Some(text),
-            _ => None,
+            Content::List(_) | Content::Map(_) | Content::Refused => None,
         }
     }
 
@@ -57,7 +57,7 @@ impl Node {
     pub fn entries(&self) -> Option<&IndexMap<String, Entry>> {
         match &self.content {
             Content::Map(entries) => Some(entries),
-            _ => None,
+            Content::Text(_) | Content::List(_) | Content::Refused => None,
         }
     }
 

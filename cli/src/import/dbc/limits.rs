@@ -14,7 +14,7 @@ pub fn beside_messages(dbc: &Dbc) -> Vec<String> {
     let comments = dbc.comments.iter().filter_map(|comment| match comment {
         Comment::Node { name, comment } => Some(format!("`{name}` is described as: {}", one_line(comment))),
         Comment::Plain { comment } => Some(format!("the file is described as: {}", one_line(comment))),
-        _ => None,
+        Comment::Message { .. } | Comment::Signal { .. } | Comment::EnvVar { .. } => None,
     });
     let lists = [("attributes", attributes), ("environment variables", variables), ("groups of signals", groups)];
     let lists = lists

@@ -85,13 +85,11 @@ impl<'a> Accused<'a> {
     /// What is certain of a field alone.
     fn explained(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let (field, first) = (self.fields.first()?, self.denials().next()?);
-        match field.signal.encoding {
-            Encoding::Status(word) => {
-                let bits = &self.protocol.status_words[word].bits;
-                field.moved_bit(first, bits).or_else(|| missing_bit(first, bits))
-            }
-            _ => self.repaired(diagnostics).or_else(|| field.misnumbered(first, diagnostics)),
+        if let Encoding::Status(word) = field.signal.encoding {
+            let bits = &self.protocol[word].bits;
+            return field.moved_bit(first, bits).or_else(|| missing_bit(first, bits));
         }
+        self.repaired(diagnostics).or_else(|| field.misnumbered(first, diagnostics))
     }
 
     /// No example holds, and each would after one change.

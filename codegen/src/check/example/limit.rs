@@ -49,7 +49,7 @@ fn limit<'a>(protocol: &'a Protocol, example: &Example, message: MessageId, read
         #[expect(clippy::cast_precision_loss, reason = "only compared with the ends")]
         Value::Integer(value) => value as f64,
         Value::Number(value) => value,
-        _ => return None,
+        Value::None | Value::Name(_) | Value::Text(_) | Value::Status { .. } => return None,
     };
     let (minimum, maximum) = (range.minimum.to_f64(), range.maximum.to_f64());
     let beyond = (minimum - number).max(number - maximum) / (maximum - minimum);

@@ -6,7 +6,7 @@ use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
 use crate::model::{Encoding, Protocol, Signal, Unit};
 use crate::number::Rational;
-use crate::syntax::tree::{Content, Path};
+use crate::syntax::tree::Path;
 use crate::texts::raw_of_text;
 
 /// A change of one key.
@@ -56,10 +56,7 @@ pub fn find(
     written: impl Fn(&str) -> Option<Path>,
     diagnostics: &Diagnostics,
 ) -> Option<Repair> {
-    let text = |path: &Path| match &diagnostics.tree()?.get(path)?.content {
-        Content::Text(text) => Some(text.clone()),
-        _ => None,
-    };
+    let text = |path: &Path| diagnostics.tree()?.get(path)?.text().map(str::to_owned);
     let signal = fields.first()?.signal;
     let examples: Vec<_> =
         fields.iter().flat_map(|field| field.denials().map(|denial| (field.signal, denial))).collect();

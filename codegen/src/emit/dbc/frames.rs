@@ -177,7 +177,7 @@ fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
         let space = if text.is_empty() { "" } else { ": " };
         let how = match sent.layout.kind {
             Kind::Report => Kind::Report.name().to_owned(),
-            kind => format!("{} to {access}", kind.name()),
+            kind @ (Kind::Request | Kind::Reply) => format!("{} to {access}", kind.name()),
         };
         let line = format!("{} ({how}){space}{text}", sent.message.name);
         if !lines.contains(&line) {

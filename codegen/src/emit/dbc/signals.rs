@@ -16,7 +16,9 @@ pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal>
             parts.iter().flat_map(|part| signals(protocol, part, &format!("{name}_{}", part.name))).collect()
         }
         Encoding::Status(word) => status(&protocol[*word], signal.place, name),
-        encoding => vec![single(protocol, signal, encoding, name)],
+        encoding @ (Encoding::Number { .. } | Encoding::Float | Encoding::Named(_) | Encoding::Text) => {
+            vec![single(protocol, signal, encoding, name)]
+        }
     }
 }
 
@@ -35,10 +37,10 @@ fn single(protocol: &Protocol, signal: &Meaning, encoding: &Encoding, name: &str
         }
         Encoding::Float => Signal { float: true, range, ..plain },
         Encoding::Named(index) => {
-            let values = named(&protocol.enumerations[*index].values);
+            let values = named(&protocol[*index].values);
             Signal { signed: values.iter().any(|(raw, _)| *raw < 0), named: values, ..plain }
         }
-        _ => plain,
+        Encoding::Status(_) | Encoding::Text | Encoding::Packed { .. } => plain,
     }
 }
 

@@ -277,8 +277,9 @@ local function filtered(shapes, test)
   return left
 end
 
--- Shapes by direction, and those that refuse a request in place of its reply; each knows its message.
-local towards_module, towards_controller, refusals = {}, {}, {}
+-- Kinds of frames in the order in which the plan counts them, and those that refuse a request in place of its reply;
+-- each knows its message.
+local kinds_of_frames, refusals = {}, {}
 for _, message in ipairs(protocol.messages) do
   for _, signal in ipairs(message.signals) do
     prepare(signal.place)
@@ -288,7 +289,7 @@ for _, message in ipairs(protocol.messages) do
   end
   for _, shape in ipairs(message.shapes) do
     shape.message = message
-    table.insert(shape.kind == "request" and towards_module or towards_controller, shape)
+    table.insert(kinds_of_frames, shape)
   end
   for _, refusal in ipairs(message.refusals or {}) do
     refusal.message = message
@@ -322,25 +323,35 @@ local function with_data(frame, shapes)
   end)
 end
 
--- Returns the payload selectors of these shapes, as far as the frame has the bytes.
-local function selectors(frame, shapes)
-  local found, seen = {}, {}
-  for _, shape in ipairs(shapes) do
-    for _, index in ipairs(shape.selectors) do
-      local selector = protocol.selectors[index]
-      if not seen[index] and selector.place.first + selector.place.count <= frame.length then
-        found[#found + 1] = { index = index, selector = selector, value = get(frame, selector.place) }
-      end
-      seen[index] = true
+-- Returns the values of payload selectors, as far as the frame has the bytes.
+local function selectors(frame, indices)
+  local found = {}
+  for _, index in ipairs(indices) do
+    local selector = protocol.selectors[index]
+    if selector.place.first + selector.place.count <= frame.length then
+      found[#found + 1] = { index = index, selector = selector, value = get(frame, selector.place) }
     end
   end
-  table.sort(found, function(one, other) return one.index < other.index end)
   return found
 end
 
--- Says why a frame is not recognised, with the selectors of the shapes that it could have had.
-local function problem(kind, text, frame, shapes)
-  return { problem = kind, text = text, selectors = shapes and selectors(frame, shapes) or {} }
+-- Says why a frame is not recognised, with the selectors that it could have had.
+local function problem(kind, text, frame, indices)
+  return { problem = kind, text = text, selectors = indices and selectors(frame, indices) or {} }
+end
+
+-- Follows the plan to its outcome for a frame, or to nil.
+local function find(frame, choice)
+  while choice and choice.cases do
+    local value
+    if choice.field then
+      value = identifier_field(frame, choice.field)
+    else
+      value = key(get(frame, protocol.selectors[choice.selector].place))
+    end
+    choice = choice.cases[value] or choice.otherwise
+  end
+  return choice
 end
 
 -- The same for an identifier that has not the fields of this protocol.
@@ -363,16 +374,22 @@ local function candidates(frame)
   local to_module, to_controller = holds(frame, protocol.to_module), holds(frame, protocol.to_controller)
   if to_module == to_controller then return nil, problem("identifier", NO_DIRECTION) end
 
-  local left = with_identifier(frame, to_module and towards_module or towards_controller)
-  if #left == 0 then return nil, problem("unknown_message", "no message has this identifier") end
-
-  local of_length = filtered(left, function(shape) return shape.message.length == frame.length end)
-  if #of_length == 0 then
-    local text = frame.length .. " data bytes instead of " .. left[1].message.length
-    return nil, problem("length", text, frame, left)
+  local group = find(frame, to_module and protocol.requests or protocol.replies)
+  if not group or not group.lengths then
+    return nil, problem("unknown_message", "no message has this identifier")
   end
 
-  local chosen = with_data(frame, of_length)
+  local of_length = group.lengths[frame.length]
+  if not of_length then
+    local text = frame.length .. " data bytes instead of " .. group.longest
+    return nil, problem("length", text, frame, group.selectors)
+  end
+
+  local found, chosen = find(frame, group.choice), {}
+  for _, index in ipairs(found and found.frames or {}) do
+    local shape = kinds_of_frames[index]
+    if shape.message.length == frame.length then chosen[#chosen + 1] = shape end
+  end
   if #chosen == 0 then return nil, problem("unknown_message", "no message has these data bytes", frame, of_length) end
   return chosen
 end
@@ -462,7 +479,7 @@ local function decode(frame)
   local shapes, unrecognised = candidates(frame)
   if not shapes then return unrecognised end
   local shape, other_model = best(frame, shapes)
-  local decoded = { shape = shape, notes = {}, readings = {}, selectors = selectors(frame, { shape }) }
+  local decoded = { shape = shape, notes = {}, readings = {}, selectors = selectors(frame, shape.selectors) }
   local function note(rule, text) table.insert(decoded.notes, { rule = rule, text = text }) end
   decoded.addressing = addressing(frame, shape)
   error_notes(frame, decoded, note)

@@ -75,7 +75,7 @@ impl Emitter<'_> {
         let in_rust = match &signal.encoding {
             Encoding::Named(known) => Some(&self.protocol[*known].doc.path),
             Encoding::Status(known) => Some(&self.protocol[*known].doc.path),
-            _ => None,
+            Encoding::Number { .. } | Encoding::Float | Encoding::Text | Encoding::Packed { .. } => None,
         };
         let paths = signal.types.iter().map(|name| Path::default().key("types").key(name));
         let others = paths.filter(move |path| in_rust != Some(path));

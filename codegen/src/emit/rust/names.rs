@@ -307,7 +307,7 @@ fn variant(protocol: &Protocol, names: &MessageNames, frame: &FrameLayout, varia
     let message = camel_case(&protocol[frame.message].name);
     let name = match frame.kind {
         Kind::Request => format!("{access}{message}"),
-        kind => format!("{message}{access}{}", camel_case(kind.name())),
+        kind @ (Kind::Reply | Kind::Report) => format!("{message}{access}{}", camel_case(kind.name())),
     };
     variants.take(name, "Frame")
 }

@@ -37,8 +37,8 @@ pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
 /// Makes a row of what frames show between them.
 fn row<T>(protocol: &Protocol, frames: &[FrameId], shows: impl Fn(&Constant) -> bool, outcome: T) -> Row<T> {
     let constants = |frame: &FrameId| -> Constants {
-        let shown = protocol[*frame].constants.iter().filter(|constant| shows(constant));
-        shown.map(|constant| (constant.selector, constant.value)).collect()
+        let known = protocol[*frame].constants.iter().filter(|constant| shows(constant));
+        known.map(|constant| (constant.selector, constant.value)).collect()
     };
     let all: Constants = frames.iter().flat_map(constants).collect();
     let own = frames.iter().filter(|frame| constants(frame) == all).min().copied();
