@@ -122,6 +122,7 @@ fn addresses(protocol: &Protocol, pattern: &AddressPattern, id: u32) -> Vec<Stri
 /// Returns the lines of the last column.
 fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usize) -> Vec<String> {
     match decoded {
+        Ok(decoded) if decoded.is_error_reply() => refusal(origin, decoded, room),
         Ok(decoded) => {
             let signals = decoded.signals.iter().map(|reading| signal(origin.protocol, decoded, reading));
             let texts: Vec<String> = signals.map(|text| text + GAP).collect();
@@ -136,6 +137,17 @@ fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usi
             wrap(format!("{separated}! {}: {text}", problem.name()).split(' '), " ", room)
         }
     }
+}
+
+/// Returns the data of a frame that reports an error in place of its values, and why.
+fn refusal(origin: &Origin<'_>, decoded: &Decoded, room: usize) -> Vec<String> {
+    let what = if decoded.kind == Kind::Reply { "refused" } else { "in error" };
+    let data = log::hexadecimal(&origin.frame.data);
+    let separator = if data.is_empty() { "" } else { ", data " };
+    let mut lines = vec![format!("{what}{separator}{data}")];
+    let notes = decoded.notes.iter().filter(|note| !note.is_about_value());
+    lines.extend(notes.flat_map(|Note { rule, text }| remark(rule, text, room)));
+    lines
 }
 
 fn remark(rule: &str, text: &str, room: usize) -> Vec<String> {

@@ -84,6 +84,13 @@ pub struct Decoded {
     pub notes: Vec<Note>,
 }
 
+impl Decoded {
+    /// Tests whether a module reports an error by this frame, as by refusing a request: its values mean nothing.
+    pub fn is_error_reply(&self) -> bool {
+        self.kind != Kind::Request && self.notes.iter().any(|note| note.rule == "error_code")
+    }
+}
+
 /// What a frame says of one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
@@ -124,6 +131,14 @@ pub struct Note {
     pub rule: NoteRule,
     /// What was found, in one sentence without a full stop.
     pub text: String,
+}
+
+impl Note {
+    /// Tests whether it is about the value of a signal.
+    pub fn is_about_value(&self) -> bool {
+        use NoteRule::{NotFinite, OutOfRange, UnknownBit, UnknownValue};
+        matches!(self.rule, UnknownValue | UnknownBit | OutOfRange | NotFinite)
+    }
 }
 
 /// A frame that is not recognised, as far as it could be split.

@@ -266,10 +266,11 @@ impl<P: Protocol> Received<P> {
         selected(self.data_selectors(), self.frame)
     }
 
-    /// Shows the signals, by first byte.
+    /// Shows the signals, by first byte; those of an error reply say so, and as a text have no value.
     pub fn visit(&self, mut visitor: impl FnMut(Reading<'_>)) {
+        let is_of_error_reply = self.is_error_reply();
         for signal in self.content.layout().signals() {
-            signal.read(&self.frame.bytes(), &mut visitor);
+            signal.read(&self.frame.bytes(), &mut |reading| visitor(Reading { is_of_error_reply, ..reading }));
         }
     }
 

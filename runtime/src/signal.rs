@@ -288,10 +288,15 @@ pub struct Reading<'a> {
     pub raw: Number,
     /// What it means.
     pub meaning: Meaning<'a>,
+    /// Whether the frame is an error reply, whose values mean nothing unless the document says so.
+    pub is_of_error_reply: bool,
 }
 
 impl fmt::Display for Reading<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_of_error_reply {
+            return write!(formatter, "{} ? (error reply)", self.name);
+        }
         write!(formatter, "{} {}", self.name, self.meaning)?;
         match (self.meaning, self.unit) {
             (Meaning::Number(_), Some(unit)) => write!(formatter, " {unit}"),
@@ -352,7 +357,7 @@ impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
             (None, None) => value.meaning(),
         };
         let raw = if R::SIGNED { Number::Signed(bits.cast_signed()) } else { Number::Unsigned(bits) };
-        visitor(Reading { name: self.name, unit: self.unit, raw, meaning });
+        visitor(Reading { name: self.name, unit: self.unit, raw, meaning, is_of_error_reply: false });
     }
 
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {

@@ -489,12 +489,32 @@ fn a_frame_takes_other_values_but_not_another_message() {
 #[test]
 fn what_a_frame_says_can_be_written_without_knowing_the_message() {
     const KNOWN: &[StatusBit] = &[StatusBit::fault(0, "fan_fault", "Fan"), StatusBit::new(7, "cold", "Cold")];
-    let reading = |unit, meaning| Reading { name: "x", unit, raw: Number::Unsigned(0), meaning }.to_string();
+    let reading = |unit, meaning| {
+        Reading { name: "x", unit, raw: Number::Unsigned(0), meaning, is_of_error_reply: false }.to_string()
+    };
     assert_eq!(reading(Some("V"), Meaning::Number(Number::Float(52.5))), "x 52.5 V");
     assert_eq!(reading(Some("s"), Meaning::Name("never")), "x never");
     assert_eq!(reading(None, Meaning::Status(0b1000_0011, KNOWN)), "x {fan_fault, cold, 0x2}");
     assert_eq!(reading(None, Meaning::Status(0, KNOWN)), "x {}");
     assert_eq!(reading(None, Meaning::None), "x ?");
+}
+
+#[test]
+fn the_values_of_an_error_reply_are_no_measurements() {
+    let shown = |id, data| {
+        let mut texts = std::vec::Vec::new();
+        let received = decode(&frame(id, data)).expect("a known frame");
+        received.visit(|reading| texts.push((reading.is_of_error_reply, reading.to_string())));
+        texts
+    };
+    let power = |is_of_error_reply, text: &str| [(is_of_error_reply, text.to_string())];
+    assert_eq!(shown(0x0107_F003, [2, 0xF0, 0, 0x96]), power(false, "power 1500 W"));
+    // The result in the data, then the error code in the identifiers of a reply and of a report.
+    for (id, data) in [(0x0107_F003, [2, 0xF2, 0, 0]), (0x0907_F003, [2, 0xF0, 0, 0]), (0x090B_F003, [0; 4])] {
+        assert_eq!(shown(id, data), power(true, "power ? (error reply)"), "{id:X}");
+    }
+    // A request is no error reply, whatever its identifier shows.
+    assert_eq!(shown(0x0907_03F0, [1, 0, 0, 0x96]), power(false, "power 1500 W"));
 }
 
 #[test]

@@ -141,6 +141,17 @@ def signal_fields(name, signal):
     return fields, text + (f" {signal['unit']}" if "unit" in signal and not isinstance(value, str) else "")
 
 
+# Rules of notes about the value of a signal.
+OF_VALUES = ("unknown_value", "unknown_bit", "out_of_range", "not_finite")
+
+
+def refusal(line):
+    """Returns what stands in place of the values of a frame that reports an error, if it is one."""
+    why = [note["text"] for note in line["notes"] if note["rule"] == "error_code"]
+    what = {"reply": "refused", "report": "in error"}.get(line["kind"])
+    return f"{what}, {why[0]}" if what and why else None
+
+
 def expected(line, dissector):
     """Returns the fields that tshark must show of a decoded line."""
     of, groups = f"{line['protocol']}.", dissector.groups
@@ -152,12 +163,14 @@ def expected(line, dissector):
         fields[f"{groups['note']}.unrecognised"] = "1"
         return fields, None
     fields |= {of + key: line[key] for key in ("message", "access", "kind", "addressing", "reserved") if line.get(key)}
-    texts = []
-    for name, signal in line["signals"].items():
+    refused = refusal(line)
+    texts = [refused] if refused else []
+    for name, signal in ({} if refused else line["signals"]).items():
         more, text = signal_fields(f"{of}{line['message']}.{name}", signal)
         texts.append(f"{name} {text}")
         fields |= more
-    for rule, count in collections.Counter(note["rule"] for note in line["notes"]).items():
+    rules = [note["rule"] for note in line["notes"] if not (refused and note["rule"] in OF_VALUES)]
+    for rule, count in collections.Counter(rules).items():
         fields[f"{groups['note']}.{rule}"] = ",".join(["1"] * count)
     info = f"{line['access']} {line['message']} {line['kind']}" + (": " if texts else "") + ", ".join(texts)
     return with_names(fields, dissector.types), info

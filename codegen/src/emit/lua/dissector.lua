@@ -81,6 +81,8 @@ local RULES = {
   "error_code", "addressing", "address", "unknown_value", "unknown_bit", "out_of_range", "not_finite", "reserved_bit",
   "model_dependent",
 }
+-- Rules of notes about the value of a signal.
+local OF_VALUES = { unknown_value = true, unknown_bit = true, out_of_range = true, not_finite = true }
 local notes = {}
 for _, rule in ipairs(RULES) do
   notes[rule] = ProtoExpert.new(group("note") .. rule, rule, expert.group.PROTOCOL, expert.severity.WARN)
@@ -168,6 +170,14 @@ local function show_problem(frame, decoded, tvb, tree)
   tree:add_proto_expert_info(unrecognised, decoded.text)
 end
 
+-- Says in place of the values what a frame says that reports an error; nil of any other.
+local function refusal(decoded)
+  if decoded.shape.kind == "request" then return nil end
+  for _, note in ipairs(decoded.notes) do
+    if note.rule == "error_code" then return (decoded.shape.kind == "reply" and "refused, " or "in error, ") .. note.text end
+  end
+end
+
 local function show_message(frame, decoded, tvb, pinfo, tree)
   local shape = decoded.shape
   local summary = shape.access .. " " .. shape.message.name .. " " .. shape.kind
@@ -178,13 +188,15 @@ local function show_message(frame, decoded, tvb, pinfo, tree)
   if decoded.addressing.mode then tree:add(known.addressing, decoded.addressing.mode.name) end
   add_identifier(tree, frame, decoded)
   add_selectors(tree, tvb, decoded)
-  local texts = {}
-  for _, reading in ipairs(decoded.readings) do
+  local refused = refusal(decoded)
+  local texts = { refused }
+  for _, reading in ipairs(refused and {} or decoded.readings) do
     table.insert(texts, reading.signal.name .. " " .. add_reading(tree, tvb, reading))
   end
+  if refused then tree:append_text(", " .. refused) end
   if decoded.reserved then tree:add(known.reserved, tvb(), decoded.reserved) end
   for _, note in ipairs(decoded.notes) do
-    tree:add_proto_expert_info(notes[note.rule], note.text)
+    if not (refused and OF_VALUES[note.rule]) then tree:add_proto_expert_info(notes[note.rule], note.text) end
   end
   add_links(tree, frame)
   pinfo.cols.info = #texts > 0 and summary .. ": " .. table.concat(texts, ", ") or summary
