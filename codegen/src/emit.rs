@@ -5,7 +5,7 @@ mod lua;
 mod options;
 mod rust;
 
-pub use dbc::{Dbc, dbc};
+pub use dbc::{Dbc, Dropped, dbc};
 pub use lua::wireshark;
 pub use options::{Float, Options, Switch};
 pub(crate) use rust::{camel_case, member};

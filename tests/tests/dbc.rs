@@ -117,3 +117,35 @@ fn a_message_that_looks_like_another_one_is_named_as_missing() {
     assert!(exported.limits.iter().any(|limit| limit == lost), "{:?}", exported.limits);
     assert!(exported.text.contains(lost) && !exported.text.contains("SG_ supply_dc"));
 }
+
+#[test]
+fn an_empty_request_never_wins_over_a_message_with_signals() {
+    let path = specs("tests/specs/devices").into_iter().find(|path| path.ends_with("overlapping_addresses.yaml"));
+    let protocol = protocol(path.expect("the device has a spec"));
+    let exported = dbc(&protocol, None);
+    let messages = |text: &str| -> Vec<(String, Vec<String>)> {
+        let messages = read(text).messages.into_iter();
+        let names = |message: &can_dbc::Message| message.signals.iter().map(|signal| signal.name.clone()).collect();
+        messages.map(|message| (message.name.clone(), names(&message))).collect()
+    };
+    let message = |name: &str, signals: &[&str]| {
+        (name.to_owned(), signals.iter().map(|signal| (*signal).to_owned()).collect::<Vec<_>>())
+    };
+    let expected = [
+        message("pressure_reply", &["inlet", "outlet"]),
+        message("opening_request", &["share"]),
+        message("temperature_report", &["value"]),
+    ];
+    assert_eq!(messages(&exported.text), expected);
+    let dropped: Vec<_> =
+        exported.dropped.iter().map(|dropped| (dropped.text.as_str(), dropped.has_own_identifier)).collect();
+    let request = "`pressure` (request to read) is missing in `pressure_reply`, where nothing tells it from `pressure` (reply to read)";
+    let restart = "`restart` is missing in `temperature_report`, which has 8 data bytes";
+    assert_eq!(dropped, [(request, true), (restart, true)]);
+    assert!(
+        exported.limits.iter().any(|limit| limit == request) && exported.limits.iter().any(|limit| limit == restart)
+    );
+
+    let of_node = dbc(&protocol, Some(1..=1));
+    assert_eq!((messages(&of_node.text).len(), of_node.dropped), (6, vec![]));
+}

@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 use std::ops::RangeInclusive;
 
-use canspec_codegen::emit;
+use canspec_codegen::emit::{self, Dropped};
 use canspec_codegen::model::Protocol;
 use canspec_codegen::number::Rational;
 use clap::Args;
 
-use crate::failure::{Failure, Finish};
+use crate::failure::{Failure, Finish, tell};
 use crate::protocols::One;
 
 /// Export a protocol as a DBC.
@@ -44,9 +44,23 @@ impl Dbc {
             refuse_strangers(&protocol, nodes)?;
         }
         let dbc = emit::dbc(&protocol, self.nodes.clone());
+        dbc.dropped.iter().for_each(|dropped| tell(format_args!("canspec: warning: {}", self.advised(dropped))));
         let text = if self.report { report(&dbc) } else { dbc.text };
         io::stdout().lock().write_all(text.as_bytes())?;
         Ok(Finish::Done)
+    }
+}
+
+impl Dbc {
+    /// Says what the DBC lacks and what to do.
+    fn advised(&self, Dropped { text, has_own_identifier }: &Dropped) -> String {
+        if *has_own_identifier && self.nodes.is_none() {
+            format!("{text}; `--nodes FIRST-LAST` exports whole identifiers, which differ")
+        } else {
+            format!(
+                "{text}; `canspec export wireshark` makes a dissector, which knows lengths, addresses and device models"
+            )
+        }
     }
 }
 

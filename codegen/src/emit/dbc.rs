@@ -25,6 +25,17 @@ pub struct Dbc {
     pub counts: (usize, usize),
     /// What the protocol says and the file cannot, a sentence each without a full stop.
     pub limits: Vec<String>,
+    /// The frames that the file lacks.
+    pub dropped: Vec<Dropped>,
+}
+
+/// A frame of a message that the file lacks, since nothing in it would tell it from another one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dropped {
+    /// What is missing where, and why, without a full stop.
+    pub text: String,
+    /// Whether their identifiers differ, if only in bits that vary.
+    pub has_own_identifier: bool,
 }
 
 /// Emits a DBC: a message for each layout of the identifier, or for each identifier of these nodes.
@@ -33,10 +44,10 @@ pub struct Dbc {
 pub fn dbc(protocol: &Protocol, nodes: Option<RangeInclusive<i64>>) -> Dbc {
     let sent = frames::sent(protocol, nodes.as_ref());
     let mask = frames::mask(protocol, &sent);
-    let (frames, lost) = frames::frames(protocol, &sent, mask);
+    let (frames, dropped) = frames::frames(protocol, &sent, mask);
     let mut limits = limits::limits(protocol, mask);
-    limits.extend(lost);
+    limits.extend(dropped.iter().map(|dropped| dropped.text.clone()));
     let counts = (protocol.messages.len(), frames.len());
     let file = File { comment: text::header(protocol, mask, &limits), nodes: text::nodes(nodes), frames };
-    Dbc { text: file.to_string(), mask, counts, limits }
+    Dbc { text: file.to_string(), mask, counts, limits, dropped }
 }

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use indexmap::IndexMap;
 
+use super::Dropped;
 use super::file::Frame;
 use super::text::{self, ascii, remarks};
 use super::tree::{self, Candidate, Tree};
@@ -85,21 +86,23 @@ pub fn mask(protocol: &Protocol, sent: &[Sent]) -> u32 {
 
 /// The frames that share an identifier.
 struct Group<'a> {
+    /// Those that the DBC has.
     sent: Vec<&'a Sent<'a>>,
+    lost: Vec<&'a Sent<'a>>,
     /// Those of another length.
     others: Vec<Candidate<'a>>,
     tree: Tree<'a>,
 }
 
 /// Returns a frame for each value of the masked bits, and what could not be said.
-pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<Frame>, Vec<String>) {
+pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<Frame>, Vec<Dropped>) {
     let mut groups: IndexMap<u32, Vec<&Sent>> = IndexMap::new();
     for sent in sent {
         groups.entry(sent.id & mask).or_default().push(sent);
     }
     let groups: Vec<Group> = groups.into_values().map(|sent| group(protocol, sent)).collect();
     let names = names(protocol, &groups);
-    let lost = groups.iter().zip(&names).flat_map(|(group, name)| lost(group, name)).collect();
+    let lost = groups.iter().zip(&names).flat_map(|(group, name)| lost(protocol, group, name)).collect();
     let frames = groups.into_iter().zip(names).map(|(group, name)| frame(protocol, group, name)).collect();
     (frames, lost)
 }
@@ -111,20 +114,44 @@ fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
             candidates.push(Candidate { id: sent.id_of_layout, message: sent.message, layout: sent.layout });
         }
     }
-    let length = sent[0].message.length;
-    let (candidates, others) = candidates.into_iter().partition(|candidate| candidate.message.length == length);
-    Group { sent, others, tree: tree::tree(protocol, candidates) }
+    let with_signals = candidates.iter().find(|candidate| !tree::is_empty(candidate));
+    let length = with_signals.unwrap_or(&candidates[0]).layout.length;
+    let (candidates, others): (Vec<_>, Vec<_>) =
+        candidates.into_iter().partition(|candidate| candidate.layout.length == length);
+    let tree = tree::tree(protocol, candidates);
+    let (sent, lost) = sent.into_iter().partition(|sent| tree.has(sent.id_of_layout));
+    Group { sent, lost, others, tree }
 }
 
 /// Says which messages a frame lacks.
-fn lost(group: &Group, name: &str) -> Vec<String> {
+fn lost(protocol: &Protocol, group: &Group, name: &str) -> Vec<Dropped> {
     let length = group.sent[0].message.length;
-    let other =
-        |lost: &Candidate| format!("`{}` is missing in `{name}`, which has {length} data bytes", lost.message.name);
+    let dropped = |candidate: &Candidate, text: String| {
+        let mut lost = group.lost.iter().filter(|sent| sent.id_of_layout == candidate.id);
+        let has_own_identifier = lost.all(|lost| group.sent.iter().all(|sent| sent.id != lost.id));
+        Dropped { text, has_own_identifier }
+    };
+    let other = |lost: &Candidate| {
+        let text = format!("`{}` is missing in `{name}`, which has {length} data bytes", lost.message.name);
+        dropped(lost, text)
+    };
     let same = |(lost, kept): &(Candidate, Candidate)| {
-        format!("`{}` is missing in `{name}`, where nothing tells it from `{}`", lost.message.name, kept.message.name)
+        let is_one = lost.layout.message == kept.layout.message;
+        let [missing, found] = [lost, kept].map(|candidate| {
+            let how = if is_one { format!(" ({})", how(protocol, candidate.layout)) } else { String::new() };
+            format!("`{}`{how}", candidate.message.name)
+        });
+        dropped(lost, format!("{missing} is missing in `{name}`, where nothing tells it from {found}"))
     };
     group.others.iter().map(other).chain(group.tree.lost.iter().map(same)).collect()
+}
+
+/// Says what a frame is for, and by which access.
+fn how(protocol: &Protocol, layout: &FrameLayout) -> String {
+    match layout.kind {
+        Kind::Report => Kind::Report.name().to_owned(),
+        kind @ (Kind::Request | Kind::Reply) => format!("{} to {}", kind.name(), protocol[layout.access].name),
+    }
 }
 
 fn frame(protocol: &Protocol, group: Group, name: String) -> Frame {
@@ -172,13 +199,9 @@ fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
     let mut lines: Vec<String> = Vec::new();
     let mut modes: Vec<&str> = Vec::new();
     for sent in group {
-        let access = &protocol[sent.layout.access].name;
         let text = remarks(&sent.message.doc);
         let space = if text.is_empty() { "" } else { ": " };
-        let how = match sent.layout.kind {
-            Kind::Report => Kind::Report.name().to_owned(),
-            kind @ (Kind::Request | Kind::Reply) => format!("{} to {access}", kind.name()),
-        };
+        let how = how(protocol, sent.layout);
         let line = format!("{} ({how}){space}{text}", sent.message.name);
         if !lines.contains(&line) {
             lines.push(line);

@@ -26,6 +26,11 @@ pub struct Tree<'a> {
 }
 
 impl Tree<'_> {
+    /// Tests whether a frame is neither lost nor of another length.
+    pub fn has(&self, id: FrameId) -> bool {
+        self.kept.iter().any(|kept| kept.id == id)
+    }
+
     /// Returns the name of the only message, or the first one of those that look the same.
     pub fn message(&self) -> Option<&str> {
         let name = &self.kept.first()?.message.name;
@@ -66,14 +71,20 @@ impl<'a> Grower<'_, 'a> {
         if is_uniform(candidates) {
             return self.leaf(candidates, &left, branch);
         }
-        let Some(chosen) = choose(candidates, &left) else {
-            let (kept, lost): (Vec<_>, Vec<_>) =
-                candidates.iter().copied().partition(|other| has_same_signals(&candidates[0], other));
-            self.lose(&lost, candidates[0]);
+        let chosen = choose(candidates, &left);
+        let lost = lost(candidates, chosen);
+        let (empty, full): (Vec<_>, Vec<_>) = candidates.iter().copied().partition(is_empty);
+        if !empty.is_empty() && !lost.iter().all(is_empty) {
+            self.lose(&empty, full[0]);
+            return self.grow(&full, left, branch);
+        }
+        self.lose(&lost, candidates[0]);
+        let Some(chosen) = chosen else {
+            let kept: Vec<_> =
+                candidates.iter().copied().filter(|other| has_same_signals(&candidates[0], other)).collect();
             return self.leaf(&kept, &left, branch);
         };
-        let (branches, lost) = split(candidates, chosen);
-        self.lose(&lost, candidates[0]);
+        let (branches, _) = split(candidates, chosen);
         let is_last = branches.values().all(|of| is_uniform(of));
         let is_shared = |id: &SelectorId| all_have(candidates, *id) && (is_last || has_one_value(candidates, *id));
         let (shared, left): (Vec<_>, Vec<_>) = left.into_iter().filter(|id| *id != chosen).partition(is_shared);
@@ -190,6 +201,19 @@ fn all_have(candidates: &[Candidate], selector: SelectorId) -> bool {
 
 fn has_one_value(candidates: &[Candidate], selector: SelectorId) -> bool {
     candidates.iter().all(|candidate| constant(*candidate, selector) == constant(candidates[0], selector))
+}
+
+/// Tests whether a frame carries no signals.
+pub fn is_empty(candidate: &Candidate) -> bool {
+    candidate.layout.signals.is_empty()
+}
+
+/// Returns the frames that are not told from the others by a selector, or from the first one without any.
+fn lost<'a>(candidates: &[Candidate<'a>], selector: Option<usize>) -> Vec<Candidate<'a>> {
+    match selector {
+        Some(selector) => split(candidates, selector).1,
+        None => candidates.iter().copied().filter(|other| !has_same_signals(&candidates[0], other)).collect(),
+    }
 }
 
 /// Tests whether two frames carry the same signals.
