@@ -20,6 +20,17 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 PEERS = os.path.join(ROOT, "tests", "peers")
 # Random frames of all protocols together, of each protocol at least, and of each feature of the language.
 OF_ALL_PROTOCOLS, OF_A_PROTOCOL, OF_A_FEATURE = 100_000, 10_000, 1_000
+# What a frame has to do with others, which `canspec decode` does not say.
+LINKS = ("request_in", "response_time", "response_in")
+# Rules of notes that have the same text in both programs.
+SAME_TEXTS = ("unknown_value", "unknown_bit")
+# Texts of notes with every digit of a word of more than 32 bits, written by hand.
+EDGES = {
+    "0002F002#FFFFFFFFFFFFFFFF": "value 18446744073709551615 is outside 0..1000",
+    "0003F002#FEFFFFFFFE07FFFF": "address -4294967298 is outside -1000..1000",
+    "0004F002#E800000100000000": "end 0x1 has no name",
+    "0005F002#FFFFFFFFFFFF0000": "raw has bits 0x7FFEFFFFFFFE set that have no name",
+}
 # What a mistake in the spec of the heater looks like: the text before and after.
 MISTAKES = {
     "a wrong scale": ("scale: 1/10,", "scale: 1/100,"),
@@ -96,7 +107,7 @@ class Dissector:
 
     def rows(self, capture, *options):
         """Returns the fields that each frame has, by name, and the processor time that it took."""
-        names = ["_ws.lua.error", "_ws.col.Info", *self.types]
+        names = ["_ws.lua.error", "_ws.col.Info", "_ws.expert.message", *self.types]
         call = ["tshark", "-n", "-r", capture, "-X", f"lua_script:{self.lua}", *options, "-T", "fields"]
         started = processor_time()
         done = subprocess.run(call + [word for name in names for word in ("-e", name)], capture_output=True, text=True)
@@ -207,8 +218,7 @@ def difference(line, row, dissector):
     wanted, info = expected(line, dissector)
     if "_ws.lua.error" in row:
         return row["_ws.lua.error"]
-    links = ("request_in", "response_in", "response_time")
-    shown = {name: cell for name, cell in row.items() if name in types and name.split(".", 1)[1] not in links}
+    shown = {name: cell for name, cell in row.items() if name in types and name.split(".", 1)[1] not in LINKS}
     shown = {name: plain(name, cell, types) for name, cell in shown.items()}
     # Each bit of a status word is shown, set or not.
     shown = {name: cell for name, cell in shown.items() if types[name] != "FT_BOOLEAN" or cell != "0"}
@@ -216,6 +226,10 @@ def difference(line, row, dissector):
         return f"decode {sorted(wanted.items() - shown.items())}, tshark {sorted(shown.items() - wanted.items())}"
     if info and row.get("_ws.col.Info") != info:
         return f"decode {info!r}, tshark {row.get('_ws.col.Info')!r}"
+    texts = [note["text"] for note in line.get("notes", []) if note["rule"] in SAME_TEXTS]
+    missing = [text for text in texts if text not in row.get("_ws.expert.message", "")]
+    if missing:
+        return f"decode {missing}, tshark {row.get('_ws.expert.message')!r}"
     return None
 
 
@@ -292,7 +306,11 @@ def last_model(bench, spec):
 def compare_edges(bench):
     """Compares frames with the numbers at the edges of words wider than 32 bits."""
     spec, log = (os.path.join(PEERS, f"tshark_wide.{ending}") for ending in ("yaml", "log"))
-    lines, _, differences, seconds = compare(bench, spec, log)
+    lines, rows, differences, seconds = compare(bench, spec, log)
+    for line, row in zip(lines, rows):
+        text = EDGES.get(f"{line['id']}#{line['data']}", "")
+        if text not in row.get("_ws.expert.message", ""):
+            differences.append(f"{text!r} is not in {row.get('_ws.expert.message')!r}")
     return report("tshark_wide.yaml", "edges", lines, differences, seconds)
 
 
@@ -344,8 +362,7 @@ def compare_links(bench):
     shown, _ = dissector.rows(bench.capture(log), "-2", "-Y", "heater")
     wrong = 0
     for number, (row, (frame, *links)) in enumerate(zip(shown, rows, strict=True), start=1):
-        names = ("request_in", "response_time", "response_in")
-        found = [row.get(f"heater.{name}", "-") for name in names]
+        found = [row.get(f"heater.{name}", "-") for name in LINKS]
         if found != [link.strip() for link in links]:
             wrong += 1
             print(f"    frame {number}, {frame.strip()}: {found} in place of {links}")

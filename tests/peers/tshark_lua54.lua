@@ -82,6 +82,7 @@ end
 function Item:add_proto_expert_info(field, about)
   assert(type(about) == "string")
   shown[#shown + 1] = field.name .. "=1"
+  shown[#shown + 1] = "_ws.expert.message=" .. about
 end
 function Item:append_text() return self end
 function Item:prepend_text() return self end

@@ -40,8 +40,11 @@ local function hexadecimal(value)
   return string.format("0x%02X", value)
 end
 
+-- Returns hexadecimal digits, as many as it takes and `count` at least.
 local function digits(value, count)
-  return type(value) == "number" and string.format("%0" .. count .. "X", value) or value:tohex(-count)
+  if type(value) == "number" then return string.format("%0" .. count .. "X", value) end
+  local all = value:tohex(-16):gsub("^0+", "")
+  return string.rep("0", count - #all) .. all
 end
 
 local function plain(value)
@@ -96,7 +99,7 @@ end
 function values.named(signal, raw)
   local name = signal.names[key(raw)]
   if name then return name end
-  return nil, "unknown_value", signal.name .. " 0x" .. digits(raw, 2) .. " has no name"
+  return nil, "unknown_value", signal.name .. " 0x" .. digits(raw, 1) .. " has no name"
 end
 
 -- Returns the text of hexadecimal digits, without the NULs at its end; nil if it is not printable.
