@@ -21,7 +21,7 @@ PEERS = os.path.join(ROOT, "tests", "peers")
 # Random frames of all protocols together, of each protocol at least, and of each feature of the language.
 OF_ALL_PROTOCOLS, OF_A_PROTOCOL, OF_A_FEATURE = 100_000, 10_000, 1_000
 # What a frame has to do with others, which `canspec decode` does not say.
-LINKS = ("request_in", "response_time", "response_in")
+LINKS = ("request_in", "response_time", "response_in", "answers")
 # Rules of notes that have the same text in both programs.
 SAME_TEXTS = ("unknown_value", "unknown_bit")
 # Texts of notes with every digit of a word of more than 32 bits, written by hand.

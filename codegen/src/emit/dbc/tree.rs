@@ -209,7 +209,7 @@ pub fn is_empty(candidate: &Candidate) -> bool {
 }
 
 /// Returns the frames that are not told from the others by a selector, or from the first one without any.
-fn lost<'a>(candidates: &[Candidate<'a>], selector: Option<usize>) -> Vec<Candidate<'a>> {
+fn lost<'a>(candidates: &[Candidate<'a>], selector: Option<SelectorId>) -> Vec<Candidate<'a>> {
     match selector {
         Some(selector) => split(candidates, selector).1,
         None => candidates.iter().copied().filter(|other| !has_same_signals(&candidates[0], other)).collect(),

@@ -49,7 +49,7 @@ local function define_signal(signal, prefix)
 end
 
 local known = {}
-for _, name in ipairs({ "message", "access", "kind", "addressing", "reserved", "problem" }) do
+for _, name in ipairs({ "message", "access", "kind", "addressing", "answers", "reserved", "problem" }) do
   known[name] = define(ProtoField.string(protocol.name .. "." .. name, name))
 end
 known.request_in = define(ProtoField.framenum(protocol.name .. ".request_in", "Request in", base.NONE, frametype.REQUEST))
@@ -151,7 +151,9 @@ local function add_reading(tree, tvb, reading)
   return text
 end
 
-local function add_links(tree, frame)
+local function add_links(tree, frame, decoded)
+  local who = answering(decoded)
+  if who then tree:add(known.answers, who):set_generated() end
   local request = requests[frame.number]
   if request then
     tree:add(known.request_in, request.number):set_generated()
@@ -198,7 +200,7 @@ local function show_message(frame, decoded, tvb, pinfo, tree)
   for _, note in ipairs(decoded.notes) do
     if not (refused and OF_VALUES[note.rule]) then tree:add_proto_expert_info(notes[note.rule], note.text) end
   end
-  add_links(tree, frame)
+  add_links(tree, frame, decoded)
   pinfo.cols.info = #texts > 0 and summary .. ": " .. table.concat(texts, ", ") or summary
 end
 

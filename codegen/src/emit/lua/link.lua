@@ -25,12 +25,18 @@ local function exchange(frame, shape, mode, who, pattern)
   return table.concat(parts, " ")
 end
 
-local function ask(frame, decoded)
+-- Returns who answers a request; nil if nobody does, or if the document does not say.
+local function answering(decoded)
   local known, shape = decoded.addressing, decoded.shape
-  if known.fit >= 3 then return end
+  if shape.kind ~= "request" or known.fit >= 3 then return nil end
   local who = shape.answers[known.mode.name]
-  if not known.mode[who] then return end
-  waiting[exchange(frame, shape, known.mode, who, known.pattern)] =
+  return known.mode[who] and who
+end
+
+local function ask(frame, decoded)
+  local known, who = decoded.addressing, answering(decoded)
+  if not who then return end
+  waiting[exchange(frame, decoded.shape, known.mode, who, known.pattern)] =
     { number = frame.number, time = frame.time, answered = {} }
 end
 
