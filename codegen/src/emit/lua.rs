@@ -10,7 +10,7 @@ use recognition::course;
 use signal::{names, place, signal, wide};
 use table::Value;
 
-use crate::model::{FrameLayout, IdentifierField, Message, Protocol, Selector, SelectorPlace};
+use crate::model::{FrameLayout, IdentifierField, Kind, Message, Protocol, Selector, SelectorPlace, Set};
 
 /// The Lua that is the same for every protocol, in the order in which its parts need each other.
 const INTERPRETER: [&str; 3] =
@@ -87,6 +87,7 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
 fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
     let answers = protocol.modes.iter().zip(&message[frame.exchange].answers);
     let answers = answers.filter_map(|(mode, answer)| Some((Value::text(&mode.name), Value::text(who((*answer)?)))));
+    let set = frame.set.and_then(|set| Some((&protocol[set].name, protocol[set].set.as_ref()?)));
     Value::record()
         .with("access", Value::text(&protocol[frame.access].name))
         .with("kind", Value::text(frame.kind.name()))
@@ -94,6 +95,21 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))
         .with("reserved", Value::integer_of_64_bits(!frame.covered))
         .with("answers", Value::map(answers))
+        .maybe("exchange", set.map(|(name, set)| Value::text(&exchange(name, set, message))))
+        .maybe(
+            "replies",
+            set.filter(|(_, set)| !is_asked_for(set)).map(|(_, set)| Value::Plain(set.members.len().to_string())),
+        )
+}
+
+/// Returns what request and reply of a set have in common: its name, and the member if each is asked for.
+fn exchange(name: &str, set: &Set, member: &Message) -> String {
+    if is_asked_for(set) { format!("{name}.{}", member.name) } else { name.to_owned() }
+}
+
+/// Tests whether each member of a set has a request of its own.
+fn is_asked_for(set: &Set) -> bool {
+    set.kinds.contains(&Kind::Request)
 }
 
 /// Returns a frame that refuses a request, with the constants that it shows.

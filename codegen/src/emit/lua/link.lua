@@ -16,7 +16,7 @@ end
 
 -- Returns what a request and its reply have in common; `pattern` is what the frame at hand shows.
 local function exchange(frame, shape, mode, who, pattern)
-  local parts = { frame.interface, shape.message.name, shape.access, mode.name, who }
+  local parts = { frame.interface, shape.exchange or shape.message.name, shape.access, mode.name, who }
   for _, address in ipairs(mode[who].addresses) do
     if bound(frame, mode.request, address.type) then
       table.insert(parts, string.format("%d", bound(frame, pattern, address.type)))
@@ -37,37 +37,62 @@ local function ask(frame, decoded)
   local known, who = decoded.addressing, answering(decoded)
   if not who then return end
   waiting[exchange(frame, decoded.shape, known.mode, who, known.pattern)] =
-    { number = frame.number, time = frame.time, answered = {} }
+    { number = frame.number, time = frame.time, senders = {} }
 end
 
--- Calls `found` with each request that still waits for a reply of this shape.
+-- Returns the addresses of a reply, by which its sender is known.
+local function sender(frame, pattern)
+  local parts = {}
+  for _, address in ipairs(pattern.addresses) do
+    table.insert(parts, string.format("%d", identifier_field(frame, address.field)))
+  end
+  return table.concat(parts, " ")
+end
+
+-- Calls `found` with each request that still waits for a reply of this shape, and with what its sender has sent so far.
 local function each_request(frame, shape, found)
   each_mode(frame, shape, function(mode, who, fit)
     if fit >= 3 or not mode.request then return end
     local this = exchange(frame, shape, mode, who, mode[who])
     local request = waiting[this]
-    if request and not request.answered[frame.id] then found(request, this, who) end
+    if not request then return end
+    local from = sender(frame, mode[who])
+    request.senders[from] = request.senders[from] or { messages = {}, count = 0 }
+    local sent = request.senders[from]
+    if not sent.is_done then found({ request = request, key = this, who = who, sent = sent, shape = shape }) end
   end)
 end
 
--- Finds the latest request that a frame replies to, or refuses; each module answers a group's once.
+-- Notes a reply; a module is done when it has sent each message of a set, or else one message, or has refused.
+local function note_reply(known, is_refusal)
+  local sent, name = known.sent, known.shape.message.name
+  if not sent.messages[name] then
+    sent.messages[name], sent.count = true, sent.count + 1
+  end
+  sent.is_done = is_refusal or sent.count >= (known.shape.replies or 1)
+  if sent.is_done and known.who ~= "each" then waiting[known.key] = nil end
+end
+
+-- Finds the latest request that a frame replies to, or refuses.
 local function answer(frame, decoded)
-  local latest, latest_key, latest_who
-  local function choose(request, this, who)
-    if not latest or request.number > latest.number then
-      latest, latest_key, latest_who = request, this, who
+  local latest, is_refusal
+  local function choose(refuses)
+    return function(known)
+      if not latest or known.request.number > latest.request.number then
+        latest, is_refusal = known, refuses
+      end
     end
   end
-  each_request(frame, decoded.shape, choose)
+  each_request(frame, decoded.shape, choose(false))
   for _, refusal in ipairs(with_data(frame, with_identifier(frame, refusals))) do
-    each_request(frame, refusal, choose)
+    each_request(frame, refusal, choose(true))
   end
   if not latest then return end
-  latest.answered[frame.id] = true
-  if latest_who ~= "each" then waiting[latest_key] = nil end
-  requests[frame.number] = { number = latest.number, time = frame.time - latest.time }
-  responses[latest.number] = responses[latest.number] or {}
-  table.insert(responses[latest.number], frame.number)
+  note_reply(latest, is_refusal)
+  local request = latest.request
+  requests[frame.number] = { number = request.number, time = frame.time - request.time }
+  responses[request.number] = responses[request.number] or {}
+  table.insert(responses[request.number], frame.number)
 end
 
 -- Notes a frame when it is seen for the first time. That can be in the second pass: tshark's first one may have no fields.
