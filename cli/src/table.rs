@@ -146,7 +146,7 @@ fn refusal(origin: &Origin<'_>, decoded: &Decoded, room: usize) -> Vec<String> {
     let separator = if data.is_empty() { "" } else { ", data " };
     let mut lines = vec![format!("{what}{separator}{data}")];
     let notes = decoded.notes.iter().filter(|note| !note.is_about_value());
-    lines.extend(notes.flat_map(|Note { rule, text }| remark(rule, text, room)));
+    lines.extend(notes.flat_map(|Note { rule, text }| remark(rule.name(), text, room)));
     lines
 }
 
