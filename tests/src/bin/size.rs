@@ -9,7 +9,7 @@ use std::{env, io};
 use canspec_tests::bare::{Codec, Program, Settings, Size};
 
 /// The targets: this machine, and the processors of small devices if the toolchain has them.
-const TARGETS: [(&str, Option<&str>); 2] = [(ARCH, None), ("Cortex-M4", Some("thumbv7em-none-eabi"))];
+const TARGETS: [(&str, Option<&str>); 2] = [(ARCH, None), ("Cortex-M4F", Some("thumbv7em-none-eabihf"))];
 /// The optimizations, with their profiles.
 const PROFILES: [(&str, &str); 2] = [("z", "z"), ("3", "three")];
 
@@ -25,6 +25,11 @@ fn main() -> io::Result<()> {
     let columns = columns(&folder)?;
     let headings: Vec<_> = columns.iter().map(|column| column.heading.as_str()).collect();
     println!("Bytes of code + constants, beyond those of an empty program.\n");
+    for (name, target) in missing() {
+        println!(
+            "SKIPPED: {name}, for which the toolchain has no {target}; `rustup target add {target}` installs it\n"
+        );
+    }
     println!("| | {} |\n|---|{}", headings.join(" | "), "---:|".repeat(headings.len()));
     for (name, program) in programs() {
         let cells: io::Result<Vec<_>> = columns.iter().map(|column| cell(&program, &folder, column)).collect();
@@ -43,6 +48,11 @@ fn columns(folder: &Path) -> io::Result<Vec<Column>> {
         })
     });
     columns.collect()
+}
+
+/// Returns the targets that the toolchain lacks, each with its name.
+fn missing() -> impl Iterator<Item = (&'static str, &'static str)> {
+    TARGETS.into_iter().filter_map(|(name, target)| Some((name, target.filter(|target| !is_installed(target))?)))
 }
 
 /// Returns the programs to measure, each with its name.
