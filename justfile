@@ -29,7 +29,7 @@ peers:
 editor:
     .ci/editor
 
-# A table of mistakes, planted one after the other in a copy of the sources, and of the tests that find them; words choose among them.
+# Mistakes, planted one after the other in a copy of the sources, and the tests that find them; words choose among them.
 mutants *words:
     cargo run --quiet --package canspec-mutants -- {{words}}
 

@@ -1,42 +1,39 @@
 //! Plants one mistake after the other in a copy of the sources, and proves that the tests find each.
 //!
-//! With words as arguments, only the mistakes whose parts and titles have them all.
+//! The mistakes are made from the syntax of the sources. With words as arguments, only those whose part, file and line of
+//! output have them all; with `--since REVISION`, only those in functions that have changed; with `--at-most NUMBER`, so many of
+//! each part; with `--list`, none is planted.
 #![expect(clippy::print_stdout, reason = "the table is what people call it for")]
 
+mod accepted;
+mod before;
+mod choice;
 mod copy;
-mod list;
+mod mistake;
+mod part;
+mod plant;
+mod source;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::{env, io, thread};
 
+use accepted::Accepted;
+use choice::Choice;
 use copy::{Copy, Verdict};
-use list::Mutant;
+use part::{PARTS, Part};
+use source::{Place, Source};
 
-/// A part of the sources, and the cheapest tests that find mistakes in it.
-struct Group {
-    name: &'static str,
-    mutants: &'static str,
-    tests: &'static [&'static str],
+/// What became of the mistakes of a part.
+#[derive(Default)]
+struct Counts {
+    planted: usize,
+    no_rust: usize,
+    accepted: usize,
+    survived: usize,
+    /// Lines of the list of accepted survivors that no survivor needs.
+    needless: usize,
 }
-
-const GROUPS: [Group; 3] = [
-    Group {
-        name: "runtime",
-        mutants: include_str!("../lists/runtime.txt"),
-        tests: &["--package", "canspec-runtime", "--lib"],
-    },
-    Group {
-        name: "interpreter",
-        mutants: include_str!("../lists/interpreter.txt"),
-        tests: &["--package", "canspec-codegen", "--test", "interpreter"],
-    },
-    Group {
-        name: "emitter",
-        mutants: include_str!("../lists/emitter.txt"),
-        tests: &["--manifest-path", "tests/downstream/Cargo.toml", "--test", "*"],
-    },
-];
 
 fn main() -> ExitCode {
     match all_are_found() {
@@ -50,53 +47,90 @@ fn main() -> ExitCode {
 }
 
 fn all_are_found() -> io::Result<bool> {
+    let choice = Choice::from_arguments()?;
     let folder = env::current_exe()?.with_file_name("mutated");
-    println!("| part | mistake | found by |\n|---|---|---|");
-    let verdicts = thread::scope(|scope| {
-        let groups = GROUPS.each_ref().map(|group| scope.spawn(|| verdicts(group, &folder.join(group.name))));
-        groups.map(|group| group.join().expect("a group does not panic")).into_iter().collect::<io::Result<Vec<_>>>()
+    let counts = thread::scope(|scope| {
+        let counts = PARTS.each_ref().map(|part| scope.spawn(|| counts(part, &choice, &folder.join(part.name))));
+        counts.map(|counts| counts.join().expect("a part does not panic")).into_iter().collect::<io::Result<Vec<_>>>()
     })?;
-    let verdicts = verdicts.concat();
-    let unfound = verdicts.iter().filter(|verdict| !matches!(verdict, Verdict::Found(_))).count();
-    println!("\n{} mistakes, {unfound} of them not found.", verdicts.len());
-    Ok(unfound == 0)
+    match &choice.since {
+        _ if choice.is_list => {}
+        Some(since) if counts.iter().all(|counts| counts.planted == 0) => {
+            println!("no function in which mistakes are planted has changed since {since}");
+        }
+        _ => print(&counts),
+    }
+    Ok(counts.iter().all(|counts| counts.survived == 0 && counts.needless == 0))
 }
 
-/// Plants the mistakes of a group, and prints a row for each.
-fn verdicts(group: &Group, folder: &Path) -> io::Result<Vec<Verdict>> {
-    let is_wanted =
-        |mutant: &Mutant| env::args().skip(1).all(|word| group.name.contains(&word) || mutant.mistake.contains(&word));
-    let mutants: Vec<_> = list::parse(group.mutants)?.into_iter().filter(is_wanted).collect();
-    if mutants.is_empty() {
-        return Ok(Vec::new());
+fn print(counts: &[Counts]) {
+    println!("\n| part | planted | no Rust | found | accepted | survived |\n|---|---:|---:|---:|---:|---:|");
+    for (part, Counts { planted, no_rust, accepted, survived, .. }) in PARTS.iter().zip(counts) {
+        let found = planted - no_rust - accepted - survived;
+        println!("| {} | {planted} | {no_rust} | {found} | {accepted} | {survived} |", part.name);
     }
-    let copy = Copy::new(&root(), folder, group.tests)?;
-    copy.check()?;
-    let verdict = |mutant: &Mutant| {
-        let verdict = copy.verdict(mutant)?;
-        println!("| {} | {} | {verdict} |", group.name, mutant.mistake);
-        Ok(verdict)
-    };
-    mutants.iter().map(verdict).collect()
+}
+
+/// Plants the mistakes of a part, and prints a line for each.
+fn counts(part: &'static Part, choice: &Choice, folder: &Path) -> io::Result<Counts> {
+    let accepted = Accepted::read(&root().join("tests/mutants/accepted").join(part.name).with_extension("txt"))?;
+    let sources = Source::all(part, &root())?;
+    let wanted = choice.of(part, &root(), &sources, &accepted)?;
+    if choice.is_list {
+        wanted.iter().map(|place| place.mistake).for_each(|mistake| println!("{}: {mistake}", part.name));
+        return Ok(Counts::default());
+    }
+    let mut counts = Counts::default();
+    if !wanted.is_empty() {
+        let copy = Copy::new(&root(), folder, part)?;
+        sources.iter().try_for_each(|source| source.print(&copy))?;
+        copy.check()?;
+        let survivors = survivors(&wanted, &copy, &accepted, &mut counts)?;
+        if choice.is_everything() {
+            counts.needless = needless(part, &accepted, &survivors);
+        }
+    }
+    Ok(counts)
+}
+
+fn survivors<'a>(
+    wanted: &'a [Place<'a>],
+    copy: &Copy,
+    accepted: &Accepted,
+    counts: &mut Counts,
+) -> io::Result<Vec<&'a Place<'a>>> {
+    let mut survivors = Vec::new();
+    for place in wanted {
+        let verdict = place.verdict(copy)?;
+        let is_accepted = accepted.has(place.mistake);
+        println!("{}: {}: {verdict}", copy.part.name, place.mistake);
+        counts.add(&verdict, is_accepted);
+        if verdict == Verdict::Survived {
+            survivors.push(place);
+        }
+    }
+    Ok(survivors)
+}
+
+impl Counts {
+    fn add(&mut self, verdict: &Verdict, is_accepted: bool) {
+        self.planted += 1;
+        match verdict {
+            Verdict::Found(_) => {}
+            Verdict::DoesNotCompile => self.no_rust += 1,
+            Verdict::Survived if is_accepted => self.accepted += 1,
+            Verdict::Survived => self.survived += 1,
+        }
+    }
+}
+
+/// Prints the accepted survivors that do not survive, and counts them.
+fn needless(part: &Part, accepted: &Accepted, survivors: &[&Place<'_>]) -> usize {
+    let lines = accepted.needless(survivors);
+    lines.map(|line| println!("{}: no mistake needs this line: {line}", part.name)).count()
 }
 
 /// Returns the folder of the workspace.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{GROUPS, list, root};
-
-    #[test]
-    fn each_mistake_has_its_place_in_the_sources() {
-        for group in GROUPS {
-            for mutant in list::parse(group.mutants).expect("the list can be read") {
-                if let Err(error) = mutant.planted(&root()) {
-                    panic!("{error}");
-                }
-            }
-        }
-    }
 }
