@@ -10,7 +10,7 @@ ci:
 
 # A table of how many bytes generated code takes.
 size:
-    cargo run --quiet --package canspec-tests --bin size
+    cargo run --quiet --bin size
 
 # Time the generated codecs beside a hand-written one and dbc-codegen; valgrind counts the instructions.
 bench:
@@ -18,7 +18,7 @@ bench:
 
 # Look for inputs that break `front_end` or `frames`, guided by coverage, for so many seconds.
 fuzz target seconds="600":
-    cargo run --quiet --package canspec-tests --bin seeds -- target/fuzz
+    cargo run --quiet --bin seeds -- target/fuzz
     cd tests && cargo fuzz run --sanitizer none {{target}} ../target/fuzz/{{target}} -- -max_total_time={{seconds}}
 
 # The comparison with other people's programs.
@@ -31,7 +31,7 @@ editor:
 
 # Mistakes, planted one after the other in a copy of the sources, and the tests that find them; words choose among them.
 mutants *words:
-    cargo run --quiet --package canspec-mutants -- {{words}}
+    cargo run --quiet --bin canspec-mutants -- {{words}}
 
 # Rewrite the expected outputs: generated code, diagnostics, whole commands. Read the difference before you commit it.
 bless:
