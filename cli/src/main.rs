@@ -1,5 +1,7 @@
 //! The command `canspec`: checks CAN protocol specs, compiles them to Rust, decodes and encodes logs.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 mod capture;
 mod check;
 mod columns;

@@ -3,6 +3,8 @@
 //! [`compile`] runs the stages in order: source, syntax, lint, resolve, check. Each reports all its errors before the next one starts.
 //! The [`model::Protocol`] it returns serves the interpreter ([`interpret`]) and the emitters ([`emit`]).
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 mod builder;
 pub mod check;
 pub mod diagnostic;

@@ -39,7 +39,7 @@ impl Piece {
     pub const fn limits(self, minimum: u64, maximum: u64) -> Self {
         match self {
             Self::Number { place, digits, .. } => Self::Number { place, digits, limits: (minimum, maximum) },
-            other => other,
+            other @ (Self::Literal(_) | Self::Text(_)) => other,
         }
     }
 

@@ -150,7 +150,12 @@ fn whole(meaning: Meaning<'_>) -> Option<i128> {
     match meaning {
         Meaning::Number(Number::Unsigned(number)) => Some(number.into()),
         Meaning::Number(Number::Signed(number)) => Some(number.into()),
-        _ => None,
+        Meaning::Number(_)
+        | Meaning::Name(_)
+        | Meaning::Text(_)
+        | Meaning::Packed(_)
+        | Meaning::Status(..)
+        | Meaning::None => None,
     }
 }
 

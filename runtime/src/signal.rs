@@ -367,12 +367,12 @@ impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
             }
             return self.put(raw, payload);
         }
-        match meaning {
-            Meaning::Number(number) if R::IS_NUMBER => {
-                encode_scaled(self, self.exact_scale(), F::nearest(number), payload)
-            }
-            _ => Err(self.meaningless(payload)),
+        if let Meaning::Number(number) = meaning
+            && R::IS_NUMBER
+        {
+            return encode_scaled(self, self.exact_scale(), F::nearest(number), payload);
         }
+        Err(self.meaningless(payload))
     }
 }
 

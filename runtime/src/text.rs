@@ -78,10 +78,8 @@ impl<const N: usize> Raw for Text<N> {
     }
 
     fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
-        match meaning {
-            Meaning::Text(text) => Self::new(text),
-            _ => None,
-        }
+        let Meaning::Text(text) = meaning else { return None };
+        Self::new(text)
     }
 }
 

@@ -12,7 +12,7 @@ pub fn format<W: Word>(word: W, formatter: Formatter<'_>) {
         Meaning::Name(name) => write!(formatter, "{=str}", name),
         Meaning::Packed(text) => write!(formatter, "{}", Display2Format(&text)),
         Meaning::Status(raw, bits) => set_bits(raw, bits, formatter),
-        _ => write!(formatter, "{=u64:#X}", word.to_bits()),
+        Meaning::Number(_) | Meaning::Text(_) | Meaning::None => write!(formatter, "{=u64:#X}", word.to_bits()),
     }
 }
 

@@ -42,7 +42,12 @@ pub fn serialize<W: Word, S: Serializer>(word: W, serializer: S) -> Result<S::Ok
             let unknown = status::unknown(raw, bits);
             StatusParts { set: Set::<W>(raw & !unknown, PhantomData), unknown }.serialize(serializer)
         }
-        _ => serializer.serialize_u64(word.to_bits()),
+        Meaning::Number(_)
+        | Meaning::Name(_)
+        | Meaning::Text(_)
+        | Meaning::Packed(_)
+        | Meaning::Status(..)
+        | Meaning::None => serializer.serialize_u64(word.to_bits()),
     }
 }
 

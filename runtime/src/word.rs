@@ -123,7 +123,7 @@ impl<W: Word> Raw for W {
             Meaning::Name(name) => names::<W>().iter().find(|(_, other)| *other == name).map(|(value, _)| *value),
             Meaning::Text(text) => packed::parse(text),
             Meaning::Status(raw, _) => Some(W::from_bits(raw)),
-            _ => None,
+            Meaning::Number(_) | Meaning::Packed(_) | Meaning::None => None,
         }
     }
 }

@@ -48,7 +48,7 @@ impl Story {
     fn value(&self, position: usize) -> Option<u16> {
         self.items.iter().rev().find_map(|item| match item {
             Item::Value(known, value) if *known == position => Some(*value),
-            _ => None,
+            Item::Value(..) | Item::Error(_) | Item::Unlisted => None,
         })
     }
 
