@@ -244,3 +244,66 @@ impl Planner<'_> {
         Some(Choice::By { selector, place: self.selectors[selector].place, cases, otherwise })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::model::{FrameId, Protocol, SelectorPlace};
+    use crate::source::Source;
+
+    /// Two messages of one command, told apart by their first byte, and a short one of another command.
+    const SPEC: &str = r#"
+canspec: 1
+protocol: meter
+title: Meters
+document: {title: Meters, version: "1"}
+length: 8
+identifier: {command: {bits: 10..5}, node: {bits: 4..0}}
+types:
+  meter: {range: 1..9}
+addressing:
+  single: {request: {node: meter}}
+access:
+  set: {request: {}, answers: {single: nobody}}
+messages:
+  one: {section: "1", match: {command: 1}, access: [set], fields: {kind: {bytes: 0, const: 1}, value: {bytes: 1}}}
+  two: {section: "1", match: {command: 1}, access: [set], fields: {kind: {bytes: 0, const: 2}, value: {bytes: 1}}}
+  short: {section: "1", match: {command: 2}, length: 2, access: [set], fields: {value: {bytes: 1}}}
+"#;
+
+    fn meters() -> Protocol {
+        crate::compile(Source::new("meter.yaml", SPEC.into()).expect("plain text")).protocol.expect("no errors")
+    }
+
+    /// Returns the names of the frames that the plan finds for a command and a first byte.
+    fn found(protocol: &Protocol, command: u64, first: u64) -> Vec<&str> {
+        let read = |place: SelectorPlace| match place {
+            SelectorPlace::Identifier(_) => command,
+            SelectorPlace::Payload(_) => first,
+        };
+        let group = protocol.recognition.requests.choice.as_ref().and_then(|choice| choice.find(read));
+        let frames = group.and_then(|group| group.choice.as_ref()?.find(read));
+        let name = |frame: &FrameId| protocol[protocol[*frame].message].name.as_str();
+        frames.map_or(Vec::new(), |frames| frames.iter().map(name).collect())
+    }
+
+    #[test]
+    fn a_frame_is_found_by_its_constants_and_by_no_others() {
+        let meters = meters();
+        assert_eq!(found(&meters, 1, 1), ["one"]);
+        assert_eq!(found(&meters, 1, 2), ["two"]);
+        assert_eq!(found(&meters, 2, 7), ["short"]);
+        assert_eq!(found(&meters, 1, 3), [""; 0]);
+        assert_eq!(found(&meters, 3, 1), [""; 0]);
+    }
+
+    #[test]
+    fn a_group_knows_the_lengths_of_its_frames() {
+        let meters = meters();
+        let group = |command| {
+            let choice = meters.recognition.requests.choice.as_ref().expect("there are requests");
+            choice.find(|_| command).expect("there is such a command")
+        };
+        assert!(group(1).of_length(8).is_some() && group(1).of_length(2).is_none());
+        assert!(group(2).of_length(2).is_some() && group(2).of_length(8).is_none());
+    }
+}
