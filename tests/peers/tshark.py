@@ -139,6 +139,11 @@ def rounded(number):
     return f"{float(number):.15g}"
 
 
+def whole_or_rounded(number):
+    """Writes a double as texts of the dissector have it: a whole number with all its digits."""
+    return f"{number:.0f}" if number.is_integer() and abs(number) < 2**53 else rounded(number)
+
+
 def signal_fields(name, signal):
     """Returns the fields of a signal, and its value as it stands in the list of packets."""
     if "set" in signal:
@@ -147,8 +152,8 @@ def signal_fields(name, signal):
     raw, value = signal["raw"], signal["value"]
     if value is None:
         return {f"{name}.raw": str(raw)}, "?"
-    text = rounded(value) if isinstance(value, float) else str(value)
-    fields = {name: text, f"{name}.raw": str(raw)}
+    fields = {name: rounded(value) if isinstance(value, float) else str(value), f"{name}.raw": str(raw)}
+    text = whole_or_rounded(value) if isinstance(value, float) else str(value)
     return fields, text + (f" {signal['unit']}" if "unit" in signal and not isinstance(value, str) else "")
 
 
@@ -158,8 +163,8 @@ OF_VALUES = ("unknown_value", "unknown_bit", "out_of_range", "not_finite")
 
 def refusal(line):
     """Returns what stands in place of the values of a frame that reports an error, if it is one."""
-    why = [note["text"] for note in line["notes"] if note["rule"] == "error_code"]
-    what = {"reply": "refused", "report": "in error"}.get(line["kind"])
+    why = [note["text"] for note in line.get("notes", []) if note["rule"] == "error_code"]
+    what = {"reply": "refused", "report": "in error"}.get(line.get("kind"))
     return f"{what}, {why[0]}" if what and why else None
 
 
@@ -226,7 +231,8 @@ def difference(line, row, dissector):
         return f"decode {sorted(wanted.items() - shown.items())}, tshark {sorted(shown.items() - wanted.items())}"
     if info and row.get("_ws.col.Info") != info:
         return f"decode {info!r}, tshark {row.get('_ws.col.Info')!r}"
-    texts = [note["text"] for note in line.get("notes", []) if note["rule"] in SAME_TEXTS]
+    same = [rule for rule in SAME_TEXTS if rule not in OF_VALUES or not refusal(line)]
+    texts = [note["text"] for note in line.get("notes", []) if note["rule"] in same]
     missing = [text for text in texts if text not in row.get("_ws.expert.message", "")]
     if missing:
         return f"decode {missing}, tshark {row.get('_ws.expert.message')!r}"
