@@ -13,9 +13,11 @@ fn main() {
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets it"));
     let mut list = Protocols::default();
     for (name, path) in specs(&root.join("../specs")) {
-        let visit = visit(&format!("canspec_protocols::{name}"), &path);
+        let module = format!("canspec_protocols::{name}");
+        let visit = visit(&module, &path);
         list.visits.push_str(&visit);
         list.switched.push_str(&visit);
+        list.signals(&module, &generate(&path, &Options::default()));
     }
     // A whole protocol may have numbers that single precision misses.
     let folders = [
@@ -28,8 +30,10 @@ fn main() {
             let module = format!("{kind}_{name}");
             let switched = format!("{module}_switched");
             for (module, options) in [(&module, Options::default()), (&switched, every_option(float))] {
-                fs::write(out.join(format!("{module}.rs")), generate(&path, &options)).expect("OUT_DIR can be written");
+                let code = generate(&path, &options);
                 list.module(module, &path);
+                list.signals(module, &code);
+                fs::write(out.join(format!("{module}.rs")), code).expect("OUT_DIR can be written");
             }
             list.visits.push_str(&visit(&module, &path));
             list.switched.push_str(&visit(&switched, &path));
@@ -76,6 +80,7 @@ struct Protocols {
     modules: String,
     visits: String,
     switched: String,
+    signals: String,
 }
 
 impl Protocols {
@@ -89,13 +94,32 @@ impl Protocols {
         );
     }
 
+    /// Lists the signals of a module in the order of the spec, so that tests can write them.
+    fn signals(&mut self, module: &str, code: &str) {
+        let mut owner = "";
+        let _ = write!(
+            self.signals,
+            "impl Signals for {module}::Message {{\n    const SIGNALS: &'static [&'static dyn WriteSignal] = &["
+        );
+        for line in code.lines() {
+            if let Some(block) = line.strip_prefix("impl ").and_then(|rest| rest.strip_suffix(" {")) {
+                owner = block;
+            } else if let Some((name, _)) =
+                line.strip_prefix("    pub const ").and_then(|rest| rest.split_once(": Signal<"))
+            {
+                let _ = write!(self.signals, "&{module}::{owner}::{name}, ");
+            }
+        }
+        self.signals.push_str("];\n}\n");
+    }
+
     fn finish(self) -> String {
         format!(
-            "{}\n/// Shows every protocol to a visitor, with the path of its spec.\n\
+            "{}\n{}\n/// Shows every protocol to a visitor, with the path of its spec.\n\
              pub fn visit(visitor: &mut impl Visitor) {{\n{}}}\n\
              \n/// Shows every protocol that has the optional traits to a visitor, with the path of its spec.\n\
              pub fn visit_switched(visitor: &mut impl SwitchedVisitor) {{\n{}}}\n",
-            self.modules, self.visits, self.switched
+            self.modules, self.signals, self.visits, self.switched
         )
     }
 }

@@ -3,31 +3,27 @@
 use crate::{AnySignal, Data, Error, Payload};
 
 /// What a kind of frame carries.
-pub trait Layout {
+pub trait Layout: Sized + 'static {
+    /// The signals, by first byte.
+    const SIGNALS: &'static [&'static dyn AnySignal];
     /// Takes the values out of the data of such a frame.
-    fn decode(data: &Data) -> Self
-    where
-        Self: Sized;
+    const DECODE: Decode<Self>;
+    /// Writes the values into data.
+    const ENCODE: Encode<Self>;
+
+    /// Takes the values out of the data of such a frame.
+    fn decode(data: &Data) -> Self {
+        Self::DECODE(data)
+    }
 
     /// Writes the values into data.
     ///
     /// # Errors
     ///
     /// Refuses what the signals cannot hold, and what lies outside their limits if `payload` keeps to them.
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error>;
-
-    /// Returns the signals, by first byte.
-    fn signals(&self) -> &'static [&'static dyn AnySignal];
-}
-
-/// A layout of one signal, from which [`Layout`] follows.
-pub trait Single: Sized + 'static {
-    /// The signal.
-    const SIGNAL: &'static dyn AnySignal;
-    /// Takes its value out of the data.
-    const DECODE: Decode<Self>;
-    /// Writes its value into data.
-    const ENCODE: Encode<Self>;
+    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
+        Self::ENCODE(self, payload)
+    }
 }
 
 /// As [`Layout::decode`].
@@ -36,29 +32,38 @@ pub type Decode<T> = fn(&Data) -> T;
 /// As [`Layout::encode`].
 pub type Encode<T> = fn(&T, &mut Payload) -> Result<(), Error>;
 
-impl<T: Single> Layout for T {
-    fn decode(data: &Data) -> Self {
-        Self::DECODE(data)
-    }
+/// Frames without signals.
+impl Layout for () {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[];
+    const DECODE: Decode<Self> = |_| ();
+    const ENCODE: Encode<Self> = |(), _| Ok(());
+}
 
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::ENCODE(self, payload)
-    }
+/// What is done with the values of a message, whichever it is; each task has code of its own, so that reading does not
+/// link writing.
+pub trait Task {
+    /// What comes out.
+    type Output;
 
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        const { &[Self::SIGNAL] }
+    /// Does it.
+    fn run<L: Layout>(self, values: &L) -> Self::Output;
+}
+
+/// Returns the signals.
+pub struct Signals;
+
+impl Task for Signals {
+    type Output = &'static [&'static dyn AnySignal];
+
+    fn run<L: Layout>(self, _: &L) -> Self::Output {
+        L::SIGNALS
     }
 }
 
-/// Frames without signals.
-impl Layout for () {
-    fn decode(_: &Data) {}
+impl Task for &mut Payload {
+    type Output = Result<(), Error>;
 
-    fn encode(&self, _: &mut Payload) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[]
+    fn run<L: Layout>(self, values: &L) -> Self::Output {
+        values.encode(self)
     }
 }

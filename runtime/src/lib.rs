@@ -30,9 +30,12 @@ mod packed;
 mod payload;
 mod physical;
 mod place;
+#[doc(hidden)]
+pub mod plumbing;
 pub mod prelude;
 mod protocol;
 mod raw;
+mod received;
 mod reply;
 mod request;
 mod scale;
@@ -50,37 +53,26 @@ pub mod with_defmt;
 pub mod with_serde;
 mod word;
 
-pub use address::{Address, AddressType, Addressing, Kind, Mode, Pattern, Who};
-#[cfg(feature = "arbitrary")]
-#[doc(hidden)]
-pub use arbitrary;
-#[cfg(feature = "defmt")]
-#[doc(hidden)]
-pub use defmt;
+pub use address::{AddressType, Addressing, Kind, Mode};
 pub use embedded_can;
 pub use entry::Entry;
 pub use error::Error;
 pub use filter::{Filter, Selector};
 pub use frame::Frame;
-pub use layout::{Decode, Encode, Layout, Single};
+pub use layout::Layout;
 pub use number::Number;
-pub use packed::{Packed, PackedText, Piece, left_aligned, right_aligned};
+pub use packed::PackedText;
 pub use payload::Payload;
-pub use physical::Physical;
-pub use place::{Bits, ByteOrder, Data, Place};
-pub use protocol::{IdentifierFields, Problem, Protocol, Received, Recognised};
-pub use raw::{Integer, Meaning, Raw};
+pub use place::{Bits, Data, Place};
+pub use protocol::{IdentifierFields, Problem, Protocol};
+pub use raw::Meaning;
+pub use received::Received;
 pub use reply::{Failure, Reply};
 pub use request::{Destination, Exchange, Replies, Request, Route};
-pub use scale::{Scale, nearest};
-#[cfg(feature = "serde")]
-#[doc(hidden)]
-pub use serde;
-pub use set::{Continuation, FrameSet};
-pub use signal::{AnySignal, Reading, Signal};
+pub use set::FrameSet;
+pub use signal::{AnySignal, Reading, Signal, WriteSignal};
 pub use status::{Severity, StatusBit};
 pub use text::Text;
-pub use word::{Legend, Named, StatusWord, Word};
 
 /// Includes the code that a build script generated for a protocol, as the content of a module.
 ///

@@ -2,7 +2,8 @@
 
 use core::fmt::{self, Write};
 
-use crate::{Data, Legend, Place, Raw, Word};
+use crate::plumbing::{Legend, Raw, Word};
+use crate::{Data, Place};
 
 /// A piece of a packed value's text; places count from the first byte of the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,29 +87,6 @@ fn bytes(place: Place) -> usize {
     usize::from(place.width() / 8)
 }
 
-/// A packed value: a struct of parts that is written as one text.
-pub trait Packed: Word<Raw = u64> {
-    /// Returns the text of the value, or `None` if that text would not give the same value.
-    fn text(self) -> Option<PackedText> {
-        text(self)
-    }
-
-    /// Writes the parts in the documented form, be the text exact or not.
-    ///
-    /// # Errors
-    ///
-    /// Passes on what the formatter returns.
-    fn write(self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Legend::Text(bytes, pieces) = Self::LEGEND else { return Ok(()) };
-        PackedText { data: left_aligned(self.raw(), bytes), pieces }.write(formatter)
-    }
-
-    /// Reads a text of the documented form.
-    fn parse(text: &str) -> Option<Self> {
-        parse(text)
-    }
-}
-
 /// The text of a packed value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PackedText {
@@ -138,8 +116,14 @@ impl PackedText {
 /// Writes a packed value, if its text gives the same value.
 pub(crate) fn text<W: Word>(value: W) -> Option<PackedText> {
     let Legend::Text(bytes, pieces) = W::LEGEND else { return None };
-    let text = PackedText { data: left_aligned(value.raw().to_bits(), bytes), pieces };
+    let text = PackedText { data: left_aligned(value.to_bits(), bytes), pieces };
     text.is_exact().then_some(text)
+}
+
+/// Writes the parts of a packed value in the documented form, be the text exact or not.
+pub(crate) fn write<W: Word>(value: W, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let Legend::Text(bytes, pieces) = W::LEGEND else { return Ok(()) };
+    PackedText { data: left_aligned(value.to_bits(), bytes), pieces }.write(formatter)
 }
 
 /// Reads a packed value.
@@ -224,34 +208,30 @@ mod tests {
                 Piece::digits(Self::SUFFIX, 4).limits(0, 9_999),
             ],
         );
-
-        fn from_raw(raw: u64) -> Self {
+        const FROM_RAW: fn(u64) -> Self = |raw| {
             let data = left_aligned(raw, 8);
             let [number, suffix] = [Self::NUMBER.get(&data), Self::SUFFIX.get(&data)];
             Self { letter: Self::LETTER.read(&data), number, suffix: Raw::from_bits(suffix) }
-        }
-
-        fn raw(self) -> u64 {
+        };
+        const RAW: fn(Self) -> u64 = |barcode| {
             let mut data = [0; 8];
-            Self::LETTER.write(self.letter, &mut data);
-            Self::NUMBER.write(self.number, &mut data);
-            Self::SUFFIX.write(self.suffix, &mut data);
+            Self::LETTER.write(barcode.letter, &mut data);
+            Self::NUMBER.write(barcode.number, &mut data);
+            Self::SUFFIX.write(barcode.suffix, &mut data);
             right_aligned(data, 8)
-        }
+        };
     }
-
-    impl Packed for Barcode {}
 
     /// 0x130C15A3FB is 81807123451, 0x06A8 is 1704, 0x56 is `V`.
     const PRINTED: u64 = 0x5613_0C15_A3FB_06A8;
 
     #[test]
     fn a_barcode_is_written_and_read_as_printed() {
-        let barcode = Barcode::from_raw(PRINTED);
+        let barcode = Barcode::FROM_RAW(PRINTED);
         assert_eq!((barcode.number, barcode.suffix), (81_807_123_451, 1704));
         assert_eq!(barcode.text().map(|text| text.to_string()).as_deref(), Some("081807123451V1704"));
         assert_eq!(Barcode::parse("081807123451V1704"), Some(barcode));
-        assert_eq!(barcode.raw(), PRINTED);
+        assert_eq!(barcode.to_bits(), PRINTED);
     }
 
     #[test]
@@ -265,18 +245,18 @@ mod tests {
 
     #[test]
     fn a_value_that_its_text_would_not_give_has_none() {
-        assert_eq!(Barcode::from_raw(0x5613_0C15_A3FB_2710).text(), None);
-        assert_eq!(Barcode::from_raw(0x00FF_FFFF_FFFF_0000).text(), None);
-        assert_eq!(Barcode::from_raw(u64::MAX).text(), None);
+        assert_eq!(Barcode::FROM_RAW(0x5613_0C15_A3FB_2710).text(), None);
+        assert_eq!(Barcode::FROM_RAW(0x00FF_FFFF_FFFF_0000).text(), None);
+        assert_eq!(Barcode::FROM_RAW(u64::MAX).text(), None);
     }
 
     #[test]
     fn a_part_that_does_not_fit_is_refused() {
         const SIGNAL: Signal<Barcode> = Signal::new("value", Place::bytes(0, 7));
         let mut payload = Payload::new("barcode", [0; 8]);
-        let barcode = Barcode { number: 1 << 40, ..Barcode::from_raw(PRINTED) };
+        let barcode = Barcode { number: 1 << 40, ..Barcode::FROM_RAW(PRINTED) };
         assert!(SIGNAL.put(barcode, &mut payload).is_err());
-        assert_eq!(SIGNAL.put(Barcode::from_raw(u64::MAX), &mut payload), Ok(()));
+        assert_eq!(SIGNAL.put(Barcode::FROM_RAW(u64::MAX), &mut payload), Ok(()));
         assert_eq!(payload.data(), &[0xFF; 8]);
     }
 }

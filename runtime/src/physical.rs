@@ -1,11 +1,62 @@
 //! The types of physical values.
 
-use crate::{Number, Raw, Scale};
+use crate::plumbing::Scale;
+use crate::raw::{Integer, Raw};
+use crate::{Error, Meaning, Number, Payload, Signal};
+
+/// The type of the physical values and of the limits of a signal whose raw values have the type `R`: that type itself, so
+/// that integers are compared as integers, or a floating-point type where there is a scale or a limit with a fraction.
+pub trait Physical<R: Raw>: Copy + 'static {
+    /// Returns the physical value of a raw one.
+    fn of(raw: R, scale: Option<Scale>) -> Self;
+
+    /// Returns the number.
+    fn number(self) -> Number;
+
+    /// Tests whether this is neither infinite nor no number at all.
+    fn is_finite(self) -> bool;
+
+    /// Tests whether this lies inside limits, which are legal, as precisely as raw values can meet them.
+    fn is_within(self, minimum: Self, maximum: Self) -> bool;
+
+    /// Writes the raw value nearest to a number.
+    ///
+    /// # Errors
+    ///
+    /// As [`Signal::put`].
+    fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error>;
+}
+
+impl<R: Raw + 'static> Physical<R> for R {
+    #[inline]
+    fn of(raw: R, _: Option<Scale>) -> Self {
+        raw
+    }
+
+    #[inline]
+    fn number(self) -> Number {
+        Raw::number(self)
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        Raw::is_finite(self)
+    }
+
+    #[inline]
+    fn is_within(self, minimum: Self, maximum: Self) -> bool {
+        Raw::is_within(self, minimum, maximum)
+    }
+
+    fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
+        signal.write_unscaled(number, payload)
+    }
+}
 
 /// The type of scaled physical values: `f64`, or `f32` for processors that calculate in single precision only.
 ///
 /// Each calculates in its own precision alone.
-pub trait Physical: Copy + PartialOrd + Sealed + 'static {
+pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// Returns the physical value of `raw`.
     fn scaled(raw: i64, scale: Scale) -> Self;
 
@@ -18,9 +69,6 @@ pub trait Physical: Copy + PartialOrd + Sealed + 'static {
     /// Returns the number.
     fn number(self) -> Number;
 
-    /// Tests whether this is neither infinite nor no number at all.
-    fn is_finite(self) -> bool;
-
     /// Tests whether this is no number at all.
     fn is_nan(self) -> bool;
 
@@ -29,14 +77,14 @@ pub trait Physical: Copy + PartialOrd + Sealed + 'static {
     fn limit<R: Raw>(self) -> Self;
 }
 
-/// Keeps the types of physical values to the two that the rules on scales know.
+/// Keeps the types of scaled physical values to the two that the rules on scales know.
 pub trait Sealed {}
 
 impl Sealed for f32 {}
 
 impl Sealed for f64 {}
 
-impl Physical for f64 {
+impl Scaled for f64 {
     #[inline]
     fn scaled(raw: i64, scale: Scale) -> Self {
         scale.physical(raw)
@@ -58,11 +106,6 @@ impl Physical for f64 {
     }
 
     #[inline]
-    fn is_finite(self) -> bool {
-        self.is_finite()
-    }
-
-    #[inline]
     fn is_nan(self) -> bool {
         self.is_nan()
     }
@@ -73,7 +116,7 @@ impl Physical for f64 {
     }
 }
 
-impl Physical for f32 {
+impl Scaled for f32 {
     #[inline]
     fn scaled(raw: i64, scale: Scale) -> Self {
         scale.physical_f32(raw)
@@ -95,11 +138,6 @@ impl Physical for f32 {
     }
 
     #[inline]
-    fn is_finite(self) -> bool {
-        self.is_finite()
-    }
-
-    #[inline]
     fn is_nan(self) -> bool {
         self.is_nan()
     }
@@ -107,5 +145,62 @@ impl Physical for f32 {
     #[inline]
     fn limit<R: Raw>(self) -> Self {
         self
+    }
+}
+
+macro_rules! scaled {
+    ($($type:ty, $raw:ident;)*) => {$(
+        impl<R: $raw> Physical<R> for $type {
+            #[inline]
+            fn of(raw: R, scale: Option<Scale>) -> Self {
+                match scale {
+                    Some(scale) => Scaled::scaled(raw.to_bits().cast_signed(), scale),
+                    None => Scaled::nearest(raw.number()),
+                }
+            }
+
+            #[inline]
+            fn number(self) -> Number {
+                Scaled::number(self)
+            }
+
+            #[inline]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+
+            #[inline]
+            fn is_within(self, minimum: Self, maximum: Self) -> bool {
+                let is_within = |minimum, maximum| (minimum..=maximum).contains(&self);
+                is_within(minimum, maximum) || is_within(minimum.limit::<R>(), maximum.limit::<R>())
+            }
+
+            fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
+                write(signal, number, payload)
+            }
+        }
+    )*};
+}
+
+// A raw `f32` is its own physical value in single precision.
+scaled! {
+    f64, Raw;
+    f32, Integer;
+}
+
+/// Writes a number by the scale, or as the raw value that it is.
+fn write<R: Raw, F: Physical<R> + Scaled>(
+    signal: &Signal<R, F>,
+    number: Number,
+    payload: &mut Payload,
+) -> Result<(), Error> {
+    match R::from_meaning(Meaning::Number(number)) {
+        Some(raw) if !signal.is_scaled() => {
+            if matches!(number, Number::Single(_) | Number::Float(_)) {
+                signal.check_asked(F::nearest(number), payload)?;
+            }
+            signal.put(raw, payload)
+        }
+        _ => signal.encode(F::nearest(number), payload),
     }
 }

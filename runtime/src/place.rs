@@ -1,6 +1,6 @@
 //! Where a signal stands: bits of a word, and words of the payload.
 
-use crate::Raw;
+use crate::plumbing::Raw;
 
 /// The eight data bytes of a classic CAN frame; a shorter frame leaves the last ones 0.
 pub type Data = [u8; 8];

@@ -1,17 +1,12 @@
-//! Recognising frames.
+//! Protocols: what generated code knows, and what it recognises.
 
 use core::fmt::{self, Debug};
-use core::mem::discriminant;
 
 use embedded_can::Frame as _;
 
 use crate::address::Rank;
-use crate::frame::classic;
-use crate::reply::{has_error, selected};
-use crate::{
-    Addressing, Data, Entry, Error, Exchange, Failure, Filter, Frame, Kind, Layout, Mode, Payload, Place, Reading,
-    Selector,
-};
+use crate::layout::Task;
+use crate::{Entry, Exchange, Filter, Frame, Kind, Mode};
 
 /// A protocol, implemented by the enum of its messages.
 pub trait Protocol: Copy + Debug + 'static {
@@ -48,17 +43,16 @@ pub trait Protocol: Copy + Debug + 'static {
         &[]
     }
 
-    /// Returns what the message carries.
-    fn layout(&self) -> &dyn Layout;
+    /// Runs a task on what the message carries.
+    fn run<T: Task>(&self, task: T) -> T::Output;
 }
 
 /// The identifier of a protocol, split into its fields.
 pub trait IdentifierFields: Copy + Debug + PartialEq {
     /// Splits an identifier.
-    fn from_raw(id: u32) -> Self;
-
+    const FROM_RAW: fn(u32) -> Self;
     /// Joins the fields; bits that a field cannot hold are dropped.
-    fn to_raw(self) -> u32;
+    const TO_RAW: fn(Self) -> u32;
 
     /// Tests whether an identifier belongs to somebody else on the bus.
     fn is_foreign(_: u32) -> bool {
@@ -75,9 +69,9 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
 /// A message out of a frame, and what sort of frame that is.
 #[derive(Clone, Copy, Debug)]
 pub struct Recognised<M> {
-    exchange: &'static Exchange,
-    kind: Kind,
-    message: M,
+    pub(crate) exchange: &'static Exchange,
+    pub(crate) kind: Kind,
+    pub(crate) message: M,
 }
 
 impl<M: Protocol> Recognised<M> {
@@ -108,7 +102,7 @@ impl<M: Protocol> Recognised<M> {
         (self.has_length_of(frame), is_of_model, addressing.map(|addressing| addressing.rank()))
     }
 
-    fn has_length_of(&self, frame: &Frame) -> bool {
+    pub(crate) fn has_length_of(&self, frame: &Frame) -> bool {
         usize::from(self.exchange.data_length()) == frame.length()
     }
 }
@@ -144,201 +138,6 @@ impl fmt::Display for Problem {
 
 impl core::error::Error for Problem {}
 
-/// A recognised frame.
-#[derive(Clone, Copy, Debug)]
-pub struct Received<P: Protocol> {
-    identifier: P::Identifier,
-    content: P,
-    exchange: &'static Exchange,
-    kind: Kind,
-    model: Option<u8>,
-    frame: Frame,
-}
-
-impl<P: Protocol> Received<P> {
-    /// Recognises a frame; of messages that look the same, as the first one that the spec lists.
-    ///
-    /// # Errors
-    ///
-    /// Says why the frame is not recognised; the tests come in the order of [`Problem`], except that selectors in the
-    /// data are looked at once the length is known to be right.
-    pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        Self::decode_by(None, frame)
-    }
-
-    /// Recognises a frame of a device model; of messages that look the same, as the one that the model has.
-    ///
-    /// # Errors
-    ///
-    /// As [`decode`](Self::decode).
-    pub fn decode_for(model: impl Into<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        Self::decode_by(Some(model.into()), frame)
-    }
-
-    fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        let frame = classic(frame).ok_or(Problem::Frame)?;
-        let is_request = is_to_module::<P>(&frame)?;
-        match if is_request { P::request(&frame, model) } else { P::reply(&frame, model) } {
-            Some(recognised) if recognised.has_length_of(&frame) => Ok(Self::new(recognised, model, frame)),
-            _ => Err(problem::<P>(is_request, &frame)),
-        }
-    }
-
-    fn new(recognised: Recognised<P>, model: Option<u8>, frame: Frame) -> Self {
-        let Recognised { exchange, kind, message: content } = recognised;
-        Self { identifier: P::Identifier::from_raw(frame.raw_id()), content, exchange, kind, model, frame }
-    }
-
-    /// Returns what a request asks for.
-    #[must_use]
-    pub fn request(&self) -> Option<&P> {
-        (self.kind == Kind::Request).then_some(&self.content)
-    }
-
-    /// Returns what a reply says, or [`Failure::Error`] for an error reply.
-    #[must_use]
-    pub fn reply(&self) -> Option<Result<&P, Failure>> {
-        let said = if self.is_error_reply() { Err(Failure::Error) } else { Ok(&self.content) };
-        (self.kind == Kind::Reply).then_some(said)
-    }
-
-    /// Returns what a report says, unless it shows an error code.
-    #[must_use]
-    pub fn report(&self) -> Option<&P> {
-        (self.kind == Kind::Report && !self.is_error_reply()).then_some(&self.content)
-    }
-
-    /// Returns what stands in the frame whatever its kind, for logs.
-    ///
-    /// That holds for an error reply too, whose values mean nothing unless the document says so.
-    pub const fn content(&self) -> &P {
-        &self.content
-    }
-
-    /// Returns the identifier.
-    pub const fn identifier(&self) -> P::Identifier {
-        self.identifier
-    }
-
-    /// Returns the same message under another identifier; [`encode`](Self::encode) makes the frame of it.
-    #[must_use]
-    pub const fn with_identifier(self, identifier: P::Identifier) -> Self {
-        Self { identifier, ..self }
-    }
-
-    /// Returns other values under the same identifier; [`encode`](Self::encode) makes the frame of them.
-    #[must_use]
-    pub const fn with_content(self, content: P) -> Self {
-        Self { content, ..self }
-    }
-
-    /// Returns the frame as it was received.
-    pub const fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    /// Returns what the frame is for.
-    pub const fn kind(&self) -> Kind {
-        self.kind
-    }
-
-    /// Returns how the message travels: its name, its access, its selectors.
-    pub const fn exchange(&self) -> &'static Exchange {
-        self.exchange
-    }
-
-    /// Returns the addressing mode that the identifier shows.
-    pub fn addressing(&self) -> Option<Addressing> {
-        self.exchange.addressing(P::MODES, self.kind, self.identifier.to_raw())
-    }
-
-    /// Tests whether the frame shows an error code towards the controller.
-    pub fn is_error_reply(&self) -> bool {
-        self.kind != Kind::Request && has_error::<P>(self.data_selectors(), &self.frame)
-    }
-
-    fn data_selectors(&self) -> &'static [Selector] {
-        self.exchange.filter(self.kind).map_or(&[], |filter| filter.data_selectors())
-    }
-
-    /// Returns the selectors in the data, each with its raw value.
-    pub fn selectors(&self) -> impl Iterator<Item = (&'static Selector, u64)> {
-        selected(self.data_selectors(), self.frame)
-    }
-
-    /// Shows the signals, by first byte; those of an error reply say so, and as a text have no value.
-    pub fn visit(&self, mut visitor: impl FnMut(Reading<'_>)) {
-        let is_of_error_reply = self.is_error_reply();
-        for signal in self.content.layout().signals() {
-            signal.read(&self.frame.bytes(), &mut |reading| visitor(Reading { is_of_error_reply, ..reading }));
-        }
-    }
-
-    /// Returns the set bits that neither signals nor selectors cover.
-    pub fn reserved(&self) -> Data {
-        let selectors = self.selectors().map(|(selector, _)| selector.place);
-        let signals = self.content.layout().signals().iter().map(|signal| signal.place());
-        selectors.chain(signals).fold(self.frame.bytes(), cleared)
-    }
-
-    /// Builds the frame anew, of [`identifier`](Self::identifier) and [`content`](Self::content).
-    ///
-    /// # Errors
-    ///
-    /// Refuses what the signals cannot hold and identifiers of another message; in a request also values outside their
-    /// limits, messages that the device model does not have, addressing modes that the message does not have, and
-    /// addresses that the document does not name.
-    pub fn encode(&self) -> Result<Frame, Error> {
-        let id = self.identifier.to_raw();
-        let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());
-        match Self::decode_by(self.model, &frame) {
-            Ok(again) if again.is_like(self) => again.check_request(id).map(|()| frame),
-            _ => Err(Error::Identifier { message: self.exchange().message(), id }),
-        }
-    }
-
-    /// Tests whether this is the same kind of frame of the same message under the same identifier.
-    fn is_like(&self, other: &Self) -> bool {
-        let is_same_variant = discriminant(&self.content) == discriminant(&other.content);
-        let is_same_frame = is_same_variant && self.kind == other.kind && self.exchange.is(other.exchange);
-        is_same_frame && self.identifier == other.identifier
-    }
-
-    /// Writes the signals over the frame as it was received.
-    fn data(&self) -> Result<Data, Error> {
-        let signals = self.content.layout().signals().iter();
-        let data = signals.fold(self.frame.bytes(), |data, signal| cleared(data, signal.place()));
-        let is_request = self.kind() == Kind::Request;
-        let new = if is_request { Payload::within_limits } else { Payload::new };
-        let mut payload = new(self.exchange().message(), data).for_model(self.model);
-        self.content.layout().encode(&mut payload)?;
-        Ok(*payload.data())
-    }
-
-    /// Refuses a request in another addressing mode, to an address that the document does not name, or that the device
-    /// model does not have.
-    fn check_request(&self, id: u32) -> Result<(), Error> {
-        if self.kind != Kind::Request {
-            return Ok(());
-        }
-        self.check_addressing(id)?;
-        let is_of_model = self.exchange.is_of(self.model);
-        if is_of_model { Ok(()) } else { Err(Error::Model { message: self.exchange.message() }) }
-    }
-
-    fn check_addressing(&self, id: u32) -> Result<(), Error> {
-        match self.addressing() {
-            Some(addressing) if addressing.is_offered() => addressing.documented(id),
-            other => Err(self.exchange().no_mode(other.map(|addressing| addressing.mode()))),
-        }
-    }
-}
-
-fn cleared(mut data: Data, place: Place) -> Data {
-    place.put(&mut data, 0);
-    data
-}
-
 /// Tests the identifier, and tells whether it goes towards a module.
 pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
     let id = frame.raw_id();
@@ -352,11 +151,4 @@ pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
         }
         _ => Err(Problem::Identifier),
     }
-}
-
-/// Says whether the length is wrong, or the selectors are.
-fn problem<P: Protocol>(is_request: bool, frame: &Frame) -> Problem {
-    let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(frame.raw_id());
-    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());
-    if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
 }

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::{Number, PackedText, StatusBit, status};
 
 /// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text or a packed value.
-pub trait Raw: Copy {
+pub trait Raw: Copy + 'static {
     /// Whether the bits are a number in two's complement.
     const SIGNED: bool = false;
 
@@ -32,6 +32,21 @@ pub trait Raw: Copy {
     /// Returns the number that limits apply to: the integer, or the float.
     fn number(self) -> Number {
         if Self::SIGNED { Number::Signed(self.to_bits().cast_signed()) } else { Number::Unsigned(self.to_bits()) }
+    }
+
+    /// Tests whether this is neither infinite nor no number at all.
+    fn is_finite(self) -> bool {
+        true
+    }
+
+    /// Tests whether this lies inside limits, which are legal.
+    fn is_within(self, minimum: Self, maximum: Self) -> bool {
+        let [value, minimum, maximum] = [self, minimum, maximum].map(Self::to_bits);
+        if Self::SIGNED {
+            (minimum.cast_signed()..=maximum.cast_signed()).contains(&value.cast_signed())
+        } else {
+            (minimum..=maximum).contains(&value)
+        }
     }
 
     /// Returns a limit as precisely as this type can meet it.
@@ -184,6 +199,14 @@ impl Raw for f32 {
 
     fn number(self) -> Number {
         Number::Float(self.into())
+    }
+
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+
+    fn is_within(self, minimum: Self, maximum: Self) -> bool {
+        (minimum..=maximum).contains(&self)
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]

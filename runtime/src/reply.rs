@@ -28,7 +28,7 @@ impl<P: Protocol, R> Reply<P, R> {
 impl<P: Protocol, R: Layout> Reply<P, R> {
     /// Decodes an [`answer`], which should have so many data bytes.
     pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
-        let identifier = P::Identifier::from_raw(frame.raw_id());
+        let identifier = P::Identifier::FROM_RAW(frame.raw_id());
         let failure = failure::<P>(selectors, length, &frame);
         let values = failure.map_or_else(|| Ok(R::decode(&frame.bytes())), Err);
         Self { identifier, values, selectors, frame }
@@ -36,7 +36,7 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
 
     /// Returns the reply that is another message, which says why the request is refused.
     pub(crate) fn refused(selectors: &'static [Selector], frame: Frame) -> Self {
-        Self { identifier: P::Identifier::from_raw(frame.raw_id()), values: Err(Failure::Error), selectors, frame }
+        Self { identifier: P::Identifier::FROM_RAW(frame.raw_id()), values: Err(Failure::Error), selectors, frame }
     }
 }
 

@@ -1,11 +1,13 @@
 //! Requests: how they are built, and which frames answer them.
 
+use core::fmt;
 use core::marker::PhantomData;
 use core::ptr;
 
 use crate::address::{AddressType, Addressing, Kind, Mode, Pattern, Who};
+use crate::plumbing::Continuation;
 use crate::reply::answer;
-use crate::{Continuation, Error, Filter, Frame, Layout, Payload, Protocol, Reply};
+use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
 /// Whom a request of a protocol can address.
 pub trait Destination: Copy {
@@ -357,14 +359,13 @@ struct Built {
 }
 
 /// A request ready to be sent, whose replies carry `R`.
-#[derive(Debug)]
 #[must_use = "a request is only a frame; send it"]
 pub struct Request<P, R> {
     built: Built,
     reply: PhantomData<fn() -> (P, R)>,
 }
 
-impl<P: Protocol, R: Layout> Request<P, R> {
+impl<P, R> Request<P, R> {
     /// Returns the frame to send.
     #[must_use]
     pub const fn frame(&self) -> &Frame {
@@ -381,8 +382,20 @@ impl<P: Protocol, R: Layout> Request<P, R> {
         self.built.refusal.as_ref()
     }
 
+    /// Lets the frame say that more follow; generated code calls it.
+    #[doc(hidden)]
+    pub fn followed(mut self, continuation: &Continuation) -> Self {
+        self.built.frame = continuation.put(&self.built.frame);
+        self
+    }
+}
+
+impl<P: Protocol, R> Request<P, R> {
     /// Decodes a frame if it answers this request, be it with an error; returns `None` for somebody else's frame.
-    pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>> {
+    pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>>
+    where
+        R: Layout,
+    {
         let filter = self.built.replies.filter()?;
         if let Some(refusal) = self.refusal()
             && let Some(frame) = answer::<P>(refusal, frame)
@@ -400,12 +413,11 @@ impl<P: Protocol, R: Layout> Request<P, R> {
     }
 }
 
-impl<P, R> Request<P, R> {
-    /// Lets the frame say that more follow; generated code calls it.
-    #[doc(hidden)]
-    pub fn followed(mut self, continuation: &Continuation) -> Self {
-        self.built.frame = continuation.put(&self.built.frame);
-        self
+impl<P, R> fmt::Debug for Request<P, R> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Built { frame, replies, refusal } = &self.built;
+        let mut fields = formatter.debug_struct("Request");
+        fields.field("frame", frame).field("replies", replies).field("refusal", refusal).finish()
     }
 }
 

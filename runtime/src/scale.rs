@@ -3,7 +3,7 @@
 /// What a raw value is worth: physical = raw × scale + offset, both exact fractions.
 ///
 /// ```
-/// use canspec_runtime::Scale;
+/// use canspec_runtime::plumbing::Scale;
 ///
 /// const TENTHS: Scale = Scale::new(1, 10);
 /// const HALF_DEGREES: Scale = Scale::new(1, 2).offset(-40, 1);
@@ -39,6 +39,11 @@ impl Scale {
         let factor = denominator / common;
         let offset = numerator.saturating_mul(self.denominator / common);
         Self { factor, offset, ..self }
+    }
+
+    /// Tests whether physical values fall where raw values rise.
+    pub(crate) const fn is_falling(self) -> bool {
+        (self.numerator < 0) != (self.denominator < 0)
     }
 
     /// Returns the double nearest to the physical value of `raw`.

@@ -1,20 +1,26 @@
 //! Signals: named bit ranges of the data with all that the document says of them.
 
-use core::fmt;
+mod any;
+
 use core::marker::PhantomData;
 
-use crate::{Data, Error, Integer, Meaning, Number, Payload, Physical, Place, Raw, Scale};
+use crate::physical::{Physical, Scaled};
+use crate::plumbing::Scale;
+use crate::raw::Raw;
+use crate::{Data, Error, Number, Payload, Place};
 
-/// A named bit range of a message's data, whose raw value has the type `R` and whose physical value, if that is
-/// scaled from it, the type `F`.
+pub use any::{AnySignal, Reading, WriteSignal};
+
+/// A named bit range of a message's data, whose raw value has the type `R` and whose physical value the type `F`: the
+/// same one unless it is scaled.
 ///
-/// [`get`](Self::get) and [`put`](Self::put) deal in raw values, without floating-point arithmetic unless limits are
-/// checked; [`decode`](Self::decode) and [`encode`](Self::encode) in physical values.
+/// [`get`](Self::get) and [`put`](Self::put) deal in raw values; [`decode`](Self::decode) and [`encode`](Self::encode)
+/// in physical ones. Limits of raw integers are integers, and are compared as such.
 ///
 /// ```
 /// use canspec_runtime::{Payload, Place, Signal};
 ///
-/// const VOLTAGE: Signal<u32> =
+/// const VOLTAGE: Signal<u32, f64> =
 ///     Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000).limits(0.0, 750.0);
 ///
 /// let mut payload = Payload::within_limits("set_output", [0; 8]);
@@ -27,7 +33,7 @@ use crate::{Data, Error, Integer, Meaning, Number, Payload, Physical, Place, Raw
 /// # Ok::<(), canspec_runtime::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Signal<R: 'static, F: 'static = f64> {
+pub struct Signal<R: 'static, F: 'static = R> {
     name: &'static str,
     place: Place,
     unit: Option<&'static str>,
@@ -38,7 +44,7 @@ pub struct Signal<R: 'static, F: 'static = f64> {
     raw: PhantomData<R>,
 }
 
-impl<R: Raw, F: Physical> Signal<R, F> {
+impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns a signal that carries its raw value as it is.
     pub const fn new(name: &'static str, place: Place) -> Self {
         Self { name, place, unit: None, scale: None, limits: None, model_limits: &[], specials: &[], raw: PhantomData }
@@ -99,15 +105,10 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         if !raw.is_whole() {
             return Err(self.meaningless(payload));
         }
-        if payload.keeps_limits() && self.is_limited(raw) {
-            self.check_raw(raw, payload)?;
+        if payload.keeps_limits() && self.special(raw.to_bits()).is_none() {
+            self.check(self.physical(raw), payload)?;
         }
-        self.store(raw.to_bits(), || self.physical(raw), payload)
-    }
-
-    /// Tests whether some raw values are legal and others are not.
-    fn is_limited(&self, raw: R) -> bool {
-        self.limits.is_some() || !self.model_limits.is_empty() || matches!(raw.number(), Number::Float(_))
+        self.store(raw.to_bits(), || self.physical(raw).number(), payload)
     }
 
     fn bits(&self, data: Data) -> u64 {
@@ -126,51 +127,21 @@ impl<R: Raw, F: Physical> Signal<R, F> {
     }
 
     /// Returns what limits apply to.
-    fn physical(&self, raw: R) -> Number {
-        match self.scale {
-            Some(scale) => F::scaled(raw.to_bits().cast_signed(), scale).number(),
-            None => raw.number(),
-        }
-    }
-
-    /// Tests a raw value against the limits; a special one is legal outside.
-    fn check_raw(&self, raw: R, payload: &Payload) -> Result<(), Error> {
-        if self.special(raw.to_bits()).is_some() {
-            return Ok(());
-        }
-        let number = self.physical(raw);
-        self.check(F::nearest(number), number, payload)
+    fn physical(&self, raw: R) -> F {
+        F::of(raw, self.scale)
     }
 
     /// Tests a physical value against the limits.
-    fn check(&self, value: F, number: Number, payload: &Payload) -> Result<(), Error> {
-        if !payload.keeps_limits() {
-            return Ok(());
-        }
+    fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
         if !value.is_finite() {
             return Err(self.not_finite(payload));
         }
         let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
-        let Some((minimum, maximum)) = limits else { return Ok(()) };
-        let is_within = |minimum: F, maximum: F| (minimum..=maximum).contains(&value);
-        if is_within(minimum, maximum) || is_within(minimum.limit::<R>(), maximum.limit::<R>()) {
-            return Ok(());
-        }
-        Err(self.outside(number, minimum.number(), maximum.number(), payload))
-    }
-
-    /// Tests a physical value, and what it becomes by rounding: another one, or a special raw value.
-    fn check_sent(&self, physical: F, raw: i64, scale: Scale, payload: &Payload) -> Result<(), Error> {
-        let sent = F::scaled(raw, scale);
-        match self.special(raw.cast_unsigned()) {
-            Some(_) if sent == physical => Ok(()),
-            special => {
-                self.check(physical, physical.number(), payload)?;
-                special.map_or_else(
-                    || self.check(sent, sent.number(), payload),
-                    |name| Err(self.hidden(physical.number(), name, payload)),
-                )
+        match limits {
+            Some((minimum, maximum)) if !value.is_within(minimum, maximum) => {
+                Err(self.outside(value.number(), minimum.number(), maximum.number(), payload))
             }
+            _ => Ok(()),
         }
     }
 
@@ -190,32 +161,28 @@ impl<R: Raw, F: Physical> Signal<R, F> {
         Error::Special { message: payload.message(), signal: self.name, value, unit: self.unit, name }
     }
 
+    pub(crate) const fn is_scaled(&self) -> bool {
+        self.scale.is_some()
+    }
+
+    /// Tests the value that is asked for against the limits, if `payload` keeps to them.
+    pub(crate) fn check_asked(&self, asked: F, payload: &Payload) -> Result<(), Error> {
+        if payload.keeps_limits() { self.check(asked, payload) } else { Ok(()) }
+    }
+
     /// Names the limits of what the bits can hold.
     fn too_wide(&self, value: Number, payload: &Payload) -> Error {
         let highest = self.place.max().wrapping_shr(R::SIGNED.into());
         let lowest = if R::SIGNED { !highest } else { 0 };
-        let [one, other] = [lowest, highest].map(|bits| self.physical(R::from_bits(bits)));
-        let (minimum, maximum) = if F::nearest(one) <= F::nearest(other) { (one, other) } else { (other, one) };
+        let [one, other] = [lowest, highest].map(|bits| self.physical(R::from_bits(bits)).number());
+        let is_falling = self.scale.is_some_and(Scale::is_falling);
+        let (minimum, maximum) = if is_falling { (other, one) } else { (one, other) };
         self.outside(value, minimum, maximum, payload)
     }
-}
 
-impl<R: Raw, F: Physical> Signal<R, F> {
     /// Returns the name of a special raw value.
     fn special(&self, bits: u64) -> Option<&'static str> {
         self.specials.iter().find(|(raw, _)| raw.cast_unsigned() == bits).map(|(_, name)| *name)
-    }
-
-    /// Returns the special raw value of a name.
-    fn special_value(&self, meaning: Meaning<'_>) -> Option<R> {
-        let Meaning::Name(wanted) = meaning else { return None };
-        let special = self.specials.iter().find(|(_, name)| *name == wanted);
-        special.map(|(raw, _)| R::from_bits(raw.cast_unsigned()))
-    }
-
-    /// Returns the raw value that means `meaning` where the one is not scaled from the other.
-    fn unscaled(&self, meaning: Meaning<'_>) -> Option<R> {
-        if self.scale.is_none() { R::from_meaning(meaning) } else { None }
     }
 
     const fn exact_scale(&self) -> Scale {
@@ -226,7 +193,7 @@ impl<R: Raw, F: Physical> Signal<R, F> {
     }
 }
 
-impl<R: Integer, F: Physical> Signal<R, F> {
+impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// Adds the scale: physical = raw × `numerator` / `denominator`.
     #[must_use]
     pub const fn scale(self, numerator: i64, denominator: i64) -> Self {
@@ -249,130 +216,33 @@ impl<R: Integer, F: Physical> Signal<R, F> {
     ///
     /// # Errors
     ///
-    /// Refuses what the signal's bits cannot hold, and what lies outside the limits if `payload` keeps to them.
+    /// Refuses what the signal's bits cannot hold. If `payload` keeps to limits, refuses what lies outside them, before
+    /// or after rounding, and what would be rounded to a special raw value.
     pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
-        encode_scaled(self, self.exact_scale(), physical, payload)
-    }
-}
-
-fn encode_scaled<R: Raw, F: Physical>(
-    signal: &Signal<R, F>,
-    scale: Scale,
-    physical: F,
-    payload: &mut Payload,
-) -> Result<(), Error> {
-    let number = physical.number();
-    let raw = physical.raw(scale);
-    if payload.keeps_limits() {
+        let (number, raw) = (Scaled::number(physical), physical.raw(self.exact_scale()));
+        if payload.keeps_limits() {
+            self.check_rounded(physical, raw, payload)?;
+        }
         match raw {
-            Some(raw) => signal.check_sent(physical, raw, scale, payload)?,
-            None => signal.check(physical, number, payload)?,
+            Some(raw) if R::SIGNED || raw >= 0 => self.store(raw.cast_unsigned(), || number, payload),
+            _ if physical.is_nan() => Err(self.not_finite(payload)),
+            _ => Err(self.too_wide(number, payload)),
         }
     }
-    match raw {
-        Some(raw) if R::SIGNED || raw >= 0 => signal.store(raw.cast_unsigned(), || number, payload),
-        _ if physical.is_nan() => Err(signal.not_finite(payload)),
-        _ => Err(signal.too_wide(number, payload)),
-    }
-}
 
-/// What a signal says in one frame, for code that does not know the message.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct Reading<'a> {
-    /// Name of the signal.
-    pub name: &'static str,
-    /// Unit of the physical value.
-    pub unit: Option<&'static str>,
-    /// The integer in the frame; the bit pattern of a float, the bytes of a text.
-    pub raw: Number,
-    /// What it means.
-    pub meaning: Meaning<'a>,
-    /// Whether the frame is an error reply, whose values mean nothing unless the document says so.
-    pub is_of_error_reply: bool,
-}
-
-impl fmt::Display for Reading<'_> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.is_of_error_reply {
-            return write!(formatter, "{} ? (error reply)", self.name);
+    /// Tests a physical value and the raw value to which it is rounded, which has a meaning of its own if it is special.
+    fn check_rounded(&self, physical: F, raw: Option<i64>, payload: &Payload) -> Result<(), Error> {
+        let sent = raw.map_or(physical, |raw| F::scaled(raw, self.exact_scale()));
+        let special = raw.and_then(|raw| self.special(raw.cast_unsigned()));
+        if sent == physical && special.is_some() {
+            return Ok(());
         }
-        write!(formatter, "{} {}", self.name, self.meaning)?;
-        match (self.meaning, self.unit) {
-            (Meaning::Number(_), Some(unit)) => write!(formatter, " {unit}"),
-            _ => Ok(()),
+        self.check(physical, payload)?;
+        match special {
+            Some(name) => Err(self.hidden(Scaled::number(physical), name, payload)),
+            None if sent == physical => Ok(()),
+            None => self.check(sent, payload),
         }
-    }
-}
-
-/// A signal for code that does not know its type.
-pub trait AnySignal {
-    /// Returns the name.
-    fn name(&self) -> &'static str;
-
-    /// Returns the unit of the physical value.
-    fn unit(&self) -> Option<&'static str>;
-
-    /// Returns the place in the data.
-    fn place(&self) -> Place;
-
-    /// Returns the documented limits of the physical value, both legal: what holds where no device model is chosen.
-    fn limits(&self) -> Option<(Number, Number)>;
-
-    /// Shows what the signal says in a frame.
-    fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>));
-
-    /// Writes the value that means `meaning`.
-    ///
-    /// # Errors
-    ///
-    /// Refuses what the signal's bits cannot hold, names that it does not have, and what lies outside the limits if
-    /// `payload` keeps to them.
-    fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error>;
-}
-
-impl<R: Raw, F: Physical> AnySignal for Signal<R, F> {
-    fn name(&self) -> &'static str {
-        self.name
-    }
-
-    fn unit(&self) -> Option<&'static str> {
-        self.unit
-    }
-
-    fn place(&self) -> Place {
-        self.place
-    }
-
-    fn limits(&self) -> Option<(Number, Number)> {
-        self.limits.map(|(minimum, maximum)| (minimum.number(), maximum.number()))
-    }
-
-    fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {
-        let value = self.get(data);
-        let bits = self.bits(*data);
-        let meaning = match (self.special(bits), self.scale) {
-            (Some(name), _) => Meaning::Name(name),
-            (None, Some(_)) => Meaning::Number(self.physical(value)),
-            (None, None) => value.meaning(),
-        };
-        let raw = if R::SIGNED { Number::Signed(bits.cast_signed()) } else { Number::Unsigned(bits) };
-        visitor(Reading { name: self.name, unit: self.unit, raw, meaning, is_of_error_reply: false });
-    }
-
-    fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
-        if let Some(raw) = self.special_value(meaning).or_else(|| self.unscaled(meaning)) {
-            if let Meaning::Number(number @ (Number::Single(_) | Number::Float(_))) = meaning {
-                self.check(F::nearest(number), number, payload)?;
-            }
-            return self.put(raw, payload);
-        }
-        if let Meaning::Number(number) = meaning
-            && R::IS_NUMBER
-        {
-            return encode_scaled(self, self.exact_scale(), F::nearest(number), payload);
-        }
-        Err(self.meaningless(payload))
     }
 }
 
@@ -381,18 +251,19 @@ mod tests {
     use std::string::ToString;
 
     use super::*;
-    use crate::Text;
+    use crate::{Meaning, Text};
 
-    const CURRENT: Signal<i16> = Signal::new("current", Place::bytes(7, 0).bits(23, 12)).unit("A").scale(1, 10);
-    const TEMPERATURE: Signal<u8> = Signal::new("temperature", Place::byte(3))
+    const CURRENT: Signal<i16, f64> = Signal::new("current", Place::bytes(7, 0).bits(23, 12)).unit("A").scale(1, 10);
+    const TEMPERATURE: Signal<u8, f64> = Signal::new("temperature", Place::byte(3))
         .unit("°C")
         .scale(1, 2)
         .offset(-40, 1)
         .limits(-40.0, 80.0)
         .specials(&[(255, "broken")]);
-    const FREQUENCY: Signal<f32> = Signal::new("frequency", Place::bytes(4, 7)).unit("Hz").limits(45.0, 25.7 + 40.0);
-    const GROUP: Signal<u8> = Signal::new("group", Place::byte(0).bits(5, 0)).limits(1.0, 62.0);
-    const LIMIT: Signal<u8> =
+    const FREQUENCY: Signal<f32, f64> =
+        Signal::new("frequency", Place::bytes(4, 7)).unit("Hz").limits(45.0, 25.7 + 40.0);
+    const GROUP: Signal<u8> = Signal::new("group", Place::byte(0).bits(5, 0)).limits(1, 62);
+    const LIMIT: Signal<u8, f64> =
         Signal::new("limit", Place::byte(0)).unit("A").scale(1, 10).limits(0.04, 20.06).specials(&[(0, "unlimited")]);
 
     fn reply() -> Payload {
@@ -457,7 +328,7 @@ mod tests {
         let text = refusal(LIMIT.encode(20.06, &mut request()));
         assert_eq!(text, "`limit` of `report` is 20.1 A, but its limits are 0.04 and 20.06 A");
         assert_eq!(LIMIT.encode(20.06, &mut reply()), Ok(()));
-        let slope = Signal::<u8>::new("slope", Place::byte(0)).limits(0.5, 9.5);
+        let slope = Signal::<u8, f64>::new("slope", Place::byte(0)).limits(0.5, 9.5);
         let written = |value| slope.write(Meaning::Number(Number::Float(value)), &mut request()).is_ok();
         assert_eq!([0.49, 0.5, 9.49, 9.5].map(written), [false, true, true, false]);
     }
@@ -470,9 +341,10 @@ mod tests {
         assert_eq!(LIMIT.encode(0.05, &mut request()), Ok(()));
         assert_eq!(LIMIT.encode(0.04, &mut reply()), Ok(()));
         let unlimited = Signal::<u8>::new("interval", Place::byte(1)).unit("s").specials(&[(0, "never")]);
-        let text = refusal(unlimited.encode(0.4, &mut request()));
+        let written = |value| unlimited.write(Meaning::Number(Number::Float(value)), &mut request());
+        let text = refusal(written(0.4));
         assert_eq!(text, "`interval` of `report` is 0.4 s, which would be sent as `never`");
-        assert_eq!([0.0, 0.5].map(|value| unlimited.encode(value, &mut request())), [Ok(()), Ok(())]);
+        assert_eq!([0.0, 0.5].map(written), [Ok(()), Ok(())]);
     }
 
     #[test]
@@ -503,9 +375,8 @@ mod tests {
 
     #[test]
     fn a_device_model_can_have_limits_of_its_own() {
-        const SPEED: Signal<u16> = Signal::new("speed", Place::bytes(0, 1))
-            .limits(0.0, 6000.0)
-            .model_limits(&[(3, Some((300.0, 3000.0))), (4, None)]);
+        const SPEED: Signal<u16> =
+            Signal::new("speed", Place::bytes(0, 1)).limits(0, 6000).model_limits(&[(3, Some((300, 3000))), (4, None)]);
         let takes = |model, speed| SPEED.put(speed, &mut request().for_model(model)).is_ok();
         assert_eq!([299, 300, 3000, 3001].map(|speed| takes(Some(3), speed)), [false, true, true, false]);
         assert!(takes(Some(4), 6001) && takes(Some(4), u16::MAX));
@@ -533,11 +404,24 @@ mod tests {
     }
 
     #[test]
+    fn limits_of_64_bits_are_exact() {
+        // 2^53 + 3 is no double; the nearest one is 2^53 + 4.
+        const LIMIT: u64 = (1 << 53) + 3;
+        const COUNTER: Signal<u64> = Signal::new("counter", Place::bytes(0, 7)).limits(1, LIMIT);
+        assert_eq!([1, LIMIT].map(|count| COUNTER.put(count, &mut request())), [Ok(()), Ok(())]);
+        assert!(COUNTER.put(LIMIT + 1, &mut request()).is_err());
+        let written = |number| COUNTER.write(Meaning::Number(number), &mut request()).is_ok();
+        assert_eq!([Number::Unsigned(LIMIT), Number::Unsigned(LIMIT + 1)].map(written), [true, false]);
+        assert_eq!([9_007_199_254_740_994.0, 9_007_199_254_740_996.0].map(Number::Float).map(written), [true, false]);
+    }
+
+    #[test]
     fn every_number_of_64_bits_is_exact() {
         const COUNTER: Signal<u64> = Signal::new("counter", Place::bytes(0, 7));
         let mut payload = reply();
         assert_eq!(COUNTER.put(u64::MAX, &mut payload), Ok(()));
         assert_eq!(COUNTER.get(payload.data()), u64::MAX);
-        assert!(COUNTER.encode(-1.0, &mut payload).is_err());
+        let written = |number| COUNTER.write(Meaning::Number(number), &mut payload.clone()).is_ok();
+        assert_eq!([Number::Float(-1.0), Number::Signed(-1)].map(written), [false; 2]);
     }
 }

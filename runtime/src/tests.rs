@@ -2,10 +2,11 @@
 
 use std::string::ToString;
 
+use crate::plumbing::{Address, Decode, Encode, Pattern, Recognised, Task, Who};
 use crate::{
-    Address, AddressType, AnySignal, Bits, Data, Decode, Destination, Encode, Entry, Error, Exchange, Failure, Filter,
-    Frame, IdentifierFields, Kind, Layout, Meaning, Mode, Number, Pattern, Payload, Place, Problem, Protocol, Reading,
-    Received, Recognised, Replies, Request, Route, Selector, Signal, Single, StatusBit, Who,
+    AddressType, AnySignal, Bits, Destination, Entry, Error, Exchange, Failure, Filter, Frame, IdentifierFields, Kind,
+    Layout, Meaning, Mode, Number, Place, Problem, Protocol, Reading, Received, Replies, Request, Route, Selector,
+    Signal, StatusBit,
 };
 
 const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -83,13 +84,8 @@ impl Destination for To {
 struct Identifier(u32);
 
 impl IdentifierFields for Identifier {
-    fn from_raw(id: u32) -> Self {
-        Self(id)
-    }
-
-    fn to_raw(self) -> u32 {
-        self.0
-    }
+    const FROM_RAW: fn(u32) -> Self = Self;
+    const TO_RAW: fn(Self) -> u32 = |identifier| identifier.0;
 
     fn is_foreign(id: u32) -> bool {
         id == 0x0100_0000
@@ -113,7 +109,7 @@ const FUNCTION: Selector = Selector::new("function", Place::byte(0));
 const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
 
 impl Heat {
-    const POWER: Signal<u16> = Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
+    const POWER: Signal<u16, f64> = Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
     const SET: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
         .with_values()
         .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
@@ -136,17 +132,9 @@ impl Heat {
 }
 
 impl Layout for Heat {
-    fn decode(data: &Data) -> Self {
-        Self { power_w: Self::POWER.decode(data) }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        Self::POWER.encode(self.power_w, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&Self::POWER]
-    }
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
+    const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::POWER.encode(message.power_w, payload);
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,10 +179,10 @@ impl Protocol for Message {
         Self::request_lengths(id)
     }
 
-    fn layout(&self) -> &dyn Layout {
+    fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
-            Self::Heat(message) => message,
-            Self::ReadHeat => &(),
+            Self::Heat(message) => task.run(message),
+            Self::ReadHeat => task.run(&()),
         }
     }
 }
@@ -213,6 +201,30 @@ fn decode(frame: &Frame) -> Result<Received<Message>, Problem> {
 fn mode_of(id: u32, data: [u8; 4]) -> Option<(&'static str, bool, bool)> {
     let addressing = decode(&frame(id, data)).expect("a known frame").addressing()?;
     Some((addressing.mode().name, addressing.is_offered(), addressing.is_documented()))
+}
+
+/// A request that waits for its reply, whatever that carries.
+#[derive(Clone, Copy, Debug)]
+struct Pending<P, R> {
+    request: Request<P, R>,
+    sent_at: u32,
+}
+
+impl<P, R> Pending<P, R> {
+    fn frame(&self) -> (u32, Frame, bool) {
+        (self.sent_at, *self.request.frame(), self.request.replies().filter().is_some())
+    }
+}
+
+#[test]
+fn a_request_is_kept_and_read_without_bounds_on_its_reply() {
+    /// What no reply carries.
+    struct Nothing;
+    let request: Request<Message, Nothing> = Heat::READ.request_to(To::Group(2), &()).expect("a legal request");
+    let pending = Pending { request, sent_at: 7 };
+    assert_eq!(pending.frame(), (7, *request.frame(), true));
+    assert!(!request.is_reply(request.frame()));
+    assert!(std::format!("{request:?}").starts_with("Request { frame: "));
 }
 
 #[test]
@@ -428,13 +440,13 @@ fn a_message_of_some_device_models_is_refused_for_the_others() {
 fn a_request_to_a_device_model_keeps_to_the_limits_of_that_model_alone() {
     struct Boost(u16);
 
-    impl Single for Boost {
-        const SIGNAL: &'static dyn AnySignal = &BOOST;
+    impl Layout for Boost {
+        const SIGNALS: &'static [&'static dyn AnySignal] = &[&BOOST];
         const DECODE: Decode<Self> = |data| Self(BOOST.get(data));
         const ENCODE: Encode<Self> = |boost, payload| BOOST.put(boost.0, payload);
     }
 
-    const BOOST: Signal<u16> = Heat::POWER.limits(0.0, 500.0).model_limits(&[(1, Some((0.0, 300.0))), (2, None)]);
+    const BOOST: Signal<u16, f64> = Heat::POWER.limits(0.0, 500.0).model_limits(&[(1, Some((0.0, 300.0))), (2, None)]);
     let takes = |model: u8, raw| {
         let request: Result<Request<Message, ()>, Error> = Heat::SET.request_within(model, To::All, &Boost(raw));
         request.is_ok()

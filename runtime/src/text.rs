@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use crate::{Meaning, Raw};
+use crate::Meaning;
+use crate::plumbing::Raw;
 
 /// A text of at most `N` ASCII characters; the bytes behind a shorter one are 0.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

@@ -2,7 +2,8 @@
 
 use defmt::{Display2Format, Format, Formatter, write};
 
-use crate::{Frame, Meaning, Raw, StatusBit, Text, Word, status};
+use crate::plumbing::{Raw, Word};
+use crate::{Frame, Meaning, StatusBit, Text, status};
 
 /// Writes a named value by its name, a status word by the names of its set bits, a packed value by its text.
 ///

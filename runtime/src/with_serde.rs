@@ -24,7 +24,8 @@ use serde::de::{Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Legend, Meaning, Raw, Word, status};
+use crate::plumbing::{Legend, Raw, Word};
+use crate::{Meaning, status};
 
 /// Serializes a named value, a status word or a packed value.
 ///

@@ -1,20 +1,63 @@
 //! Named values, status words and packed values: integers with a legend.
 
-use crate::packed::{self, Piece};
-use crate::{Integer, Meaning, Raw, StatusBit, status};
+use core::fmt;
+
+use crate::packed;
+use crate::plumbing::{Integer, Piece, Raw};
+use crate::{Meaning, PackedText, StatusBit, status};
 
 /// An integer with a legend: named values, a status word or a packed value.
+///
+/// The types that generated code has for them offer all this by methods of their own.
 pub trait Word: Copy + PartialEq + 'static {
     /// The integer that stands in the frame.
     type Raw: Integer;
     /// What the integer stands for.
     const LEGEND: Legend<Self>;
-
-    /// Returns the value that stands for `raw`, whether the legend has it or not.
-    fn from_raw(raw: Self::Raw) -> Self;
-
+    /// Returns the value that stands for an integer, whether the legend has it or not.
+    const FROM_RAW: fn(Self::Raw) -> Self;
     /// Returns the integer that stands in the frame.
-    fn raw(self) -> Self::Raw;
+    const RAW: fn(Self) -> Self::Raw;
+
+    /// Returns the name of a named value, unless it has none.
+    fn name(self) -> Option<&'static str> {
+        let bits = self.to_bits();
+        names::<Self>().iter().find(|(value, _)| value.to_bits() == bits).map(|(_, name)| *name)
+    }
+
+    /// Finds a named value by its name.
+    fn named(name: &str) -> Option<Self> {
+        names::<Self>().iter().find(|(_, other)| *other == name).map(|(value, _)| *value)
+    }
+
+    /// Returns the set bits of a status word that have a name, the lowest first.
+    fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
+        status::set_bits(self.to_bits(), bits::<Self>())
+    }
+
+    /// Returns the set bits of a status word that have no name.
+    fn unknown(self) -> u64 {
+        status::unknown(self.to_bits(), bits::<Self>())
+    }
+
+    /// Returns the text of a packed value, or `None` if that text would not give the same value.
+    fn text(self) -> Option<PackedText> {
+        packed::text(self)
+    }
+
+    /// Reads a packed value from a text of the documented form.
+    fn parse(text: &str) -> Option<Self> {
+        packed::parse(text)
+    }
+
+    /// Writes the parts of a packed value in the documented form, be the text exact or not.
+    ///
+    /// # Errors
+    ///
+    /// Passes on what the formatter returns.
+    fn write(self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        packed::write(self, formatter)
+    }
 }
 
 /// What an integer stands for.
@@ -26,55 +69,6 @@ pub enum Legend<W: 'static> {
     Bits(&'static [StatusBit]),
     /// The number of bytes, and the pieces of the text that they are written as.
     Text(u8, &'static [Piece]),
-}
-
-/// Named values: an enum with one variant a name, and one that keeps a value without a name.
-pub trait Named: Word {
-    /// Returns the name, unless the value has none.
-    fn name(self) -> Option<&'static str> {
-        let bits = self.raw().to_bits();
-        names::<Self>().iter().find(|(value, _)| value.raw().to_bits() == bits).map(|(_, name)| *name)
-    }
-
-    /// Finds a value by its name.
-    fn from_name(name: &str) -> Option<Self> {
-        names::<Self>().iter().find(|(_, other)| *other == name).map(|(value, _)| *value)
-    }
-}
-
-/// A status word: each named bit is a condition, and bits without a name are kept.
-pub trait StatusWord: Word {
-    /// Tests whether all bits of `other` are set.
-    fn contains(self, other: Self) -> bool {
-        let bits = other.raw().to_bits();
-        self.raw().to_bits() & bits == bits
-    }
-
-    /// Tests whether some bit of `other` is set.
-    fn intersects(self, other: Self) -> bool {
-        self.raw().to_bits() & other.raw().to_bits() != 0
-    }
-
-    /// Tests whether no bit is set.
-    fn is_empty(self) -> bool {
-        self.raw().to_bits() == 0
-    }
-
-    /// Returns the bits that are set here or in `other`.
-    #[must_use]
-    fn union(self, other: Self) -> Self {
-        Self::from_raw(Self::Raw::from_bits(self.raw().to_bits() | other.raw().to_bits()))
-    }
-
-    /// Returns the set bits that have a name, the lowest first.
-    fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
-        status::set_bits(self.raw().to_bits(), bits::<Self>())
-    }
-
-    /// Returns the set bits that have no name.
-    fn unknown(self) -> u64 {
-        status::unknown(self.raw().to_bits(), bits::<Self>())
-    }
 }
 
 const fn names<W: Word>() -> &'static [(W, &'static str)] {
@@ -95,11 +89,11 @@ impl<W: Word> Raw for W {
     const SIGNED: bool = W::Raw::SIGNED;
 
     fn from_bits(bits: u64) -> Self {
-        W::from_raw(W::Raw::from_bits(bits))
+        W::FROM_RAW(W::Raw::from_bits(bits))
     }
 
     fn to_bits(self) -> u64 {
-        self.raw().to_bits()
+        W::RAW(self).to_bits()
     }
 
     fn meaning(&self) -> Meaning<'_> {
@@ -107,20 +101,17 @@ impl<W: Word> Raw for W {
         match W::LEGEND {
             Legend::Bits(bits) => Meaning::Status(raw, bits),
             Legend::Text(..) => packed::text(*self).map_or(Meaning::None, Meaning::Packed),
-            Legend::Names(names) => names
-                .iter()
-                .find(|(value, _)| value.to_bits() == raw)
-                .map_or(Meaning::None, |(_, name)| Meaning::Name(name)),
+            Legend::Names(_) => self.name().map_or(Meaning::None, Meaning::Name),
         }
     }
 
     fn is_whole(self) -> bool {
-        !matches!(W::LEGEND, Legend::Text(..)) || W::from_raw(self.raw()) == self
+        !matches!(W::LEGEND, Legend::Text(..)) || W::FROM_RAW(W::RAW(self)) == self
     }
 
     fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
         match meaning {
-            Meaning::Name(name) => names::<W>().iter().find(|(_, other)| *other == name).map(|(value, _)| *value),
+            Meaning::Name(name) => W::named(name),
             Meaning::Text(text) => packed::parse(text),
             Meaning::Status(raw, _) => Some(W::from_bits(raw)),
             Meaning::Number(_) | Meaning::Packed(_) | Meaning::None => None,
@@ -144,25 +135,17 @@ mod tests {
     impl Word for Power {
         type Raw = u8;
         const LEGEND: Legend<Self> = Legend::Names(&[(Self::On, "on"), (Self::Off, "off")]);
-
-        fn from_raw(raw: u8) -> Self {
-            match raw {
-                0 => Self::On,
-                1 => Self::Off,
-                _ => Self::Unknown(raw),
-            }
-        }
-
-        fn raw(self) -> u8 {
-            match self {
-                Self::On => 0,
-                Self::Off => 1,
-                Self::Unknown(raw) => raw,
-            }
-        }
+        const FROM_RAW: fn(u8) -> Self = |raw| match raw {
+            0 => Self::On,
+            1 => Self::Off,
+            _ => Self::Unknown(raw),
+        };
+        const RAW: fn(Self) -> u8 = |power| match power {
+            Self::On => 0,
+            Self::Off => 1,
+            Self::Unknown(raw) => raw,
+        };
     }
-
-    impl Named for Power {}
 
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Status(u8);
@@ -171,23 +154,15 @@ mod tests {
         type Raw = u8;
         const LEGEND: Legend<Self> =
             Legend::Bits(&[StatusBit::state(0, "dc_off", "DC side is off"), StatusBit::alarm(5, "hot", "Too hot")]);
-
-        fn from_raw(raw: u8) -> Self {
-            Self(raw)
-        }
-
-        fn raw(self) -> u8 {
-            self.0
-        }
+        const FROM_RAW: fn(u8) -> Self = Self;
+        const RAW: fn(Self) -> u8 = |status| status.0;
     }
-
-    impl StatusWord for Status {}
 
     #[test]
     fn values_have_names_both_ways() {
-        assert_eq!(Power::from_raw(1).name(), Some("off"));
-        assert_eq!(Power::from_name("off"), Some(Power::Off));
-        assert_eq!(Power::from_name("of"), None);
+        assert_eq!(Power::FROM_RAW(1).name(), Some("off"));
+        assert_eq!(Power::named("off"), Some(Power::Off));
+        assert_eq!(Power::named("of"), None);
     }
 
     #[test]
@@ -199,12 +174,8 @@ mod tests {
 
     #[test]
     fn a_status_word_names_its_set_bits_and_keeps_the_others() {
-        let status = Status::from_raw(0b1010_0001);
+        let status = Status(0b1010_0001);
         assert_eq!(status.set_bits().map(|bit| bit.name).collect::<Vec<_>>(), ["dc_off", "hot"]);
         assert_eq!(status.unknown(), 0b1000_0000);
-        assert!(status.contains(Status(0b0010_0000)) && !status.contains(Status(0b0010_0010)));
-        assert!(status.intersects(Status(0b0010_0010)) && !status.intersects(Status(0b0000_0010)));
-        assert_eq!(Status(1).union(Status(4)), Status(5));
-        assert!(Status(0).is_empty());
     }
 }

@@ -67,9 +67,9 @@ impl Codec {
     /// If there is no such decoder.
     #[must_use]
     pub fn with_index(mut self) -> Self {
-        const HEAD: &str = "fn decode(data: &Data) -> Self {";
-        let start = self.code.find(HEAD).expect("the decoder of a message");
-        self.code.insert_str(start + HEAD.len(), " let _byte = data[usize::from(data[0])];");
+        let decoder = self.code.find("const DECODE").expect("the decoder of a message");
+        let start = decoder + self.code[decoder..].find("(data)").expect("a signal is taken out of the data");
+        self.code.replace_range(start..start + "(data)".len(), "(&[data[usize::from(data[0])]; 8])");
         self
     }
 
@@ -99,6 +99,12 @@ impl Program {
     pub fn decode(codec: &Codec) -> Self {
         let name = format!("{}_decode", codec.name);
         Self::of(&name, [module(codec, |_| quote!(calls::decode::<Message>();))])
+    }
+
+    /// Returns the program that recognises a frame and shows its signals.
+    pub fn visit(codec: &Codec) -> Self {
+        let name = format!("{}_visit", codec.name);
+        Self::of(&name, [module(codec, |_| quote!(calls::visit::<Message>();))])
     }
 
     /// Returns the program that builds the requests of every message.

@@ -3,7 +3,7 @@
 use canspec_codegen::interpret::{self, Frame, Input, Limits, Value, raw_of};
 use canspec_codegen::model::{Encoding, Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
-use canspec_runtime::{AnySignal, Meaning, Number, Payload, Problem, Reading};
+use canspec_runtime::{Meaning, Number, Payload, Problem, Reading, WriteSignal};
 use embedded_can::Frame as _;
 
 use crate::{models, number, received};
@@ -28,7 +28,7 @@ pub fn compare_decoding<P: canspec_runtime::Protocol>(
 /// # Panics
 ///
 /// If they disagree.
-pub fn compare_encoding(protocol: &Protocol, message: &Message, signal: &Signal, known: &dyn AnySignal, value: f64) {
+pub fn compare_encoding(protocol: &Protocol, message: &Message, signal: &Signal, known: &dyn WriteSignal, value: f64) {
     for limits in std::iter::once(Limits::Bits).chain(models(protocol).map(Limits::Range)) {
         let bits = raw_of(protocol, message, signal, &Input::Number(value), limits).ok();
         let expected = bits.map(|bits| {
@@ -146,7 +146,7 @@ fn read(signal: &Signal, reading: &interpret::Reading) -> (String, Option<String
 }
 
 /// Writes a value through a signal of the generated code.
-fn written(known: &dyn AnySignal, value: f64, limits: Limits) -> Option<[u8; 8]> {
+fn written(known: &dyn WriteSignal, value: f64, limits: Limits) -> Option<[u8; 8]> {
     let mut payload = match limits {
         Limits::Bits => Payload::new("message", [0; 8]),
         Limits::Range(model) => Payload::within_limits("message", [0; 8]).for_model(model.map(number)),

@@ -8,9 +8,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Form, Frame};
-use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol};
+use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol, Signal};
 use canspec_codegen::{Outcome, compile, source::Source};
-use canspec_runtime::{Problem, Received};
+use canspec_runtime::{Problem, Received, WriteSignal};
 
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 
@@ -22,7 +22,7 @@ struct Readme;
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
-    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str);
+    fn visit<P: canspec_runtime::Protocol + Signals>(&mut self, path: &str);
 }
 
 /// Runs a test on each protocol whose types have the optional traits.
@@ -30,13 +30,34 @@ pub trait SwitchedVisitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
     fn visit<P>(&mut self, path: &str)
     where
-        P: canspec_runtime::Protocol<Identifier: Optional> + Optional + PartialEq;
+        P: canspec_runtime::Protocol<Identifier: Optional> + Signals + Optional + PartialEq;
+}
+
+/// The signals of a protocol's generated code, to be written by tests that do not know their types.
+pub trait Signals {
+    /// Each signal, in the order of the spec.
+    const SIGNALS: &'static [&'static dyn WriteSignal];
+}
+
+/// Returns each signal of a protocol: its message, what the interpreter knows of it, and the one of the generated code.
+///
+/// # Panics
+///
+/// If the engines differ in them.
+pub fn signals<P: Signals>(protocol: &Protocol) -> impl Iterator<Item = (&Message, &Signal, &'static dyn WriteSignal)> {
+    let known =
+        protocol.messages.iter().flat_map(|message| message.signals.iter().map(move |signal| (message, signal)));
+    assert_eq!(known.clone().count(), P::SIGNALS.len(), "both engines have the same signals");
+    known.zip(P::SIGNALS).map(|((message, signal), generated)| {
+        assert_eq!(signal.name, generated.name(), "both engines have them in the same order");
+        (message, signal, *generated)
+    })
 }
 
 /// The optional traits, beside `Arbitrary`, which only the structs of messages have.
-pub trait Optional: serde::Serialize + serde::de::DeserializeOwned + canspec_runtime::defmt::Format {}
+pub trait Optional: serde::Serialize + serde::de::DeserializeOwned + canspec_runtime::plumbing::defmt::Format {}
 
-impl<T: serde::Serialize + serde::de::DeserializeOwned + canspec_runtime::defmt::Format> Optional for T {}
+impl<T: serde::Serialize + serde::de::DeserializeOwned + canspec_runtime::plumbing::defmt::Format> Optional for T {}
 
 /// Returns the specs of a folder of the workspace, in order.
 ///

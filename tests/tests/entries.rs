@@ -45,7 +45,8 @@ impl Visitor for Listed {
                 let range = signal.hull(protocol.models_of(message));
                 let range = range.map(|range| [range.minimum, range.maximum].map(Rational::to_f64));
                 let limits = listed.limits().map(|(minimum, maximum)| [minimum, maximum]);
-                assert_eq!(limits, range.map(|range| range.map(Number::Float)), "{name}");
+                let limits = limits.map(|limits| limits.map(Number::to_f64));
+                assert_eq!(limits, range, "{name}");
             }
             assert_eq!(entry.signals.len(), message.signals.len(), "{name}");
             self.messages += 1;

@@ -71,11 +71,11 @@ fn a_model_without_limits_is_not_held_to_those_of_the_others() {
 #[test]
 fn limits_can_be_asked_for() {
     let speed = limits::SetSpeed::SPEED;
-    assert_eq!(speed.limits_for(limits::Model::P10a), Some((300.0, 3000.0)));
-    assert_eq!(speed.limits_for(limits::Model::P20a), Some((0.0, 6000.0)));
+    assert_eq!(speed.limits_for(limits::Model::P10a), Some((300, 3000)));
+    assert_eq!(speed.limits_for(limits::Model::P20a), Some((0, 6000)));
     assert_eq!(limits::SetSpeed::FLOW.limits_for(limits::Model::P20a), None);
     // Only P10a and P48vDc have the message.
-    assert_eq!(speed.documented_limits(), Some((0.0, 3000.0)));
+    assert_eq!(speed.documented_limits(), Some((0, 3000)));
     assert_eq!(limits::SetSpeed::FLOW.documented_limits(), Some((-30.0, 30.5)));
 }
 

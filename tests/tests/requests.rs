@@ -1,9 +1,9 @@
 //! Requests of the generated code: the frames of the document, whom they address, and which frames answer them.
 
 use canspec_protocols::infy::{
-    Barcode, Error, ErrorCode, Failure, Frame, Identifier, IdentifierFields, Message, ModuleOutput, ModuleStatus,
-    Power, Problem, Received, Replies, Reply, Request, SetModuleOutput, SetTotalOutput, Status0, Status1, Status2,
-    StatusWord, SwitchModules, SystemOutput, Target, embedded_can::Frame as _,
+    Barcode, Error, ErrorCode, Failure, Frame, Identifier, Message, ModuleOutput, ModuleStatus, Power, Problem,
+    Received, Replies, Reply, Request, SetModuleOutput, SetTotalOutput, Status0, Status1, Status2, SwitchModules,
+    SystemOutput, Target, embedded_can::Frame as _,
 };
 
 /// Returns a frame as the document prints it.

@@ -2,7 +2,8 @@
 
 use canspec_codegen::emit::Float;
 use canspec_codegen::{check, compile, source::Source};
-use canspec_runtime::{Integer, Payload, Place, Scale, Signal};
+use canspec_runtime::plumbing::{Integer, Scale};
+use canspec_runtime::{Payload, Place, Signal};
 
 /// physical = (raw × `step` + `start`) / `common`.
 #[derive(Clone, Copy, Debug)]
@@ -187,7 +188,7 @@ fn a_spec_that_does_not_suit_single_precision_is_refused_for_it() {
         let said = said(field, Float::F32);
         assert!(said.ends_with(&format!("error[grid]: `temperature.level`: {why}")), "{field}: {said}");
     }
-    let said = said("{bytes: 0..3, range: 0..16777216}", Float::F32);
+    let said = said("{bytes: 0..3, range: 0..16777216.5}", Float::F32);
     assert!(
         said.ends_with("the limits of `temperature.level` reach 2^24, beyond which a single misses integers"),
         "{said}"
@@ -200,7 +201,8 @@ fn a_spec_that_suits_single_precision_is_not_refused_for_it() {
         "{bytes: 0..1, scale: 1/1000}",
         "{bytes: 0..3, scale: 1/1000, range: 0..4194.303}",
         "{bytes: 0..2, scale: 1/1024}",
-        "{bytes: 0..3, range: 0..16777215}",
+        "{bytes: 0..3, range: 0..8388607.5}",
+        "{bytes: 0..3, range: 0..16777217}",
         "{bytes: 0..3}",
     ] {
         assert_eq!(said(field, Float::F32), "", "{field}");

@@ -4,8 +4,8 @@ use canspec_codegen::interpret::{Input, Limits, physical, raw_of};
 use canspec_codegen::model::{Message, MessageId, Protocol, Signal, SignalId};
 use canspec_protocols::infy::SetModuleOutput;
 use canspec_protocols::{mxr, trio};
-use canspec_runtime::{AnySignal, Meaning, Payload, Reading};
-use canspec_tests::{Frames, Optional, SwitchedVisitor, Visitor, models, protocol, received, visit, visit_switched};
+use canspec_runtime::{Meaning, Payload, Reading, WriteSignal};
+use canspec_tests::{Optional, Signals, SwitchedVisitor, Visitor, protocol, signals, visit, visit_switched};
 
 /// How many random raw values a signal of more than 16 bits sees.
 const SAMPLE: usize = 20_000;
@@ -30,7 +30,7 @@ struct Sweep {
 }
 
 impl Visitor for Sweep {
-    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
+    fn visit<P: canspec_runtime::Protocol + Signals>(&mut self, path: &str) {
         let protocol = protocol(path);
         for message in &protocol.messages {
             for signal in &message.signals {
@@ -50,24 +50,12 @@ fn interpreter(protocol: &Protocol, message: &Message, signal: &Signal) {
     }
 }
 
-/// Sweeps the signals of the generated code, found in frames that carry them.
-fn generated<P: canspec_runtime::Protocol>(protocol: &Protocol) {
-    let mut frames = Frames::new(protocol, 0x5EED);
-    let mut swept = Vec::new();
-    for model in models(protocol).cycle().take(20_000) {
-        let Ok(received) = received::<P>(model, &frames.next_frame()) else { continue };
-        for signal in received.content().layout().signals() {
-            let name = (received.exchange().message(), signal.name());
-            if !swept.contains(&name) {
-                swept.push(name);
-                sweep(*signal);
-            }
-        }
-    }
-    assert_eq!(swept.len(), protocol.messages.iter().map(|message| message.signals.len()).sum::<usize>());
+/// Sweeps the signals of the generated code.
+fn generated<P: Signals>(protocol: &Protocol) {
+    signals::<P>(protocol).for_each(|(_, _, signal)| sweep(signal));
 }
 
-fn sweep(signal: &dyn AnySignal) {
+fn sweep(signal: &dyn WriteSignal) {
     let place = signal.place();
     for bits in raw_values(place.width()) {
         let mut data = [0; 8];
@@ -98,7 +86,7 @@ struct SinglePrecision;
 impl SwitchedVisitor for SinglePrecision {
     fn visit<P>(&mut self, path: &str)
     where
-        P: canspec_runtime::Protocol<Identifier: Optional> + Optional + PartialEq,
+        P: canspec_runtime::Protocol<Identifier: Optional> + Signals + Optional + PartialEq,
     {
         generated::<P>(&protocol(path));
     }

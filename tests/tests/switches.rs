@@ -6,7 +6,8 @@ use arbitrary::{Arbitrary, Unstructured};
 use canspec_codegen::interpret;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
-use canspec_runtime::{Frame, Layout, Payload, Protocol, Text, Word};
+use canspec_runtime::plumbing::Raw;
+use canspec_runtime::{Frame, Layout, Payload, Protocol, Text};
 use canspec_tests::features_status_word_switched::State;
 use canspec_tests::{Frames, Optional, SwitchedVisitor, models, protocol, received, visit_switched};
 use serde::de::DeserializeOwned;
@@ -28,7 +29,7 @@ fn both_ways<T: Optional>(value: &T) -> [T; 2] {
 /// Returns the bytes that hold the values of a message.
 fn bytes(message: &impl Protocol) -> [u8; 8] {
     let mut payload = Payload::new("message", [0; 8]);
-    message.layout().encode(&mut payload).expect("what was decoded fits its signals");
+    message.run(&mut payload).expect("what was decoded fits its signals");
     *payload.data()
 }
 
@@ -171,8 +172,8 @@ fn a_status_word_names_its_set_bits_and_keeps_the_others() {
 
 #[test]
 fn a_packed_value_is_its_text_or_its_number() {
-    let barcode: BarcodeValue = Word::from_raw(0x5613_0C15_A3FB_06A8);
-    let odd: BarcodeValue = Word::from_raw(0x5613_0C15_A3FB_2710);
+    let barcode: BarcodeValue = Raw::from_bits(0x5613_0C15_A3FB_06A8);
+    let odd: BarcodeValue = Raw::from_bits(0x5613_0C15_A3FB_2710);
     assert_eq!([barcode, odd].map(shown), [json!("081807123451V1704"), json!(0x5613_0C15_A3FB_2710_u64)]);
     assert_eq!([barcode, odd].map(|value| both_ways(&value)), [[barcode; 2], [odd; 2]]);
     assert_eq!(
@@ -185,7 +186,7 @@ fn a_packed_value_is_its_text_or_its_number() {
 
 #[test]
 fn a_text_is_a_text_or_its_bytes() {
-    let texts = [Text::<4>::new("AB").expect("two letters"), canspec_runtime::Raw::from_bits(0x4100_4200)];
+    let texts = [Text::<4>::new("AB").expect("two letters"), Raw::from_bits(0x4100_4200)];
     assert_eq!(texts.map(shown), [json!("AB"), json!([0x41, 0, 0x42, 0])]);
     assert_eq!(texts.map(|text| both_ways(&text)), texts.map(|text| [text; 2]));
     assert!(refused::<Text<4>>(json!("ABCDE")).ends_with("expected at most 4 printable ASCII characters, or 4 bytes"));
@@ -242,7 +243,7 @@ fn logs_of_defmt_have_the_names_of_the_spec() {
     assert_eq!(logged(infy::Power::Off), "off");
     assert_eq!(logged(State(0x0201)), "calm | fan_fault");
     assert_eq!(logged(State(0x8002)), "hot");
-    assert_eq!(logged::<BarcodeValue>(Word::from_raw(0x5613_0C15_A3FB_06A8)), "081807123451V1704");
+    assert_eq!(logged::<BarcodeValue>(Raw::from_bits(0x5613_0C15_A3FB_06A8)), "081807123451V1704");
     assert_eq!(logged(Text::<4>::new("AB").expect("two letters")), "AB");
     assert_eq!(logged(Frame::new_raw(0x83, false, [0x55, 1, 0, 0, 0, 0, 0, 0], 2)), "083#5501");
 }

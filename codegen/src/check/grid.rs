@@ -16,7 +16,7 @@ const DOUBLE: u32 = 50;
 const SINGLE: u32 = 22;
 
 /// What numbers must stay below that a single holds exactly, as a power of two: where the common denominator is one, every
-/// step is exact, and the limits of unscaled numbers must stay below that too.
+/// step is exact, and limits of unscaled numbers that have a fraction must stay below that too.
 const EXACT: u32 = 24;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -90,10 +90,11 @@ fn each_scaled(
     }
 }
 
-/// Looks for limits of unscaled numbers that a single does not hold.
+/// Looks for limits of unscaled numbers that a single does not hold; limits without a fraction are integers.
 fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
-        for signal in message.signals.iter().filter(|signal| signal.encoding.is_unscaled()) {
+        let is_compared = |signal: &&Signal| signal.encoding.is_unscaled() && !signal.has_whole_limits();
+        for signal in message.signals.iter().filter(is_compared) {
             let is_missed = |end: Rational| !is_below(Some(end.numerator()), EXACT);
             let ranges = signal.ranges();
             for (_, path) in ranges.filter(|(range, _)| is_missed(range.minimum) || is_missed(range.maximum)) {

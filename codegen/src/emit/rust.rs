@@ -21,8 +21,8 @@ mod set;
 mod spacing;
 mod word;
 
-use proc_macro2::{TokenStream, TokenTree};
-use quote::{format_ident, quote};
+use proc_macro2::TokenStream;
+use quote::quote;
 
 use super::Options;
 use crate::files::MARK;
@@ -35,35 +35,6 @@ use set::SetEmitter;
 pub use names::is_word_of_rust;
 pub(crate) use names::{camel_case, member};
 
-/// What generated code may take from the runtime beside the prelude, which it passes on.
-const RUNTIME: [&str; 25] = [
-    "Address",
-    "AddressType",
-    "AnySignal",
-    "Bits",
-    "Continuation",
-    "Decode",
-    "Destination",
-    "Encode",
-    "Entry",
-    "Exchange",
-    "Filter",
-    "FrameSet",
-    "Legend",
-    "Mode",
-    "Pattern",
-    "Piece",
-    "Place",
-    "Protocol",
-    "Recognised",
-    "Selector",
-    "Signal",
-    "Single",
-    "Who",
-    "left_aligned",
-    "right_aligned",
-];
-
 /// Returns the content of a module that encodes and decodes the protocol, as text to be included as it is.
 pub fn rust(protocol: &Protocol, options: &Options) -> String {
     let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file);
@@ -73,9 +44,13 @@ pub fn rust(protocol: &Protocol, options: &Options) -> String {
 /// Returns the same content as tokens, for macros and for build scripts that go on with it.
 pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
     let items = items(protocol, options);
-    let imports = imports(&items);
     let optional = Derives::new(options).imports();
-    quote!(#imports #optional #items)
+    quote! {
+        pub use canspec_runtime::prelude::*;
+        use canspec_runtime::plumbing::prelude::*;
+        #optional
+        #items
+    }
 }
 
 /// Lays the code out; if it is no Rust it stays as it is, so that its compiler can say why.
@@ -114,44 +89,6 @@ fn words(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {
     let packed =
         signals.filter_map(|(message, signal, name)| word::packed(protocol, name.as_ref()?, message, signal, derives));
     quote!(#(#enumerations)* #(#status_words)* #(#packed)*)
-}
-
-/// Imports what the items use.
-fn imports(items: &TokenStream) -> TokenStream {
-    let mut used = Vec::new();
-    collect(items.clone(), &mut used);
-    let listed = |names: &[&str]| -> Vec<_> {
-        let used = names.iter().filter(|name| used.iter().any(|known| known == *name));
-        used.map(|name| format_ident!("{name}")).collect()
-    };
-    let runtime = listed(&RUNTIME);
-    let display = listed(&["Display"]);
-    let or = listed(&["BitOr"]);
-    quote! {
-        #(use core::fmt::{self, #display, Formatter};)*
-        #(use core::ops::#or;)*
-        pub use canspec_runtime::prelude::*;
-        use canspec_runtime::{#(#runtime),*};
-    }
-}
-
-/// Collects the identifiers that are not the end of a path.
-fn collect(tokens: TokenStream, used: &mut Vec<String>) {
-    let mut colons = 0;
-    for token in tokens {
-        match token {
-            TokenTree::Punct(punct) if punct.as_char() == ':' => colons += 1,
-            TokenTree::Ident(name) if colons < 2 => {
-                used.push(name.to_string());
-                colons = 0;
-            }
-            TokenTree::Group(group) => {
-                collect(group.stream(), used);
-                colons = 0;
-            }
-            TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Literal(_) => colons = 0,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -3,11 +3,11 @@
 use std::cmp::Reverse;
 use std::fmt::Display;
 
-use super::value::{float, in_range, named, physical};
+use super::value::{float, in_range, named, physical, whole_in_range};
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
 use crate::model::{
     AddressPattern, Course, Direction, Encoding, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId,
-    NoteRule, Protocol, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
+    NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
 /// Decodes a frame that goes to a device model, or comes from one.
@@ -409,18 +409,19 @@ fn signal_note(signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Op
         (_, Value::Status { unknown, .. }) if *unknown != 0 => {
             note(NoteRule::UnknownBit, format!("{name} has bits {unknown:#X} set that have no name"))
         }
-        (_, Value::Integer(whole)) => {
-            #[allow(clippy::cast_precision_loss, reason = "ranges of unscaled signals lie below 2^53")]
-            let value = *whole as f64;
-            range_note(signal, model, value, whole)
-        }
-        (_, Value::Number(value)) => range_note(signal, model, *value, value),
+        (_, Value::Integer(value)) => range_note(signal, model, value, |range| whole_in_range(range, *value)),
+        (_, Value::Number(value)) => range_note(signal, model, value, |range| in_range(signal, range, *value)),
         _ => None,
     }
 }
 
-fn range_note(signal: &Signal, model: Option<ModelId>, value: f64, shown: &dyn Display) -> Option<Note> {
-    let range = signal.range_for(model).filter(|range| !in_range(signal, range, value))?;
+fn range_note(
+    signal: &Signal,
+    model: Option<ModelId>,
+    shown: impl Display,
+    is_inside: impl FnOnce(&Range) -> bool,
+) -> Option<Note> {
+    let range = signal.range_for(model).filter(|range| !is_inside(range))?;
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
     Some(Note { rule: NoteRule::OutOfRange, text })

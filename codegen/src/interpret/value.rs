@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::fmt::Display;
 
-use canspec_runtime::{Scale, nearest};
+use canspec_runtime::plumbing::{Scale, nearest};
 
 use super::{Input, Refusal, Value};
 use crate::model::{Encoding, Enumeration, Kind, Message, ModelId, NamedValue, Protocol, Range, Signal, raw_limits};
@@ -77,6 +77,11 @@ pub fn in_range(signal: &Signal, range: &Range, value: f64) -> bool {
     let (minimum, maximum) = (range.minimum.to_f64(), range.maximum.to_f64());
     let is_float = matches!(signal.encoding, Encoding::Float);
     is_within(minimum, maximum) || (is_float && is_within(nearest(minimum), nearest(maximum)))
+}
+
+/// Tests an integer that is its own physical value against the range, however many digits it has.
+pub fn whole_in_range(range: &Range, value: i128) -> bool {
+    (range.minimum..=range.maximum).contains(&Rational::integer(value))
 }
 
 /// What a value to send must keep to.
@@ -173,7 +178,11 @@ impl Encoder<'_> {
         let raw =
             if self.signal.encoding.is_unscaled() { nearest(value) } else { runtime_scale(scale, offset).raw(value) };
         if let Some(raw) = raw.map(i128::from) {
-            self.check_sent(value, scaled(raw, scale, offset), self.special(raw))?;
+            let special = self.special(raw);
+            self.check_sent(value, scaled(raw, scale, offset), special)?;
+            if special.is_none() && self.signal.encoding.is_unscaled() {
+                self.check_whole(raw)?;
+            }
         } else {
             self.check_range(value)?;
         }
@@ -184,7 +193,7 @@ impl Encoder<'_> {
     /// Encodes an unscaled number.
     fn whole(&self, value: i128, signed: bool) -> Result<u64, String> {
         if self.special(value).is_none() {
-            self.check_shown(as_double(value), &value)?;
+            self.check_whole(value)?;
         }
         self.bits(value, signed).map_err(|_| self.misfit(value))
     }
@@ -197,8 +206,10 @@ impl Encoder<'_> {
     fn raw_number(&self, raw: i128, signed: bool) -> Result<u64, String> {
         let Encoding::Number { scale, offset, .. } = self.signal.encoding else { return self.bits(raw, signed) };
         let bits = self.bits(raw, signed)?;
-        if self.special(raw).is_none() {
-            self.check_range(scaled(raw, scale, offset))?;
+        match self.special(raw) {
+            Some(_) => {}
+            None if self.signal.encoding.is_unscaled() => self.check_whole(raw)?,
+            None => self.check_range(scaled(raw, scale, offset))?,
         }
         Ok(bits)
     }
@@ -221,12 +232,16 @@ impl Encoder<'_> {
     }
 
     fn check_range(&self, value: f64) -> Result<(), String> {
-        self.check_shown(value, &value)
+        self.limits_missed(value).map_or(Ok(()), |limits| Err(format!("{value}{} is outside {limits}", self.unit())))
     }
 
-    /// Tests a number that a double may only come near to.
-    fn check_shown(&self, value: f64, shown: &dyn Display) -> Result<(), String> {
-        self.limits_missed(value).map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", self.unit())))
+    fn check_whole(&self, value: i128) -> Result<(), String> {
+        match self.range() {
+            Some(range) if !whole_in_range(&range, value) => {
+                Err(format!("{value}{} is outside {}", self.unit(), self.limits_of(range)))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Tests a number to send, and what it becomes by rounding: another number, or a special value.
@@ -248,23 +263,30 @@ impl Encoder<'_> {
 
     /// Returns the limits outside which a number lies.
     fn limits_missed(&self, value: f64) -> Option<String> {
-        let Limits::Range(model) = self.limits else { return None };
-        let range = self.range(model).filter(|range| !in_range(self.signal, range, value))?;
-        Some(format!("{}..{}{}{}", range.minimum, range.maximum, self.unit(), self.advice(model)))
+        let range = self.range().filter(|range| !in_range(self.signal, range, value))?;
+        Some(self.limits_of(range))
     }
 
-    fn range(&self, model: Option<ModelId>) -> Option<Range> {
-        match model {
-            Some(_) => self.signal.range_for(model),
-            None => self.signal.hull(self.protocol.models_of(self.message)),
+    /// Returns the range to keep to, if there is one.
+    fn range(&self) -> Option<Range> {
+        match self.limits {
+            Limits::Bits => None,
+            Limits::Range(None) => self.signal.hull(self.protocol.models_of(self.message)),
+            Limits::Range(model) => self.signal.range_for(model),
         }
     }
 
-    fn advice(&self, model: Option<ModelId>) -> &'static str {
-        if model.is_some() || self.signal.model_ranges.is_empty() {
-            return "";
+    fn limits_of(&self, range: Range) -> String {
+        format!("{}..{}{}{}", range.minimum, range.maximum, self.unit(), self.advice())
+    }
+
+    fn advice(&self) -> &'static str {
+        match self.limits {
+            Limits::Range(None) if !self.signal.model_ranges.is_empty() => {
+                ", the limits of the models taken together; choose a model for its own"
+            }
+            Limits::Range(_) | Limits::Bits => "",
         }
-        ", the limits of the models taken together; choose a model for its own"
     }
 
     fn unit(&self) -> String {

@@ -156,6 +156,12 @@ impl Signal {
         Some(Range { minimum: one.min(other), maximum: one.max(other) })
     }
 
+    /// Tests whether no limit has a fraction.
+    pub fn has_whole_limits(&self) -> bool {
+        let mut limits = self.ranges().flat_map(|(range, _)| [range.minimum, range.maximum]);
+        limits.all(|limit| limit.to_integer().is_some())
+    }
+
     /// Returns all physical limits, each with its place in the spec.
     pub fn ranges(&self) -> impl Iterator<Item = (Range, Path)> {
         let general = self.range.map(|range| (range, self.range_path.clone()));

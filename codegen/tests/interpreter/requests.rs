@@ -3,7 +3,7 @@
 use canspec_codegen::interpret::{Target, requests};
 use canspec_codegen::model::Protocol;
 
-use super::{WIDE, feature, model, printed, protocol, requested, written};
+use super::{WIDE, feature, model, notes, printed, protocol, requested, written};
 
 fn output(signals: &[(&str, &str)]) -> Option<String> {
     requested(&feature("scaled_signal"), None, "set_output", "module:3", signals).ok()
@@ -75,8 +75,8 @@ fn limit(current: &str, interval: &str, slope: &str) -> Result<String, String> {
 fn what_is_sent_for_a_value_between_two_steps_lies_inside_the_range_too() {
     // The range is 0.04..20.06 A in steps of 0.1 A: 20.04 A is raw 200 = 0xC8, 20.06 A would be 201.
     let sent = |current| limit(current, "10", "5").ok();
-    assert_eq!(sent("20.04").as_deref(), Some("006#C80A0500"));
-    assert_eq!(sent("0.05").as_deref(), Some("006#010A0500"));
+    assert_eq!(sent("20.04").as_deref(), Some("006#C80A050000000000"));
+    assert_eq!(sent("0.05").as_deref(), Some("006#010A050000000000"));
     let refused = limit("20.06", "10", "5").expect_err("20.1 A would be sent");
     assert_eq!(refused, "set_limit.current: 20.06 A would be sent as 20.1 A, which is outside 0.04..20.06 A");
     // The range is 0.5..9.5 in steps of 1.
@@ -84,16 +84,27 @@ fn what_is_sent_for_a_value_between_two_steps_lies_inside_the_range_too() {
 }
 
 #[test]
+fn a_limit_of_64_bits_is_exact() {
+    // 2^53 + 3 is no double; the nearest one is 2^53 + 4.
+    let charger = feature("limits_between_steps");
+    let total = |total| requested(&charger, None, "set_total", "charger", &[("total", total)]).ok();
+    assert_eq!(total("9007199254740995").as_deref(), Some("008#0020000000000003"));
+    assert_eq!([total("9007199254740996"), total("9007199254740996.0"), total("0")], [None, None, None]);
+    assert_eq!(notes(&charger, "008#0020000000000003"), [""; 0]);
+    assert_eq!(notes(&charger, "008#0020000000000004"), ["out_of_range"]);
+}
+
+#[test]
 fn a_number_that_would_be_sent_as_a_special_value_is_refused() {
     let refused = limit("0.04", "10", "5").expect_err("raw 0 would be sent");
     assert_eq!(refused, "set_limit.current: 0.04 A would be sent as `unlimited`");
-    assert_eq!(limit("0", "10", "5").as_deref(), Ok("006#000A0500"));
-    assert_eq!(limit("unlimited", "10", "5").as_deref(), Ok("006#000A0500"));
+    assert_eq!(limit("0", "10", "5").as_deref(), Ok("006#000A050000000000"));
+    assert_eq!(limit("unlimited", "10", "5").as_deref(), Ok("006#000A050000000000"));
     // There is no range at all.
     let refused = limit("1", "0.4", "5").expect_err("raw 0 would be sent");
     assert_eq!(refused, "set_limit.interval: 0.4 s would be sent as `never`");
-    assert_eq!(limit("1", "0", "5").as_deref(), Ok("006#0A000500"));
-    assert_eq!(limit("1", "0.5", "5").as_deref(), Ok("006#0A010500"));
+    assert_eq!(limit("1", "0", "5").as_deref(), Ok("006#0A00050000000000"));
+    assert_eq!(limit("1", "0.5", "5").as_deref(), Ok("006#0A01050000000000"));
 }
 
 #[test]

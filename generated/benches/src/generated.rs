@@ -3,9 +3,8 @@
 use std::fmt::Debug;
 
 use canspec_protocols::infy::{
-    Barcode, Error, ExternalVoltage, Identifier, InputVoltage, Kind, Layout, Message, ModuleCount, ModuleLimits,
+    Barcode, Error, ExternalVoltage, Identifier, InputVoltage, Kind, Message, ModuleCount, ModuleLimits,
     ModuleOutput, ModuleOutputFixed, ModuleStatus, Received, Request, Route, SystemOutput, SystemOutputFixed, Target,
-    Word,
 };
 
 use crate::frame::Frame;
@@ -49,7 +48,7 @@ impl Codec for Generated {
 }
 
 fn request(route: Route<Target>, message: &Message) -> Result<canspec_runtime::Frame, Error> {
-    fn frame<R: Layout>(request: Request<R>) -> canspec_runtime::Frame {
+    fn frame<R>(request: Request<R>) -> canspec_runtime::Frame {
         *request.frame()
     }
     match message {

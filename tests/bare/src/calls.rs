@@ -4,9 +4,10 @@ use core::fmt::{self, Display, Write};
 use core::hint::black_box;
 
 use canspec_runtime::assembler::{Assembler, Partial};
+use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::{
-    AnySignal, Destination, Error, FrameSet, Layout, Meaning, Named, Packed, Problem, Protocol, Raw, Reading, Received,
-    Request, Route, Signal, StatusWord,
+    AnySignal, Destination, Error, FrameSet, Layout, Meaning, Problem, Protocol, Reading, Received, Request, Route,
+    Signal, WriteSignal,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -34,6 +35,13 @@ pub fn text(value: &impl Display) {
 /// Recognises a frame.
 pub fn decode<P: Protocol>() {
     sink(Received::<P>::decode(&unknown_frame()));
+}
+
+/// Recognises a frame and shows its signals.
+pub fn visit<P: Protocol>() {
+    if let Ok(received) = Received::<P>::decode(&unknown_frame()) {
+        received.visit(|reading| sink((reading.raw, reading.meaning)));
+    }
 }
 
 /// Recognises a frame and asks for all that it says; builds it anew, and with other values and another identifier.
@@ -79,9 +87,7 @@ pub fn questions<T: Destination + Unknown>() {
 
 /// Decodes and encodes what a message carries.
 pub fn layout<T: Layout + Unknown>() {
-    let message = T::decode(&unknown());
-    sink((unknown::<T>().encode(&mut unknown()), message.signals()));
-    sink(message);
+    sink((T::decode(&unknown()), unknown::<T>().encode(&mut unknown()), T::SIGNALS));
 }
 
 fn unknown_frame() -> canspec_runtime::Frame {
@@ -139,35 +145,18 @@ fn partial<S>(partial: Partial<S>) {
 }
 
 /// Builds a request and no more.
-pub fn encode<P: Protocol, R: Layout>(request: Result<Request<P, R>, Error>) {
+pub fn encode<P, R>(request: Result<Request<P, R>, Error>) {
     sink(request);
 }
 
 /// Reads and writes a signal, as its own type and as any signal.
-pub fn signal<R: Raw + Unknown>(signal: &'static Signal<R>) {
+pub fn signal<R: Raw + Unknown, F: Physical<R>>(signal: &'static Signal<R, F>) {
     sink((signal.get(&unknown()), signal.documented_limits()));
     let mut payload = unknown();
     sink(signal.put(unknown(), &mut payload));
     sink(signal.write(unknown(), &mut payload));
     sink(payload);
     signal.read(&unknown(), &mut reading);
-    let signal: &dyn AnySignal = signal;
+    let signal: &dyn WriteSignal = signal;
     sink(signal);
-}
-
-/// Names a value, and finds it by its name.
-pub fn named<T: Named + Unknown>() {
-    sink((unknown::<T>().name(), T::from_name(unknown())));
-}
-
-/// Asks for the bits of a status word.
-pub fn status_word<T: StatusWord + Unknown>() {
-    let (one, other) = (unknown::<T>(), unknown());
-    sink((one.contains(other), one.intersects(other), one.is_empty(), one.union(other), one.unknown()));
-    one.set_bits().for_each(sink);
-}
-
-/// Reads a packed value from a text.
-pub fn packed<T: Packed + Unknown>() {
-    sink((unknown::<T>().text(), T::parse(unknown())));
 }

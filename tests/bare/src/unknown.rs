@@ -1,6 +1,7 @@
 //! Values that the compiler cannot foresee.
 
-use canspec_runtime::{Destination, Frame, Meaning, Number, Payload, Raw, Route, Text};
+use canspec_runtime::plumbing::Raw;
+use canspec_runtime::{Destination, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
 pub trait Unknown: Sized {

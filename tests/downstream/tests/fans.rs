@@ -2,8 +2,8 @@
 
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
 use winch_driver::fan::{
-    Air, Error, Failure, Frame, Identifier, Message, Model, Named, Power, Problem, Replies, Request, SetBlades,
-    SetSpeed, Target,
+    Air, Error, Failure, Frame, Identifier, Message, Model, Power, Problem, Replies, Request, SetBlades, SetSpeed,
+    Target,
 };
 
 /// Raw -1501, raw 25 and raw 1.
@@ -32,7 +32,7 @@ fn power_0_is_on_and_power_1_is_off() {
     assert_eq!(speed(Power::On), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 0]));
     assert_eq!(speed(Power::Off), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 1]));
     assert_eq!(speed(Power::Unknown(7)), frame(0x0191_01E1, &[1, 0x23, 0xFA, 25, 7]));
-    assert_eq!([Power::On, Power::Off, Power::Unknown(7)].map(Named::name), [Some("on"), Some("off"), None]);
+    assert_eq!([Power::On, Power::Off, Power::Unknown(7)].map(Power::name), [Some("on"), Some("off"), None]);
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn what_is_no_frame_of_a_fan_is_named() {
     assert_eq!(problem(0x0191_01E1, &[1, 0, 0, 0, 0, 0]), Err(Problem::Length));
 }
 
-fn sent<R: winch_driver::fan::Layout>(request: Result<Request<R>, Error>) -> Frame {
+fn sent<R>(request: Result<Request<R>, Error>) -> Frame {
     *request.expect("the document allows it").frame()
 }
 

@@ -1,7 +1,7 @@
 //! The frames that the manual of the winches prints.
 
 use winch_driver::winch::embedded_can::{ExtendedId, Frame as _};
-use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, StatusWord, Target};
+use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, Target};
 use winch_driver::{pull, rope_m};
 
 #[test]

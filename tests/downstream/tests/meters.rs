@@ -30,7 +30,7 @@ fn an_entry_says_what_its_row_of_the_table_says() {
     assert!(entry.exchanges.iter().map(|exchange| exchange.access()).eq(["read", "write"]));
     let signal = entry.signals[0];
     assert_eq!((signal.name(), signal.unit()), ("value", Some("s")));
-    assert_eq!(signal.limits(), Some((Number::Float(1.0), Number::Float(3600.0))));
+    assert_eq!(signal.limits(), Some((Number::Unsigned(1), Number::Unsigned(3600))));
     assert_eq!(signal.place(), Period::VALUE.place());
     assert_eq!(meter::MESSAGES[0].title, "voltage");
 }

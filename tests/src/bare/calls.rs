@@ -39,7 +39,11 @@ impl Module {
 
     /// Returns calls of everything.
     pub fn everything(&self) -> TokenStream {
-        let functions = self.functions().filter(|function| function.signature.ident != "fmt").map(Function::call);
+        // What has parameters of its own is called by the runtime.
+        let is_called = |function: &Function<'_>| {
+            function.signature.ident != "fmt" && function.signature.generics.params.is_empty()
+        };
+        let functions = self.functions().filter(is_called).map(Function::call);
         functions.chain(self.signals()).chain(self.blocks().map(provided)).collect()
     }
 
@@ -60,9 +64,7 @@ impl Module {
 
     /// Returns the names of the structs that frames decode to.
     pub fn layouts(&self) -> impl Iterator<Item = String> {
-        let is_layout = |block: &&ItemImpl| {
-            trait_name(block).is_some_and(|name| ["Layout", "Single"].iter().any(|known| name.ident == known))
-        };
+        let is_layout = |block: &&ItemImpl| trait_name(block).is_some_and(|name| name.ident == "Layout");
         let layouts = self.blocks().filter(is_layout);
         layouts.map(|block| text(&block.self_ty))
     }
@@ -112,7 +114,7 @@ impl Function<'_> {
 
     fn result(self) -> TokenStream {
         let (owner, name) = (&self.block.self_ty, &self.signature.ident);
-        let of_trait = trait_name(self.block).map(|name| quote!(as #name));
+        let of_trait = self.block.trait_.as_ref().map(|(path, _)| quote!(as #path));
         let arguments = self.signature.inputs.iter().map(|argument| match argument {
             FnArg::Receiver(receiver) => unknown_receiver(&receiver.kind),
             FnArg::Typed(argument) => unknown(&argument.ty),
@@ -160,10 +162,7 @@ fn unknown(argument: &Type) -> TokenStream {
 fn provided(block: &ItemImpl) -> TokenStream {
     let owner = &block.self_ty;
     match trait_name(block).map(|name| name.ident.to_string()).as_deref() {
-        Some("Named") => quote!(calls::named::<#owner>();),
-        Some("StatusWord") => quote!(calls::status_word::<#owner>();),
-        Some("Packed") => quote!(calls::packed::<#owner>();),
-        Some("Single") => quote!(calls::layout::<#owner>();),
+        Some("Layout") => quote!(calls::layout::<#owner>();),
         Some("Destination") => quote!(calls::questions::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
         Some("FrameSet") => quote!(calls::assembler::<#owner>();),

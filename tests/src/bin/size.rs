@@ -63,6 +63,7 @@ fn programs() -> Vec<(String, Program)> {
         let message = codec.one_message().unwrap_or_default();
         [
             (format!("`{name}`: decode"), Program::decode(codec)),
+            (format!("`{name}`: visit"), Program::visit(codec)),
             (format!("`{name}`: encode"), Program::encode(codec)),
             (format!("`{name}`: `{message}` alone"), Program::one_message(codec)),
         ]

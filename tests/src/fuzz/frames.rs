@@ -7,7 +7,7 @@ use canspec_codegen::model::{Id, Message, ModelId, Protocol, Signal, SignalId};
 use fastrand::Rng;
 
 use crate::engines::{candidates, compare_decoding, compare_encoding};
-use crate::{Visitor, protocol, received, visit};
+use crate::{Signals, Visitor, protocol, received, signals, visit};
 
 /// A protocol, and how its engines are compared.
 struct Engines {
@@ -24,7 +24,7 @@ static ENGINES: LazyLock<Vec<Engines>> = LazyLock::new(|| {
 struct All(Vec<Engines>);
 
 impl Visitor for All {
-    fn visit<P: canspec_runtime::Protocol>(&mut self, path: &str) {
+    fn visit<P: canspec_runtime::Protocol + Signals>(&mut self, path: &str) {
         self.0.push(Engines { protocol: protocol(path), compare: compare::<P> });
     }
 }
@@ -89,13 +89,14 @@ pub fn run(data: &[u8]) {
     (engines.compare)(&engines.protocol, &case);
 }
 
-fn compare<P: canspec_runtime::Protocol>(protocol: &Protocol, case: &Case) {
+fn compare<P: canspec_runtime::Protocol + Signals>(protocol: &Protocol, case: &Case) {
     let (model, frame) = (case.model(protocol), case.frame(protocol));
     compare_decoding::<P>(protocol, model, &frame);
     let (Some(message), Ok(received)) = (case.message(), received::<P>(model, &frame)) else { return };
-    for known in received.content().layout().signals() {
-        let signal = message.signals.iter().find(|signal| signal.name == known.name());
-        compare_encoding(protocol, message, signal.expect("both engines know the signal"), *known, case.value);
+    let carried = received.signals().iter().map(|signal| signal.name()).collect::<Vec<_>>();
+    let own = signals::<P>(protocol).filter(|(owner, ..)| owner.name == message.name);
+    for (message, signal, known) in own.filter(|(_, _, known)| carried.contains(&known.name())) {
+        compare_encoding(protocol, message, signal, known, case.value);
     }
 }
 

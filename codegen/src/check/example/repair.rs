@@ -1,6 +1,7 @@
 //! One change of a field with which its examples hold.
 
-use canspec_runtime::{ByteOrder, Place};
+use canspec_runtime::Place;
+use canspec_runtime::plumbing::ByteOrder;
 
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;

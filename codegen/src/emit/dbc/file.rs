@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use canspec_runtime::{ByteOrder, Place};
+use canspec_runtime::Place;
+use canspec_runtime::plumbing::ByteOrder;
 
 use super::names::short;
 use crate::model::Range;

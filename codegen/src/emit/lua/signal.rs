@@ -1,6 +1,7 @@
 //! Signals: where their bits are, and what they mean.
 
-use canspec_runtime::{ByteOrder, Place};
+use canspec_runtime::Place;
+use canspec_runtime::plumbing::ByteOrder;
 
 use super::table::Value;
 use crate::model::{Encoding, NamedValue, PartId, Piece, Protocol, Range, Signal, StatusBit, Table};

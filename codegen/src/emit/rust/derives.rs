@@ -22,19 +22,19 @@ impl<'a> Derives<'a> {
         let serde = gated(
             serde,
             &quote!(
-                use canspec_runtime::serde;
+                use canspec_runtime::plumbing::serde;
             ),
         );
         let defmt = gated(
             defmt,
             &quote!(
-                use canspec_runtime::defmt;
+                use canspec_runtime::plumbing::defmt;
             ),
         );
         let arbitrary = gated(
             arbitrary,
             &quote!(
-                use canspec_runtime::arbitrary;
+                use canspec_runtime::plumbing::arbitrary;
             ),
         );
         quote!(#serde #defmt #arbitrary)
@@ -42,12 +42,12 @@ impl<'a> Derives<'a> {
 
     /// Emits the attributes of a struct whose fields have the traits.
     pub fn structure(self) -> TokenStream {
-        self.attributes(&quote!(serde(crate = "canspec_runtime::serde")))
+        self.attributes(&quote!(serde(crate = "canspec_runtime::plumbing::serde")))
     }
 
     /// Emits the attributes of an enum whose variants go by their names in the spec.
     pub fn variants(self) -> TokenStream {
-        self.attributes(&quote!(serde(crate = "canspec_runtime::serde", rename_all = "snake_case")))
+        self.attributes(&quote!(serde(crate = "canspec_runtime::plumbing::serde", rename_all = "snake_case")))
     }
 
     fn attributes(self, of_serde: &TokenStream) -> TokenStream {

@@ -1,6 +1,6 @@
 //! Which message a frame carries: one `match` over its selectors for each direction.
 
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream, TokenTree};
 use quote::quote;
 
 use super::choice::{Arm, choice, condition, joined, split};
@@ -137,6 +137,25 @@ pub fn argument(name: &str, body: &TokenStream) -> TokenStream {
 
 fn mentions(code: &TokenStream, name: &str) -> bool {
     let mut used = Vec::new();
-    super::collect(code.clone(), &mut used);
+    collect(code.clone(), &mut used);
     used.iter().any(|known| known == name)
+}
+
+/// Collects the identifiers that are not the end of a path.
+fn collect(tokens: TokenStream, used: &mut Vec<String>) {
+    let mut colons = 0;
+    for token in tokens {
+        match token {
+            TokenTree::Punct(punct) if punct.as_char() == ':' => colons += 1,
+            TokenTree::Ident(name) if colons < 2 => {
+                used.push(name.to_string());
+                colons = 0;
+            }
+            TokenTree::Group(group) => {
+                collect(group.stream(), used);
+                colons = 0;
+            }
+            TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Literal(_) => colons = 0,
+        }
+    }
 }

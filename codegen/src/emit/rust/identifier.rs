@@ -18,14 +18,14 @@ pub fn identifier(protocol: &Protocol, names: &Names, derives: Derives) -> Token
     let comment = doc::line(format!("The {}-bit identifier of a frame.", if *extended { 29 } else { 11 }));
     let members = fields.iter().map(|field| member(protocol, names, field));
     let places = fields.iter().map(place);
-    let split = splitting(protocol);
+    let (split, directions) = (splitting(protocol), directions(protocol));
     quote! {
         #comment
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #optional
         pub struct Identifier { #(#members),* }
-        impl Identifier { #(#places)* }
-        #split
+        impl Identifier { #(#places)* #split }
+        #directions
     }
 }
 
@@ -68,18 +68,30 @@ fn splitting(protocol: &Protocol) -> TokenStream {
         let ones = hexadecimal(ones, 32);
         quote!(#ones |)
     });
+    quote! {
+        /// Splits an identifier.
+        #[must_use]
+        pub fn from_raw(id: u32) -> Self {
+            Self { #(#fields: Self::#places.read(id)),* }
+        }
+
+        /// Joins the fields; bits that a field cannot hold are dropped.
+        #[must_use]
+        pub fn to_raw(self) -> u32 {
+            #ones #(Self::#places.write(self.#fields))|*
+        }
+    }
+}
+
+/// Emits what code for every protocol asks an identifier.
+fn directions(protocol: &Protocol) -> TokenStream {
     let foreign = foreign(protocol);
     let to_module = test("is_to_module", any(protocol, &protocol.recognition.to_module));
     let to_controller = test("is_to_controller", any(protocol, &protocol.recognition.to_controller));
     quote! {
         impl IdentifierFields for Identifier {
-            fn from_raw(id: u32) -> Self {
-                Self { #(#fields: Self::#places.read(id)),* }
-            }
-
-            fn to_raw(self) -> u32 {
-                #ones #(Self::#places.write(self.#fields))|*
-            }
+            const FROM_RAW: fn(u32) -> Self = Self::from_raw;
+            const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
             #foreign
             #to_module

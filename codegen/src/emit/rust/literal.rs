@@ -5,6 +5,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
 
 use crate::emit::Float;
+use crate::model::Range;
 use crate::number::Rational;
 
 /// Writes a field of so many bits in hexadecimal.
@@ -34,6 +35,11 @@ pub fn physical(value: Rational, float: Float) -> TokenStream {
         Float::F32 => (value.to_f64() as f32).to_string(),
     };
     signed(&if text.contains('.') { text } else { format!("{text}.0") })
+}
+
+/// Writes the ends of a range as they are compared: as integers, or in floating point.
+pub fn ends(range: Range, whole: bool, float: Float) -> [TokenStream; 2] {
+    [range.minimum, range.maximum].map(|end| if whole { decimal(end.numerator()) } else { physical(end, float) })
 }
 
 /// Writes the eight bytes of a frame.

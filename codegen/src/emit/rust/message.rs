@@ -7,7 +7,7 @@ use quote::quote;
 use super::derives::Derives;
 use super::doc;
 use super::exchange::{exchange, modes, shared_name};
-use super::literal::{data, decimal, physical, physical_type};
+use super::literal::{data, decimal, ends, physical, physical_type};
 use super::model::{depends_on_model, model_limits};
 use super::names::{MessageNames, Names, Struct};
 use super::place::Written;
@@ -199,13 +199,13 @@ impl Emitter<'_> {
         let refinements = [
             unit(signal),
             scale(signal),
-            self.range(signal).map(|range| limits(range, self.float)),
+            self.range(signal).map(|range| limits(range, whole(signal).is_some(), self.float)),
             model_limits(self.protocol, self.all, signal),
             special_list(signal),
         ];
         let refinements = refinements.into_iter().flatten();
         let values = signal.specials.iter().map(|special| self.special(id, special));
-        let physical = (self.float == Float::F32).then(|| quote!(, f32));
+        let physical = calculated(signal, self.float).map(|kind| quote!(, #kind));
         quote!(#comment pub const #name: Signal<#raw #physical> = Signal::new(#text, #place) #(#refinements)*; #(#values)*)
     }
 
@@ -275,33 +275,16 @@ impl Emitter<'_> {
             .map(|scaled| if scaled { (quote!(decode), quote!(encode)) } else { (quote!(get), quote!(put)) })
             .unzip();
         let decode = quote!(Self { #(#fields: #owner::#constants.#get(data)),* });
-        let encode = |values: &TokenStream| -> Vec<_> {
-            let writes = constants.iter().zip(&fields).zip(&put);
-            writes.map(|((constant, field), put)| quote!(#owner::#constant.#put(#values.#field, payload))).collect()
-        };
-        if let ([constant], [write]) = (constants.as_slice(), encode(&quote!(message)).as_slice()) {
-            return Some(quote! {
-                impl Single for #name {
-                    const SIGNAL: &'static dyn AnySignal = &#owner::#constant;
-                    const DECODE: Decode<Self> = |data| #decode;
-                    const ENCODE: Encode<Self> = |message, payload| #write;
-                }
-            });
-        }
-        let writes = encode(&quote!(self));
+        let writes = constants.iter().zip(&fields).zip(&put);
+        let writes = writes.map(|((constant, field), put)| quote!(#owner::#constant.#put(message.#field, payload)));
+        let writes: Vec<_> = writes.collect();
         let (last, others) = writes.split_last()?;
+        let encode = if others.is_empty() { quote!(#last) } else { quote!({ #(#others?;)* #last }) };
         Some(quote! {
             impl Layout for #name {
-                fn decode(data: &Data) -> Self { #decode }
-
-                fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-                    #(#others?;)*
-                    #last
-                }
-
-                fn signals(&self) -> &'static [&'static dyn AnySignal] {
-                    &[#(&#owner::#constants),*]
-                }
+                const SIGNALS: &'static [&'static dyn AnySignal] = &[#(&#owner::#constants),*];
+                const DECODE: Decode<Self> = |data| #decode;
+                const ENCODE: Encode<Self> = |message, payload| #encode;
             }
         })
     }
@@ -330,8 +313,26 @@ fn scale(signal: &Signal) -> Option<TokenStream> {
     Some(quote!(#scale #offset))
 }
 
-fn limits(range: Range, float: Float) -> TokenStream {
-    let (minimum, maximum) = (physical(range.minimum, float), physical(range.maximum, float));
+/// Returns the type of physical values and limits where it is not that of the raw values: of scaled numbers, of floats with
+/// limits in double precision, and of integers whose limits have a fraction.
+fn calculated(signal: &Signal, float: Float) -> Option<TokenStream> {
+    let is_calculated = match signal.encoding {
+        Encoding::Number { .. } => whole(signal).is_none(),
+        Encoding::Float => float == Float::F64 && signal.ranges().next().is_some(),
+        Encoding::Text | Encoding::Named(_) | Encoding::Status(_) | Encoding::Packed { .. } => false,
+    };
+    is_calculated.then(|| physical_type(float))
+}
+
+/// Returns the type of a number that is a raw integer, and its limits too.
+pub fn whole(signal: &Signal) -> Option<TokenStream> {
+    let Encoding::Number { signed, .. } = signal.encoding else { return None };
+    let is_whole = signal.encoding.is_unscaled() && signal.has_whole_limits();
+    is_whole.then(|| integer(signal.place.width(), signed))
+}
+
+fn limits(range: Range, is_whole: bool, float: Float) -> TokenStream {
+    let [minimum, maximum] = ends(range, is_whole, float);
     quote!(.limits(#minimum, #maximum))
 }
 

@@ -5,7 +5,8 @@ use quote::{format_ident, quote};
 
 use super::derives::Derives;
 use super::doc;
-use super::literal::{physical, physical_type};
+use super::literal::{ends, physical_type};
+use super::message::whole;
 use super::names::{Names, model_variants};
 use crate::emit::Float;
 use crate::model::{FrameLayout, Kind, Message, ModelId, Protocol, Range, Signal, SignalId, Table};
@@ -15,7 +16,17 @@ use crate::syntax::tree::Step;
 pub struct Limits {
     pub name: Ident,
     ranges: Table<ModelId, Option<Range>>,
+    /// The type of limits that are integers.
+    whole: Option<TokenStream>,
     of: String,
+}
+
+impl Limits {
+    /// Tests whether a signal has these limits, compared as these are.
+    fn are_of(&self, protocol: &Protocol, signal: &Signal) -> bool {
+        let text = |kind: &Option<TokenStream>| kind.as_ref().map(ToString::to_string);
+        self.ranges == ranges(protocol, signal) && text(&self.whole) == text(&whole(signal))
+    }
 }
 
 /// Returns every table of limits by device model once.
@@ -23,8 +34,7 @@ pub fn limits(protocol: &Protocol) -> Vec<Limits> {
     let mut known: Vec<Limits> = Vec::new();
     let signals = protocol.messages.iter().flat_map(|message| &message.signals);
     for signal in signals.filter(|signal| !signal.model_ranges.is_empty()) {
-        let ranges = ranges(protocol, signal);
-        if known.iter().any(|limits| limits.ranges == ranges) {
+        if known.iter().any(|limits| limits.are_of(protocol, signal)) {
             continue;
         }
         let of = type_name(signal).unwrap_or(&signal.name).to_owned();
@@ -32,7 +42,12 @@ pub fn limits(protocol: &Protocol) -> Vec<Limits> {
         while known.iter().any(|limits| limits.name == name) {
             name.push('_');
         }
-        known.push(Limits { name: format_ident!("{name}"), ranges, of });
+        known.push(Limits {
+            name: format_ident!("{name}"),
+            ranges: ranges(protocol, signal),
+            whole: whole(signal),
+            of,
+        });
     }
     known
 }
@@ -117,21 +132,20 @@ fn table(limits: &Limits, variants: &Table<ModelId, Ident>, float: Float) -> Tok
         let range = range.map_or_else(
             || quote!(None),
             |range| {
-                let [minimum, maximum] = [range.minimum, range.maximum].map(|limit| physical(limit, float));
+                let [minimum, maximum] = ends(range, limits.whole.is_some(), float);
                 quote!(Some((#minimum, #maximum)))
             },
         );
         quote!((Model::#model as u8, #range))
     });
-    let kind = physical_type(float);
+    let kind = limits.whole.clone().unwrap_or_else(|| physical_type(float));
     quote!(#comment const #name: &[(u8, Option<(#kind, #kind)>)] = &[#(#rows),*];)
 }
 
 /// Refers to the limits that a signal has by device model.
 pub fn model_limits(protocol: &Protocol, names: &Names, signal: &Signal) -> Option<TokenStream> {
-    let ranges = ranges(protocol, signal);
-    let own = names.limits.iter().filter(|_| !signal.model_ranges.is_empty());
-    let name = own.into_iter().find(|limits| limits.ranges == ranges).map(|limits| &limits.name)?;
+    let mut own = names.limits.iter().filter(|_| !signal.model_ranges.is_empty());
+    let name = own.find(|limits| limits.are_of(protocol, signal)).map(|limits| &limits.name)?;
     Some(quote!(.model_limits(#name)))
 }
 

@@ -1,6 +1,7 @@
 //! Places, in the terms of the document: bytes of the data, bits of a word.
 
-use canspec_runtime::{ByteOrder, Place};
+use canspec_runtime::Place;
+use canspec_runtime::plumbing::ByteOrder;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 

@@ -68,7 +68,7 @@ pub fn protocol(protocol: &Protocol, names: &Names, derives: Derives) -> TokenSt
     let variants = Variants::new(protocol, names);
     let definition = variants.definition(derives);
     let decode_for = decode_for(protocol);
-    let functions: Vec<_> = dispatch(protocol, names).into_iter().chain([variants.layout()]).collect();
+    let functions: Vec<_> = dispatch(protocol, names).into_iter().chain([variants.run()]).collect();
     let first = functions.iter().filter_map(|parts| parts.first());
     let implementation = implementation(protocol, first);
     let entries = entries(protocol, names);
@@ -158,16 +158,16 @@ impl<'a> Variants<'a> {
         }
     }
 
-    /// Emits the functions that show what a message carries: the one of the trait, then those in which it goes on.
-    fn layout(&self) -> Vec<TokenStream> {
+    /// Emits the functions that run a task on what a message carries: the one of the trait, then those in which it goes on.
+    fn run(&self) -> Vec<TokenStream> {
         let (carrying, empty): (Vec<_>, Vec<_>) = self.list.iter().partition(|(.., carried)| carried.is_some());
         let (carrying, empty) = (names_of(&carrying), names_of(&empty));
         match (carrying.is_empty(), empty.as_slice()) {
-            (true, []) => vec![layout(0, &quote!(match *self {}))],
-            (true, _) => vec![layout(0, &quote!(&()))],
-            (false, []) => layouts(carrying, &quote!()),
-            (false, [only]) => layouts(carrying, &quote!(Self::#only => &(),)),
-            (false, _) => layouts(carrying, &quote!(_ => &(),)),
+            (true, []) => vec![run(0, &quote!(_), &quote!(match *self {}))],
+            (true, _) => vec![run(0, &quote!(task), &quote!(task.run(&())))],
+            (false, []) => runs(carrying, &quote!()),
+            (false, [only]) => runs(carrying, &quote!(Self::#only => task.run(&()),)),
+            (false, _) => runs(carrying, &quote!(_ => task.run(&()),)),
         }
     }
 }
@@ -177,23 +177,23 @@ fn names_of<'a>(variants: &[&(&'a Ident, String, Option<&Ident>)]) -> Vec<&'a Id
 }
 
 /// Emits what the variants carry; `empty` is the arm of those that carry nothing.
-fn layouts(carrying: Vec<&Ident>, empty: &TokenStream) -> Vec<TokenStream> {
-    let parts = parts(carrying, |name| quote!(Self::#name(message) => message,));
+fn runs(carrying: Vec<&Ident>, empty: &TokenStream) -> Vec<TokenStream> {
+    let parts = parts(carrying, |name| quote!(Self::#name(message) => task.run(message),));
     let functions = parts.iter().enumerate().map(|(index, names)| {
-        let next = (index + 1 < parts.len()).then(|| part_name("layout", index + 1));
+        let next = (index + 1 < parts.len()).then(|| part_name("run", index + 1));
         let rest = match next {
-            Some(next) => quote!(_ => self.#next(),),
-            None if index > 0 => quote!(_ => &(),),
+            Some(next) => quote!(_ => self.#next(task),),
+            None if index > 0 => quote!(_ => task.run(&()),),
             None => empty.clone(),
         };
-        layout(index, &quote!(match self { #(Self::#names(message) => message,)* #rest }))
+        run(index, &quote!(task), &quote!(match self { #(Self::#names(message) => task.run(message),)* #rest }))
     });
     functions.collect()
 }
 
-fn layout(index: usize, body: &TokenStream) -> TokenStream {
-    let name = part_name("layout", index);
-    quote!(fn #name(&self) -> &dyn Layout { #body })
+fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
+    let name = part_name("run", index);
+    quote!(fn #name<T: Task>(&self, #task: T) -> T::Output { #body })
 }
 
 fn comment(protocol: &Protocol, frame: &FrameLayout, carries: bool) -> String {

@@ -38,20 +38,38 @@ pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration,
             #unknown(#raw),
         }
 
-        impl Word for #name {
-            type Raw = #raw;
-            const LEGEND: Legend<Self> = Legend::Names(&[#((Self::#variants, #texts)),*]);
-
-            fn from_raw(raw: #raw) -> Self {
+        impl #name {
+            /// Returns the value that stands for a raw number, whether it has a name or not.
+            #[must_use]
+            pub const fn from_raw(raw: #raw) -> Self {
                 match raw { #(#raws => Self::#variants,)* _ => Self::#unknown(raw) }
             }
 
-            fn raw(self) -> #raw {
+            /// Returns the raw number.
+            #[must_use]
+            pub const fn raw(self) -> #raw {
                 match self { #(Self::#variants => #raws,)* Self::#unknown(raw) => raw }
+            }
+
+            /// Returns the name, unless the value has none.
+            #[must_use]
+            pub fn name(self) -> Option<&'static str> {
+                Word::name(self)
+            }
+
+            /// Finds a value by its name.
+            #[must_use]
+            pub fn from_name(name: &str) -> Option<Self> {
+                Word::named(name)
             }
         }
 
-        impl Named for #name {}
+        impl Word for #name {
+            type Raw = #raw;
+            const LEGEND: Legend<Self> = Legend::Names(&[#((Self::#variants, #texts)),*]);
+            const FROM_RAW: fn(#raw) -> Self = Self::from_raw;
+            const RAW: fn(Self) -> #raw = Self::raw;
+        }
 
         #optional
     }
@@ -69,28 +87,45 @@ pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord, derives
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         pub struct #name(pub #raw);
 
-        impl #name { #(#constants)* }
+        impl #name {
+            #(#constants)*
+
+            /// Tests whether all bits of `other` are set.
+            #[must_use]
+            pub const fn contains(self, other: Self) -> bool {
+                self.0 & other.0 == other.0
+            }
+
+            /// Tests whether some bit of `other` is set.
+            #[must_use]
+            pub const fn intersects(self, other: Self) -> bool {
+                self.0 & other.0 != 0
+            }
+
+            /// Returns the set bits that have a name, the lowest first.
+            pub fn set_bits(self) -> impl Iterator<Item = &'static StatusBit> {
+                Word::set_bits(self)
+            }
+
+            /// Returns the set bits that have no name.
+            #[must_use]
+            pub fn unknown(self) -> u64 {
+                Word::unknown(self)
+            }
+        }
 
         impl Word for #name {
             type Raw = #raw;
             const LEGEND: Legend<Self> = Legend::Bits(&[#(#rows),*]);
-
-            fn from_raw(raw: #raw) -> Self {
-                Self(raw)
-            }
-
-            fn raw(self) -> #raw {
-                self.0
-            }
+            const FROM_RAW: fn(#raw) -> Self = Self;
+            const RAW: fn(Self) -> #raw = |word| word.0;
         }
 
-        impl StatusWord for #name {}
-
-        impl BitOr for #name {
+        impl core::ops::BitOr for #name {
             type Output = Self;
 
             fn bitor(self, other: Self) -> Self {
-                self.union(other)
+                Self(self.0 | other.0)
             }
         }
 
@@ -151,15 +186,27 @@ pub fn packed(
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct #name { #(#members),* }
 
-        impl #name { #(const #constants: Place = #places;)* }
+        impl #name {
+            #(const #constants: Place = #places;)*
+
+            /// Returns the text, or `None` if it would not give the same value.
+            #[must_use]
+            pub fn text(self) -> Option<PackedText> {
+                Word::text(self)
+            }
+
+            /// Reads a text of the documented form.
+            #[must_use]
+            pub fn parse(text: &str) -> Option<Self> {
+                Word::parse(text)
+            }
+        }
 
         #word
 
-        impl Packed for #name {}
-
-        impl Display for #name {
-            fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-                self.write(formatter)
+        impl core::fmt::Display for #name {
+            fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                Word::write(*self, formatter)
             }
         }
 
@@ -176,17 +223,15 @@ fn packed_word(name: &Ident, signal: &Signal, pieces: &[Piece], parts: &Table<Pa
         impl Word for #name {
             type Raw = u64;
             const LEGEND: Legend<Self> = Legend::Text(#bytes, &[#(#pieces),*]);
-
-            fn from_raw(raw: u64) -> Self {
+            const FROM_RAW: fn(u64) -> Self = |raw| {
                 let data = left_aligned(raw, #bytes);
                 Self { #(#fields: Self::#constants.read(&data)),* }
-            }
-
-            fn raw(self) -> u64 {
+            };
+            const RAW: fn(Self) -> u64 = |value| {
                 let mut data = [0; 8];
-                #(Self::#constants.write(self.#fields, &mut data);)*
+                #(Self::#constants.write(value.#fields, &mut data);)*
                 right_aligned(data, #bytes)
-            }
+            };
         }
     }
 }

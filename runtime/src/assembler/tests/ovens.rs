@@ -1,8 +1,9 @@
 //! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
 
+use crate::plumbing::{Address, Continuation, Decode, Encode, Pattern, Recognised, Task, Who};
 use crate::{
-    Address, AddressType, AnySignal, Bits, Continuation, Data, Error, Exchange, Filter, Frame, FrameSet,
-    IdentifierFields, Layout, Mode, Pattern, Payload, Place, Protocol, Recognised, Selector, Signal, Who,
+    AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Place, Protocol,
+    Selector, Signal,
 };
 
 const DIRECTION: Bits = Bits::new(10, 10);
@@ -70,30 +71,17 @@ pub struct Value {
 const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3));
 
 impl Layout for Value {
-    fn decode(data: &Data) -> Self {
-        Self { position: usize::from(data[0]).wrapping_sub(1), value: VALUE.get(data) }
-    }
-
-    fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
-        VALUE.put(self.value, payload)
-    }
-
-    fn signals(&self) -> &'static [&'static dyn AnySignal] {
-        &[&VALUE]
-    }
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&VALUE];
+    const DECODE: Decode<Self> = |data| Self { position: usize::from(data[0]).wrapping_sub(1), value: VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| VALUE.put(message.value, payload);
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Identifier(u32);
 
 impl IdentifierFields for Identifier {
-    fn from_raw(id: u32) -> Self {
-        Self(id)
-    }
-
-    fn to_raw(self) -> u32 {
-        self.0
-    }
+    const FROM_RAW: fn(u32) -> Self = Self;
+    const TO_RAW: fn(Self) -> u32 = |identifier| identifier.0;
 
     fn is_to_module(id: u32) -> bool {
         DIRECTION.of(id) == 0
@@ -128,8 +116,8 @@ impl Protocol for Value {
         &[4, 8]
     }
 
-    fn layout(&self) -> &dyn Layout {
-        self
+    fn run<T: Task>(&self, task: T) -> T::Output {
+        task.run(self)
     }
 }
 

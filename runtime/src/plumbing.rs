@@ -1,0 +1,31 @@
+//! What generated code calls and nobody else needs; it can change with every release, as generated code does.
+
+#[cfg(feature = "arbitrary")]
+pub use arbitrary;
+#[cfg(feature = "defmt")]
+pub use defmt;
+#[cfg(feature = "serde")]
+pub use serde;
+
+pub use crate::address::{Address, Pattern, Who};
+pub use crate::layout::{Decode, Encode, Signals, Task};
+pub use crate::packed::{Piece, left_aligned, right_aligned};
+pub use crate::physical::{Physical, Scaled};
+pub use crate::place::ByteOrder;
+pub use crate::protocol::Recognised;
+pub use crate::raw::{Integer, Raw};
+pub use crate::scale::{Scale, nearest};
+pub use crate::set::Continuation;
+pub use crate::word::{Legend, Word};
+
+/// What a generated module takes, beside what it passes on to its users.
+pub mod prelude {
+    pub use super::{
+        Address, Continuation, Decode, Encode, Legend, Pattern, Piece, Recognised, Task, Who, Word, left_aligned,
+        right_aligned,
+    };
+    pub use crate::{
+        AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, FrameSet, Mode, Place, Protocol, Selector,
+        Signal,
+    };
+}

@@ -1,0 +1,160 @@
+//! Signals for code that does not know their types.
+
+use core::cmp::Ordering;
+use core::fmt;
+
+use crate::physical::Physical;
+use crate::raw::Raw;
+use crate::{Data, Error, Meaning, Number, Payload, Place, Signal};
+
+/// What a signal says in one frame, for code that does not know the message.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Reading<'a> {
+    /// Name of the signal.
+    pub name: &'static str,
+    /// Unit of the physical value.
+    pub unit: Option<&'static str>,
+    /// The integer in the frame; the bit pattern of a float, the bytes of a text.
+    pub raw: Number,
+    /// What it means.
+    pub meaning: Meaning<'a>,
+    /// Whether the frame is an error reply, whose values mean nothing unless the document says so.
+    pub is_of_error_reply: bool,
+}
+
+impl fmt::Display for Reading<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_of_error_reply {
+            return write!(formatter, "{} ? (error reply)", self.name);
+        }
+        write!(formatter, "{} {}", self.name, self.meaning)?;
+        match (self.meaning, self.unit) {
+            (Meaning::Number(_), Some(unit)) => write!(formatter, " {unit}"),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A signal for code that reads it and does not know its type.
+///
+/// Nothing of it writes, so that a program which only reads has no code for writing.
+pub trait AnySignal {
+    /// Returns the name.
+    fn name(&self) -> &'static str;
+
+    /// Returns the unit of the physical value.
+    fn unit(&self) -> Option<&'static str>;
+
+    /// Returns the place in the data.
+    fn place(&self) -> Place;
+
+    /// Returns the documented limits of the physical value, both legal: what holds where no device model is chosen.
+    fn limits(&self) -> Option<(Number, Number)>;
+
+    /// Shows what the signal says in a frame.
+    fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>));
+}
+
+impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn unit(&self) -> Option<&'static str> {
+        self.unit
+    }
+
+    fn place(&self) -> Place {
+        self.place
+    }
+
+    fn limits(&self) -> Option<(Number, Number)> {
+        self.limits.map(|(minimum, maximum)| (minimum.number(), maximum.number()))
+    }
+
+    fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {
+        let value = self.get(data);
+        let bits = self.bits(*data);
+        let meaning = match (self.special(bits), self.scale) {
+            (Some(name), _) => Meaning::Name(name),
+            (None, Some(_)) => Meaning::Number(self.physical(value).number()),
+            (None, None) => value.meaning(),
+        };
+        let raw = if R::SIGNED { Number::Signed(bits.cast_signed()) } else { Number::Unsigned(bits) };
+        visitor(Reading { name: self.name, unit: self.unit, raw, meaning, is_of_error_reply: false });
+    }
+}
+
+/// A signal for code that writes it and does not know its type.
+pub trait WriteSignal: AnySignal {
+    /// Writes the value that means `meaning`.
+    ///
+    /// # Errors
+    ///
+    /// Refuses what the signal's bits cannot hold, names that it does not have, and what lies outside the limits if
+    /// `payload` keeps to them.
+    fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error>;
+}
+
+impl<R: Raw, F: Physical<R>> WriteSignal for Signal<R, F> {
+    fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
+        if let Meaning::Number(number) = meaning
+            && R::IS_NUMBER
+        {
+            return F::write(self, number, payload);
+        }
+        let raw = self.special_value(meaning).or_else(|| R::from_meaning(meaning));
+        raw.ok_or_else(|| self.meaningless(payload)).and_then(|raw| self.put(raw, payload))
+    }
+}
+
+impl<R: Raw, F: Physical<R>> Signal<R, F> {
+    /// Returns the special raw value of a name.
+    fn special_value(&self, meaning: Meaning<'_>) -> Option<R> {
+        let Meaning::Name(wanted) = meaning else { return None };
+        let special = self.specials.iter().find(|(_, name)| *name == wanted);
+        special.map(|(raw, _)| R::from_bits(raw.cast_unsigned()))
+    }
+
+    /// Writes a number as its own raw value, or as the one nearest to it.
+    pub(crate) fn write_unscaled(&self, number: Number, payload: &mut Payload) -> Result<(), Error> {
+        if let Some(raw) = R::from_meaning(Meaning::Number(number)) {
+            return self.put(raw, payload);
+        }
+        let value = number.to_f64();
+        match crate::scale::nearest(value).and_then(whole::<R>) {
+            Some(raw) => {
+                self.check_fraction(value, raw, payload)?;
+                self.put(raw, payload)
+            }
+            None if value.is_nan() => Err(self.not_finite(payload)),
+            None => Err(self.too_wide(number, payload)),
+        }
+    }
+
+    /// Tests a number that is rounded to `raw` if it is no integer.
+    fn check_fraction(&self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
+        let sent = raw.number().to_f64();
+        if sent.partial_cmp(&value) == Some(Ordering::Equal) || !payload.keeps_limits() {
+            return Ok(());
+        }
+        let number = Number::Float(value);
+        let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
+        let limits = limits.map(|(minimum, maximum)| (minimum.number(), maximum.number()));
+        match (limits, self.special(raw.to_bits())) {
+            (Some((minimum, maximum)), _) if !(minimum.to_f64()..=maximum.to_f64()).contains(&value) => {
+                Err(self.outside(number, minimum, maximum, payload))
+            }
+            (_, Some(name)) => Err(self.hidden(number, name, payload)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Returns an integer as a raw value, unless it has too many bits for the type.
+fn whole<R: Raw>(integer: i64) -> Option<R> {
+    let bits = integer.cast_unsigned();
+    let raw = R::from_bits(bits);
+    ((R::SIGNED || integer >= 0) && raw.to_bits() == bits).then_some(raw)
+}
