@@ -16,6 +16,10 @@ size:
 bench:
     cd generated/benches && cargo test --release --quiet && cargo bench && cargo run --release --quiet
 
+# What the command costs for specs of 10 to 4,000 messages.
+growth:
+    cargo bench --quiet -p canspec --bench growth
+
 # Look for inputs that break `front_end` or `frames`, guided by coverage, for so many seconds.
 fuzz target seconds="600":
     cargo run --quiet --bin seeds -- target/fuzz
