@@ -80,7 +80,7 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
         .with("length", Value::number(message.length))
         .maybe("models", models)
         .with("signals", Value::list(&message.signals, |known| signal(protocol, known)))
-        .with("shapes", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
+        .with("layouts", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
         .maybe("refusals", refusals)
 }
 

@@ -204,13 +204,13 @@ end
 
 -- Calls `found` with each mode that the identifier shows, who answers, and how well it fits: 1 is best, from 3 on the
 -- message does not have the mode.
-local function each_mode(frame, shape, found)
+local function each_mode(frame, layout, found)
   for _, mode in ipairs(protocol.modes) do
-    for _, who in ipairs(shape.kind == "request" and REQUEST or REPLIES) do
+    for _, who in ipairs(layout.kind == "request" and REQUEST or REPLIES) do
       local pattern = mode[who]
       local fit = pattern and pattern_fit(frame, pattern)
       if fit then
-        local answer = shape.answers[mode.name]
+        local answer = layout.answers[mode.name]
         local has = who == "request" and answer ~= nil or answer == who
         found(mode, who, (has and 0 or 2) + (fit == "documented" and 1 or 2))
       end
@@ -219,9 +219,9 @@ local function each_mode(frame, shape, found)
 end
 
 -- Returns the mode that fits best, and of those the one with most constants.
-local function addressing(frame, shape)
+local function addressing(frame, layout)
   local best = { fit = 5, constants = 0 }
-  each_mode(frame, shape, function(mode, who, fit)
+  each_mode(frame, layout, function(mode, who, fit)
     local constants = mode[who].constant_fields
     if fit < best.fit or (fit == best.fit and constants > best.constants) then
       best = { fit = fit, constants = constants, mode = mode, pattern = mode[who] }
@@ -272,10 +272,10 @@ local function is_foreign(frame)
   return false
 end
 
-local function filtered(shapes, test)
+local function filtered(layouts, test)
   local left = {}
-  for _, shape in ipairs(shapes) do
-    if test(shape) then left[#left + 1] = shape end
+  for _, layout in ipairs(layouts) do
+    if test(layout) then left[#left + 1] = layout end
   end
   return left
 end
@@ -290,9 +290,9 @@ for _, message in ipairs(protocol.messages) do
       if piece.place then prepare(piece.place) end
     end
   end
-  for _, shape in ipairs(message.shapes) do
-    shape.message = message
-    table.insert(kinds_of_frames, shape)
+  for _, layout in ipairs(message.layouts) do
+    layout.message = message
+    table.insert(kinds_of_frames, layout)
   end
   for _, refusal in ipairs(message.refusals or {}) do
     refusal.message = message
@@ -303,21 +303,21 @@ for _, selector in ipairs(protocol.selectors) do
   if selector.place then prepare(selector.place) end
 end
 
--- Returns the shapes whose constants the identifier has.
-local function with_identifier(frame, shapes)
-  return filtered(shapes, function(shape)
-    for _, constant in ipairs(shape.in_identifier) do
+-- Returns the layouts whose constants the identifier has.
+local function with_identifier(frame, layouts)
+  return filtered(layouts, function(layout)
+    for _, constant in ipairs(layout.in_identifier) do
       if identifier_field(frame, constant.field) ~= constant.value then return false end
     end
     return true
   end)
 end
 
--- Returns the shapes whose constants the data bytes have.
-local function with_data(frame, shapes)
+-- Returns the layouts whose constants the data bytes have.
+local function with_data(frame, layouts)
   local found = {}
-  return filtered(shapes, function(shape)
-    for _, constant in ipairs(shape.in_data) do
+  return filtered(layouts, function(layout)
+    for _, constant in ipairs(layout.in_data) do
       local index = constant.selector
       found[index] = found[index] or key(get(frame, protocol.selectors[index].place))
       if found[index] ~= constant.value then return false end
@@ -364,7 +364,7 @@ end
 
 local NO_DIRECTION = "the addresses do not show whether it goes to a module or to the controller"
 
--- Returns the shapes with the identifier, the length and the data bytes of a frame, or a problem.
+-- Returns the layouts with the identifier, the length and the data bytes of a frame, or a problem.
 local function candidates(frame)
   local identifier = protocol.identifier
   if frame.extended ~= identifier.extended then
@@ -390,23 +390,23 @@ local function candidates(frame)
 
   local found, chosen = find(frame, group.choice), {}
   for _, index in ipairs(found and found.frames or {}) do
-    local shape = kinds_of_frames[index]
-    if shape.message.length == frame.length then chosen[#chosen + 1] = shape end
+    local layout = kinds_of_frames[index]
+    if layout.message.length == frame.length then chosen[#chosen + 1] = layout end
   end
   if #chosen == 0 then return nil, problem("unknown_message", "no message has these data bytes", frame, of_length) end
   return chosen
 end
 
--- Tests whether the first of two shapes fits better: the device model has it, or else its addresses fit better.
+-- Tests whether the first of two layouts fits better: the device model has it, or else its addresses fit better.
 local function compare(one, other)
   if one.is_of_model ~= other.is_of_model then return one.is_of_model end
   if one.fit ~= other.fit then return one.fit < other.fit end
   return one.constants > other.constants
 end
 
-local function rank(frame, shape)
-  local known = addressing(frame, shape)
-  return { is_of_model = is_of_model(shape.message, frame.model), fit = known.fit, constants = known.constants }
+local function rank(frame, layout)
+  local known = addressing(frame, layout)
+  return { is_of_model = is_of_model(layout.message, frame.model), fit = known.fit, constants = known.constants }
 end
 
 -- Names a message and the device models that have it.
@@ -416,12 +416,12 @@ local function of_models(message)
   return "`" .. message.name .. "` if the model is " .. table.concat(names, " or ")
 end
 
--- Returns the shape that fits best, and the note that it depends on the device model.
-local function best(frame, shapes)
-  local chosen, ranked = shapes[1], rank(frame, shapes[1])
-  for index = 2, #shapes do
-    local other = rank(frame, shapes[index])
-    if compare(other, ranked) then chosen, ranked = shapes[index], other end
+-- Returns the layout that fits best, and the note that it depends on the device model.
+local function best(frame, layouts)
+  local chosen, ranked = layouts[1], rank(frame, layouts[1])
+  for index = 2, #layouts do
+    local other = rank(frame, layouts[index])
+    if compare(other, ranked) then chosen, ranked = layouts[index], other end
   end
   local message = chosen.message
   if frame.model ~= 0 then
@@ -429,10 +429,10 @@ local function best(frame, shapes)
     return chosen, protocol.models[frame.model] .. " has no message `" .. message.name .. "`"
   end
   local others = {}
-  for _, shape in ipairs(shapes) do
-    local other = rank(frame, shape)
-    if is_apart(message, shape.message) and not compare(other, ranked) and not compare(ranked, other) then
-      local text = of_models(shape.message)
+  for _, layout in ipairs(layouts) do
+    local other = rank(frame, layout)
+    if is_apart(message, layout.message) and not compare(other, ranked) and not compare(ranked, other) then
+      local text = of_models(layout.message)
       if others[#others] ~= text then others[#others + 1] = text end
     end
   end
@@ -451,7 +451,7 @@ local function error_notes(frame, decoded, note)
     local value = identifier_field(frame, index)
     if field.normal and field.normal ~= value then note("error_code", error_note(field, value)) end
   end
-  if decoded.shape.kind == "request" then return end
+  if decoded.layout.kind == "request" then return end
   for _, known in ipairs(decoded.selectors) do
     local normal = known.selector.normal
     if normal and normal ~= key(known.value) then note("error_code", error_note(known.selector, known.value)) end
@@ -461,11 +461,11 @@ end
 local function address_notes(frame, decoded, note)
   local known = decoded.addressing
   if not known.mode then
-    note("addressing", "no addressing mode of this protocol fits a " .. decoded.shape.kind)
+    note("addressing", "no addressing mode of this protocol fits a " .. decoded.layout.kind)
     return
   end
   if known.fit >= 3 then
-    note("addressing", "`" .. decoded.shape.message.name .. "` is not addressed by `" .. known.mode.name .. "`")
+    note("addressing", "`" .. decoded.layout.message.name .. "` is not addressed by `" .. known.mode.name .. "`")
   end
   for _, address in ipairs(known.pattern.addresses) do
     local kind, raw = protocol.address_types[address.type], identifier_field(frame, address.field)
@@ -479,20 +479,20 @@ end
 
 -- Returns the message with its values and notes, or a problem.
 local function decode(frame)
-  local shapes, unrecognised = candidates(frame)
-  if not shapes then return unrecognised end
-  local shape, other_model = best(frame, shapes)
-  local decoded = { shape = shape, notes = {}, readings = {}, selectors = selectors(frame, shape.selectors) }
+  local layouts, unrecognised = candidates(frame)
+  if not layouts then return unrecognised end
+  local layout, other_model = best(frame, layouts)
+  local decoded = { layout = layout, notes = {}, readings = {}, selectors = selectors(frame, layout.selectors) }
   local function note(rule, text) table.insert(decoded.notes, { rule = rule, text = text }) end
-  decoded.addressing = addressing(frame, shape)
+  decoded.addressing = addressing(frame, layout)
   error_notes(frame, decoded, note)
   address_notes(frame, decoded, note)
-  for _, index in ipairs(shape.signals) do
-    local known = reading(frame, shape.message.signals[index])
+  for _, index in ipairs(layout.signals) do
+    local known = reading(frame, layout.message.signals[index])
     table.insert(decoded.readings, known)
     if known.rule then note(known.rule, known.text) end
   end
-  local reserved = frame.big:band(shape.reserved):tohex(-16):sub(1, 2 * frame.length)
+  local reserved = frame.big:band(layout.reserved):tohex(-16):sub(1, 2 * frame.length)
   if reserved:find("[^0]") then
     decoded.reserved = reserved
     note("reserved_bit", "bits are set that no field has: 0x" .. reserved)

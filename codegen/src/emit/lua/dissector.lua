@@ -174,19 +174,19 @@ end
 
 -- Says in place of the values what a frame says that reports an error; nil of any other.
 local function refusal(decoded)
-  if decoded.shape.kind == "request" then return nil end
+  if decoded.layout.kind == "request" then return nil end
   for _, note in ipairs(decoded.notes) do
-    if note.rule == "error_code" then return (decoded.shape.kind == "reply" and "refused, " or "in error, ") .. note.text end
+    if note.rule == "error_code" then return (decoded.layout.kind == "reply" and "refused, " or "in error, ") .. note.text end
   end
 end
 
 local function show_message(frame, decoded, tvb, pinfo, tree)
-  local shape = decoded.shape
-  local summary = shape.access .. " " .. shape.message.name .. " " .. shape.kind
+  local layout = decoded.layout
+  local summary = layout.access .. " " .. layout.message.name .. " " .. layout.kind
   tree:append_text(", " .. summary)
-  tree:add(known.message, shape.message.name)
-  tree:add(known.access, shape.access)
-  tree:add(known.kind, shape.kind)
+  tree:add(known.message, layout.message.name)
+  tree:add(known.access, layout.access)
+  tree:add(known.kind, layout.kind)
   if decoded.addressing.mode then tree:add(known.addressing, decoded.addressing.mode.name) end
   add_identifier(tree, frame, decoded)
   add_selectors(tree, tvb, decoded)

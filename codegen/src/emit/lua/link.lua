@@ -15,8 +15,8 @@ local function bound(frame, pattern, kind)
 end
 
 -- Returns what a request and its reply have in common; `pattern` is what the frame at hand shows.
-local function exchange(frame, shape, mode, who, pattern)
-  local parts = { frame.interface, shape.exchange or shape.message.name, shape.access, mode.name, who }
+local function exchange(frame, layout, mode, who, pattern)
+  local parts = { frame.interface, layout.exchange or layout.message.name, layout.access, mode.name, who }
   for _, address in ipairs(mode[who].addresses) do
     if bound(frame, mode.request, address.type) then
       table.insert(parts, string.format("%d", bound(frame, pattern, address.type)))
@@ -27,16 +27,16 @@ end
 
 -- Returns who answers a request; nil if nobody does, or if the document does not say.
 local function answering(decoded)
-  local known, shape = decoded.addressing, decoded.shape
-  if shape.kind ~= "request" or known.fit >= 3 then return nil end
-  local who = shape.answers[known.mode.name]
+  local known, layout = decoded.addressing, decoded.layout
+  if layout.kind ~= "request" or known.fit >= 3 then return nil end
+  local who = layout.answers[known.mode.name]
   return known.mode[who] and who
 end
 
 local function ask(frame, decoded)
   local known, who = decoded.addressing, answering(decoded)
   if not who then return end
-  waiting[exchange(frame, decoded.shape, known.mode, who, known.pattern)] =
+  waiting[exchange(frame, decoded.layout, known.mode, who, known.pattern)] =
     { number = frame.number, time = frame.time, senders = {} }
 end
 
@@ -49,27 +49,27 @@ local function sender(frame, pattern)
   return table.concat(parts, " ")
 end
 
--- Calls `found` with each request that still waits for a reply of this shape, and with what its sender has sent so far.
-local function each_request(frame, shape, found)
-  each_mode(frame, shape, function(mode, who, fit)
+-- Calls `found` with each request that still waits for a reply of this layout, and with what its sender has sent so far.
+local function each_request(frame, layout, found)
+  each_mode(frame, layout, function(mode, who, fit)
     if fit >= 3 or not mode.request then return end
-    local this = exchange(frame, shape, mode, who, mode[who])
+    local this = exchange(frame, layout, mode, who, mode[who])
     local request = waiting[this]
     if not request then return end
     local from = sender(frame, mode[who])
     request.senders[from] = request.senders[from] or { messages = {}, count = 0 }
     local sent = request.senders[from]
-    if not sent.is_done then found({ request = request, key = this, who = who, sent = sent, shape = shape }) end
+    if not sent.is_done then found({ request = request, key = this, who = who, sent = sent, layout = layout }) end
   end)
 end
 
 -- Notes a reply; a module is done when it has sent each message of a set, or else one message, or has refused.
 local function note_reply(known, is_refusal)
-  local sent, name = known.sent, known.shape.message.name
+  local sent, name = known.sent, known.layout.message.name
   if not sent.messages[name] then
     sent.messages[name], sent.count = true, sent.count + 1
   end
-  sent.is_done = is_refusal or sent.count >= (known.shape.replies or 1)
+  sent.is_done = is_refusal or sent.count >= (known.layout.replies or 1)
   if sent.is_done and known.who ~= "each" then waiting[known.key] = nil end
 end
 
@@ -83,7 +83,7 @@ local function answer(frame, decoded)
       end
     end
   end
-  each_request(frame, decoded.shape, choose(false))
+  each_request(frame, decoded.layout, choose(false))
   for _, refusal in ipairs(with_data(frame, with_identifier(frame, refusals))) do
     each_request(frame, refusal, choose(true))
   end
@@ -99,6 +99,6 @@ end
 local function link(frame, decoded)
   if seen[frame.number] then return end
   seen[frame.number] = true
-  if decoded.shape.kind == "request" then ask(frame, decoded) end
-  if decoded.shape.kind == "reply" then answer(frame, decoded) end
+  if decoded.layout.kind == "request" then ask(frame, decoded) end
+  if decoded.layout.kind == "reply" then answer(frame, decoded) end
 end
