@@ -36,6 +36,11 @@ function Word:tohex(count)
   local digits = math.abs(math.tointeger(count))
   return string.format(count < 0 and "%016X" or "%016x", self.value):sub(-digits)
 end
+function Word.__lt(one, other)
+  if one.is_signed then return one.value < other.value end
+  return math.ult(one.value, other.value)
+end
+function Word.__le(one, other) return not (other < one) end
 function Word.__sub(one, other) return word(one.value - other.value) end
 function Word.__tostring(self)
   return self.is_signed and string.format("%d", self.value) or unsigned_text(self.value)

@@ -93,7 +93,7 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
         .with("kind", Value::text(frame.kind.name()))
         .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))
-        .with("reserved", Value::integer_of_64_bits(!frame.covered))
+        .with("reserved", Value::unsigned_of_64_bits(!frame.covered))
         .with("answers", Value::map(answers))
         .maybe("exchange", set.map(|(name, set)| Value::text(&exchange(name, set, message))))
         .maybe(

@@ -166,7 +166,9 @@ end
 
 local function range_note(signal, model, value)
   local range = signal.model_ranges and signal.model_ranges[model] or signal.range
-  if not range or lies_within(double(value), { range }) then return end
+  if not range then return end
+  local compared = type(range[1]) == "number" and double(value) or value
+  if lies_within(compared, { range }) then return end
   local unit = signal.unit and " " .. signal.unit or ""
   local limits = plain(range[1]) .. ".." .. plain(range[2]) .. unit
   return "out_of_range", signal.name .. " " .. plain(value) .. unit .. " is outside " .. limits

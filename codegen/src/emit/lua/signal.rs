@@ -110,8 +110,27 @@ fn limits(record: Value, signal: &Signal) -> Value {
         .maybe("model_ranges", own)
 }
 
-/// Returns limits; of a float, the floats nearest to them are legal too.
+fn wide_limits(signal: &Signal, range: Range) -> Option<[Value; 2]> {
+    let Encoding::Number { signed, .. } = signal.encoding else { return None };
+    if signal.place.width() <= LUA_BITS || !signal.encoding.is_unscaled() {
+        return None;
+    }
+    let limit = |limit: Rational| {
+        let integer = limit.to_integer()?;
+        if signed {
+            i64::try_from(integer).ok().map(Value::signed_of_64_bits)
+        } else {
+            u64::try_from(integer).ok().map(Value::unsigned_of_64_bits)
+        }
+    };
+    Some([limit(range.minimum)?, limit(range.maximum)?])
+}
+
+/// Returns limits: of integers that are no Lua numbers, such integers; of a float, the floats nearest to them are legal too.
 fn range(signal: &Signal, range: Range) -> Value {
+    if let Some(limits) = wide_limits(signal, range) {
+        return Value::list(limits, |limit| limit);
+    }
     let [minimum, maximum] = [range.minimum, range.maximum].map(|limit| {
         let exact = limit.to_f64();
         #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]

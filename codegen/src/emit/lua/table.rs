@@ -69,8 +69,14 @@ impl Value {
     }
 
     /// Writes a number of 64 bits, which is none that Lua has before 5.3.
-    pub fn integer_of_64_bits(number: u64) -> Self {
+    pub fn unsigned_of_64_bits(number: u64) -> Self {
         Self::Plain(format!("UInt64(0x{:08X}, 0x{:08X})", number & u64::from(u32::MAX), number >> 32))
+    }
+
+    /// Writes a signed number of 64 bits.
+    pub fn signed_of_64_bits(number: i64) -> Self {
+        let bits = number.cast_unsigned();
+        Self::Plain(format!("Int64(0x{:08X}, 0x{:08X})", bits & u64::from(u32::MAX), bits >> 32))
     }
 
     /// Writes the place of a row in the list of its table, which Lua counts from 1.
@@ -139,6 +145,7 @@ mod tests {
 
     #[test]
     fn numbers_of_64_bits_are_written_by_halves_the_low_one_first() {
-        assert_eq!(inline(&Value::integer_of_64_bits(0x0123_4567_89AB_CDEF)), "UInt64(0x89ABCDEF, 0x01234567)");
+        assert_eq!(inline(&Value::unsigned_of_64_bits(0x0123_4567_89AB_CDEF)), "UInt64(0x89ABCDEF, 0x01234567)");
+        assert_eq!(inline(&Value::signed_of_64_bits(-2)), "Int64(0xFFFFFFFE, 0xFFFFFFFF)");
     }
 }
