@@ -1,7 +1,7 @@
 //! Addressing modes, address types, and how an identifier shows its direction.
 
 use super::Resolver;
-use super::keys::{Role, written};
+use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
@@ -27,7 +27,7 @@ impl Resolver<'_> {
 
     fn address_type(&mut self, name: &str, field: &ast::Field) -> Option<AddressType> {
         let path = Path::default().key("types").key(name);
-        self.check_own_keys(&path, field, Role::ADDRESS);
+        self.check_own_keys(&path, field, Role::Address);
         let Some(text) = &field.range else {
             let help = "say which numbers the document names, for instance `range: 0..0x3B`";
             self.error_with_help(
@@ -241,7 +241,7 @@ pub fn is_address_type(spec: &ast::Spec, name: &str) -> bool {
 
 /// Tells whether a type has what an address type has, and nothing else.
 fn could_be_address(field: &ast::Field) -> bool {
-    field.range.is_some() && written(field).all(|key| Role::ADDRESS.reads(key))
+    field.range.is_some() && field.keys().all(|key| Role::Address.reads(key))
 }
 
 /// Returns the raw ranges of the strict types that some pattern puts into this field.

@@ -157,7 +157,7 @@ impl Resolver<'_> {
     ) -> Option<TypeOfModel> {
         let path = path.key("types").key(name);
         self.lookup(&path, "type", name, self.spec.types.keys().map(String::as_str))?;
-        self.check_own_keys(&path, field, Role::OF_MODEL);
+        self.check_own_keys(&path, field, Role::OfModel);
         let range = field.range.as_ref().and_then(|text| self.range(&path.key("range"), text));
         let default = field.default.as_ref().and_then(|text| self.number(&path.key("default"), text));
         Some(TypeOfModel { name: name.to_owned(), range, default, doc: remarks!(field).doc(&path, Some(outer)) })

@@ -7,7 +7,7 @@ use crate::diagnostic::{At, Diagnostic};
 use crate::model::{Identifier, IdentifierField, Table};
 use crate::rules;
 use crate::suspect::{Claim, suspect};
-use crate::syntax::ast::{Field, IdentifierEntry};
+use crate::syntax::ast::{Field, IdentifierEntry, Key};
 use crate::syntax::tree::Path;
 
 /// The widest identifier.
@@ -77,7 +77,7 @@ impl Resolver<'_> {
     fn identifier_field(&mut self, path: &Path, name: &str, field: &Field) -> Option<(IdentifierField, Run)> {
         self.check_name(path, name);
         let merged = self.merged(path, field)?;
-        self.check_keys(&merged, Role::IDENTIFIER);
+        self.check_keys(&merged, Role::Identifier);
         let Some(text) = &merged.field.bits else {
             let help = "say which bits, for instance `bits: 28..26`";
             self.error_with_help(&rules::PLACE, path.at_key(), format!("the field `{name}` has no place"), help);
@@ -86,13 +86,13 @@ impl Resolver<'_> {
         let (high, low) = self.bits(&path.key("bits"), text, EXTENDED)?;
         let width = high - low + 1;
         let greatest = u32::MAX >> (32 - width);
-        let mut number = |key: &str, text: &Option<String>| {
+        let mut number = |key: Key, text: &Option<String>| {
             text.as_ref().and_then(|text| self.integer(&merged.path(self.diagnostics, key), text, 0, greatest))
         };
-        let constant = number("const", &merged.field.constant);
-        let send = number("send", &merged.field.send);
-        let normal = number("normal", &merged.field.normal);
-        let continues = number("continues", &merged.field.continues);
+        let constant = number(Key::Const, &merged.field.constant);
+        let send = number(Key::Send, &merged.field.send);
+        let normal = number(Key::Normal, &merged.field.normal);
+        let continues = number(Key::Continues, &merged.field.continues);
         let doc = remarks!(field).doc(path, None);
         let enumeration = self.enumeration(&merged, &format!("{name}_code"), width, &doc);
         let run = Run { high, low, place: path.key("bits") };

@@ -5,7 +5,7 @@ use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::Encoding;
 use crate::rules;
-use crate::syntax::ast::Field;
+use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::{Node, Path};
 
 /// Where a field stands, which decides the keys that it reads.
@@ -16,50 +16,111 @@ pub enum Site {
     Packed,
 }
 
-/// What a field is used as, with the keys that it reads beside title, note, section, erratum and `type`.
-#[derive(Clone, Copy)]
-pub struct Role {
-    /// The role in a sentence: "`scale` means nothing for ...".
-    name: &'static str,
-    keys: &'static [&'static str],
+/// What a field is used as, which decides the keys that it reads.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    Identifier,
+    Address,
+    OfModel,
+    Header,
+    HeaderWord,
+    Word,
+    Constant,
+    Number,
+    Float,
+    Named,
+    Status,
+    Text,
+    Packed,
+    PackedWord,
+    PackedNumber,
+    PackedText,
 }
 
+/// Numbers with a unit.
+const QUANTITIES: &[Role] = &[Role::Number, Role::Float];
+
+/// Signals that are not put together of parts.
+const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text]];
+
+/// What has other fields inside.
+const WORDS: &[Role] = &[Role::Word, Role::HeaderWord, Role::PackedWord];
+
+/// What is one range of bits in the data bytes, beside signals and words.
+const PLACED: &[Role] = &[Role::Header, Role::Constant, Role::PackedNumber, Role::PackedText];
+
 impl Role {
-    pub const IDENTIFIER: Self =
-        Self { name: "a field of the identifier", keys: &["bits", "const", "send", "normal", "continues", "values"] };
-    pub const ADDRESS: Self =
-        Self { name: "an address type", keys: &["range", "scale", "offset", "outside", "send", "examples"] };
-    const HEADER: Self =
-        Self { name: "a field of the header", keys: &["bytes", "bits", "values", "normal", "continues"] };
-    const WORD: Self = Self { name: "a word of fields", keys: &["bytes", "bits", "fields", "reply"] };
-    const HEADER_WORD: Self = Self { name: "a word of the header", keys: &["bytes", "bits", "fields"] };
-    const PACKED_WORD: Self = Self { name: "a word of a packed value", keys: &["bytes", "bits", "fields"] };
-    const PACKED_NUMBER: Self = Self { name: "a number of a packed value", keys: &["bytes", "bits", "range"] };
-    const PACKED_TEXT: Self = Self { name: "a text of a packed value", keys: &["bytes", "bits", "as"] };
-    const PACKED: Self = Self { name: "a packed value", keys: &["format", "fields", "in", "reply"] };
-    pub const CONSTANT: Self = Self { name: "a constant field", keys: &["bytes", "bits", "const", "values", "in"] };
-    pub const OF_MODEL: Self = Self { name: "a type of a model", keys: &["range", "default"] };
+    /// Returns the role in a sentence: "`scale` means nothing for ...".
+    fn name(self) -> &'static str {
+        match self {
+            Self::Identifier => "a field of the identifier",
+            Self::Address => "an address type",
+            Self::OfModel => "a type of a model",
+            Self::Header => "a field of the header",
+            Self::HeaderWord => "a word of the header",
+            Self::Word => "a word of fields",
+            Self::Constant => "a constant field",
+            Self::Number => "a number",
+            Self::Float => "a float",
+            Self::Named => "a signal of named values",
+            Self::Status => "a status word",
+            Self::Text => "a text",
+            Self::Packed => "a packed value",
+            Self::PackedWord => "a word of a packed value",
+            Self::PackedNumber => "a number of a packed value",
+            Self::PackedText => "a text of a packed value",
+        }
+    }
 
     /// Tells whether the role reads a key.
-    pub fn reads(self, key: &str) -> bool {
-        self.keys.contains(&key)
+    pub fn reads(self, key: Key) -> bool {
+        let signal = SIGNALS.concat().contains(&self);
+        let among = |roles: &[Self]| roles.contains(&self);
+        match key {
+            Key::Title | Key::Note | Key::Section | Key::Erratum => true,
+            Key::Type => !among(&[Self::Address, Self::OfModel]),
+            Key::Bytes => signal || among(WORDS) || among(PLACED),
+            Key::Bits => signal || among(WORDS) || among(PLACED) || self == Self::Identifier,
+            Key::As => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::PackedText]),
+            Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
+            Key::Unit => among(QUANTITIES),
+            Key::Range => among(QUANTITIES) || among(&[Self::Address, Self::OfModel, Self::PackedNumber]),
+            Key::Values => among(&[Self::Identifier, Self::Header, Self::Constant, Self::Number, Self::Named]),
+            Key::Fields => among(WORDS) || self == Self::Packed,
+            Key::Status => self == Self::Status,
+            Key::Format => self == Self::Packed,
+            Key::Const => among(&[Self::Identifier, Self::Constant]),
+            Key::Send => among(&[Self::Identifier, Self::Address]),
+            Key::Normal | Key::Continues => among(&[Self::Identifier, Self::Header]),
+            Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::OfModel]),
+            Key::Outside | Key::Examples => self == Self::Address,
+            Key::Reply => signal || among(&[Self::Word, Self::Packed]),
+            Key::In => signal || among(&[Self::Constant, Self::Packed]),
+        }
+    }
+
+    /// Returns the keys that the role reads, without those that stand almost everywhere.
+    fn keys(self) -> Vec<&'static str> {
+        let anywhere = [Key::Type, Key::Title, Key::Note, Key::Section, Key::Erratum];
+        let keys = Key::ALL.iter().filter(|key| self.reads(**key) && !anywhere.contains(key));
+        keys.map(|key| key.name()).collect()
     }
 
     /// Returns the role of a word.
     pub fn of_word(site: Site) -> Self {
         match site {
-            Site::Message => Self::WORD,
-            Site::Header => Self::HEADER_WORD,
-            Site::Packed => Self::PACKED_WORD,
+            Site::Message => Self::Word,
+            Site::Header => Self::HeaderWord,
+            Site::Packed => Self::PackedWord,
         }
     }
 
     /// Returns the role of a packed value.
     pub fn of_packed(site: Site) -> Self {
         match site {
-            Site::Message => Self::PACKED,
-            Site::Header => Self::HEADER,
-            Site::Packed => Self::PACKED_NUMBER,
+            Site::Message => Self::Packed,
+            Site::Header => Self::Header,
+            Site::Packed => Self::PackedNumber,
         }
     }
 
@@ -67,63 +128,85 @@ impl Role {
     pub fn of_field(site: Site, encoding: &Encoding) -> Self {
         match (site, encoding) {
             (Site::Message, _) => Self::of_signal(encoding),
-            (Site::Header, _) => Self::HEADER,
-            (Site::Packed, Encoding::Text) => Self::PACKED_TEXT,
-            (Site::Packed, _) => Self::PACKED_NUMBER,
+            (Site::Header, _) => Self::Header,
+            (Site::Packed, Encoding::Text) => Self::PackedText,
+            (Site::Packed, _) => Self::PackedNumber,
         }
     }
 
     fn of_signal(encoding: &Encoding) -> Self {
         match encoding {
-            Encoding::Number { .. } => Self {
-                name: "a number",
-                keys: &["bytes", "bits", "as", "scale", "offset", "unit", "range", "values", "default", "in", "reply"],
-            },
-            Encoding::Float => {
-                Self { name: "a float", keys: &["bytes", "bits", "as", "unit", "range", "default", "in", "reply"] }
-            }
-            Encoding::Named(_) => Self {
-                name: "a signal of named values",
-                keys: &["bytes", "bits", "as", "values", "default", "in", "reply"],
-            },
-            Encoding::Status(_) => Self { name: "a status word", keys: &["bytes", "bits", "status", "in", "reply"] },
-            Encoding::Text => Self { name: "a text", keys: &["bytes", "bits", "as", "default", "in", "reply"] },
-            Encoding::Packed { .. } => Self::PACKED,
+            Encoding::Number { .. } => Self::Number,
+            Encoding::Float => Self::Float,
+            Encoding::Named(_) => Self::Named,
+            Encoding::Status(_) => Self::Status,
+            Encoding::Text => Self::Text,
+            Encoding::Packed { .. } => Self::Packed,
         }
     }
 }
 
-/// Keys that say which values a field has.
-const OF_VALUES: [&str; 10] = ["bytes", "bits", "as", "scale", "offset", "unit", "values", "fields", "format", "const"];
-
-/// Keys of a field that would say nothing, or less than their absence, if they were empty.
-const NEVER_EMPTY: [&str; 4] = ["values", "fields", "status", "in"];
+/// Tells whether a key says which values a field has.
+fn is_of_values(key: Key) -> bool {
+    match key {
+        Key::Bytes
+        | Key::Bits
+        | Key::As
+        | Key::Scale
+        | Key::Offset
+        | Key::Unit
+        | Key::Values
+        | Key::Fields
+        | Key::Format
+        | Key::Const => true,
+        Key::Type
+        | Key::Range
+        | Key::Status
+        | Key::Send
+        | Key::Normal
+        | Key::Continues
+        | Key::Default
+        | Key::Outside
+        | Key::Reply
+        | Key::In
+        | Key::Examples
+        | Key::Title
+        | Key::Note
+        | Key::Section
+        | Key::Erratum => false,
+    }
+}
 
 impl Resolver<'_> {
     /// Refuses the keys of a field, and of its types, that its role does not read.
     pub fn check_keys(&mut self, merged: &Merged, role: Role) {
-        for key in written(&merged.field).filter(|key| !role.reads(key)) {
+        let field = &merged.sources[0];
+        let is_in_type = field.ancestors().any(|outer| *outer == Path::default().key("types"));
+        let is_read = |key: Key| role.reads(key) || (key == Key::Examples && is_in_type);
+        for key in merged.field.keys().filter(|key| !is_read(*key)) {
             let path = merged.path(self.diagnostics, key);
             match merged.type_at(&path) {
-                Some(name) => self.misplaced_by_type(&merged.sources[0], name, &path, key, role),
+                Some(name) => self.misplaced_by_type(field, name, &path, key, role),
                 None => self.misplaced(&path, key, role),
             }
         }
         for source in &merged.sources {
-            self.check_not_empty(source, &NEVER_EMPTY);
-        }
-        let field = &merged.sources[0];
-        if !merged.field.examples.is_empty() && !field.ancestors().any(|outer| *outer == Path::default().key("types")) {
-            self.misplaced(&field.key("examples"), "examples", role);
+            self.check_nothing_empty(source);
         }
     }
 
     /// Refuses keys of a field that takes none from types.
     pub fn check_own_keys(&mut self, path: &Path, field: &Field, role: Role) {
-        for key in written(field).filter(|key| !role.keys.contains(key)) {
+        for key in field.keys().filter(|key| !role.reads(*key)) {
             self.misplaced(&path.key(key), key, role);
         }
-        self.check_not_empty(path, &NEVER_EMPTY);
+        self.check_nothing_empty(path);
+    }
+
+    /// Refuses keys of a field that would say nothing, or less than their absence.
+    fn check_nothing_empty(&mut self, field: &Path) {
+        let keys: Vec<_> = Key::ALL.iter().filter(|key| key.can_be_empty()).map(|key| key.name()).collect();
+        self.check_not_empty(field, &keys);
     }
 
     /// Refuses empty maps and lists after some keys of an item.
@@ -144,13 +227,13 @@ impl Resolver<'_> {
 
     /// Tells whether no key has an error that says which values a field has.
     pub fn is_sound(&self, merged: &Merged) -> bool {
-        let keys = written(&merged.field).filter(|key| OF_VALUES.contains(key));
+        let keys = merged.field.keys().filter(|key| is_of_values(*key));
         keys.map(|key| merged.path(self.diagnostics, key)).all(|path| !self.diagnostics.has_errors_in(&path))
     }
 
     /// Refuses a type of which a field cannot read a key.
-    fn misplaced_by_type(&mut self, field: &Path, name: &str, path: &Path, key: &str, role: Role) {
-        let what = role.name;
+    fn misplaced_by_type(&mut self, field: &Path, name: &str, path: &Path, key: Key, role: Role) {
+        let (what, key) = (role.name(), key.name());
         let (text, help) = if super::addressing::is_address_type(self.spec, name) {
             let text = format!("`{name}` is an address type, and the field that names it is {what}");
             (text, "name another type, or leave `type` out".to_owned())
@@ -162,35 +245,9 @@ impl Resolver<'_> {
         self.diagnostics.push_first(diagnostic.other(path.at_key(), "the key of the type"));
     }
 
-    fn misplaced(&mut self, path: &Path, key: &str, role: Role) {
-        let message = format!("`{key}` means nothing for {}", role.name);
-        let help = format!("take it out; {} reads `{}`", role.name, role.keys.join("`, `"));
+    fn misplaced(&mut self, path: &Path, key: Key, role: Role) {
+        let message = format!("`{}` means nothing for {}", key.name(), role.name());
+        let help = format!("take it out; {} reads `{}`", role.name(), role.keys().join("`, `"));
         self.error_with_help(&rules::MISPLACED_KEY, path.at_key(), message, help);
     }
-}
-
-/// Returns the keys that a field writes, without `examples` and what every field may say.
-pub fn written(field: &Field) -> impl Iterator<Item = &'static str> + use<> {
-    let keys = [
-        ("bytes", field.bytes.is_some()),
-        ("bits", field.bits.is_some()),
-        ("as", field.format_of_number.is_some()),
-        ("scale", field.scale.is_some()),
-        ("offset", field.offset.is_some()),
-        ("unit", field.unit.is_some()),
-        ("range", field.range.is_some()),
-        ("values", !field.values.is_empty()),
-        ("fields", !field.fields.is_empty()),
-        ("status", !field.status.is_empty()),
-        ("format", field.format.is_some()),
-        ("const", field.constant.is_some()),
-        ("send", field.send.is_some()),
-        ("normal", field.normal.is_some()),
-        ("continues", field.continues.is_some()),
-        ("default", field.default.is_some()),
-        ("outside", field.outside.is_some()),
-        ("in", !field.kinds.is_empty()),
-        ("reply", !field.reply.is_empty()),
-    ];
-    keys.into_iter().filter(|(_, is_written)| *is_written).map(|(key, _)| key)
 }

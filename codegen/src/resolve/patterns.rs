@@ -4,7 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::model::{Constant, Encoding, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
 use crate::rules;
-use crate::syntax::ast::{self, Pattern};
+use crate::syntax::ast::{self, Key, Pattern};
 use crate::syntax::tree::Path;
 
 impl Resolver<'_> {
@@ -25,11 +25,11 @@ impl Resolver<'_> {
     fn header_values(&mut self, signal: &Signal) -> Option<(Option<u64>, Option<u64>)> {
         let field = ast_field(&self.spec.header, &signal.name)?.clone();
         let merged = self.merged(&signal.doc.path, &field)?;
-        let mut value = |key: &str, text: &Option<String>| {
+        let mut value = |key: Key, text: &Option<String>| {
             let path = merged.path(self.diagnostics, key);
             text.as_ref().and_then(|text| self.integer(&path, text, 0, signal.place.max()))
         };
-        Some((value("normal", &merged.field.normal), value("continues", &merged.field.continues)))
+        Some((value(Key::Normal, &merged.field.normal), value(Key::Continues, &merged.field.continues)))
     }
 
     /// Adds a payload selector.

@@ -12,7 +12,7 @@ use crate::model::{
 };
 use crate::number::Rational;
 use crate::rules;
-use crate::syntax::ast::{self, Field};
+use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
 use crate::texts::raw_of_text;
 use crate::words::NUMBER_FORMATS;
@@ -115,13 +115,13 @@ impl Resolver<'_> {
     /// Resolves a field, a word or a packed value; nothing where it has to be given up.
     fn read_leaf(&mut self, path: &Path, name: &str, merged: &Merged, outer: Outer, leaves: &mut Leaves) -> Option<()> {
         let field = &merged.field;
-        let fields = merged.path(self.diagnostics, "fields");
+        let fields = merged.path(self.diagnostics, Key::Fields);
         self.check_not_around(path, name, &fields, outer.around)?;
         let around = [outer.around, std::slice::from_ref(&fields)].concat();
         let outer = Outer { around: &around, ..outer };
         let doc = remarks!(field).doc(path, Some(outer.doc));
         let doc = Doc { title: merged.field.title.clone(), ..doc };
-        leaves.replies.push((merged.path(self.diagnostics, "reply"), merged.field.reply.clone()));
+        leaves.replies.push((merged.path(self.diagnostics, Key::Reply), merged.field.reply.clone()));
         if merged.field.format.is_some() {
             self.check_keys(merged, Role::of_packed(outer.site));
             leaves.signals.push(self.packed(name, merged, doc, outer)?);
@@ -138,7 +138,7 @@ impl Resolver<'_> {
         let signal = self.signal(name, merged, place, doc, outer.owner)?;
         let is_sound = self.is_sound(merged);
         let constant = merged.field.constant.is_some();
-        self.check_keys(merged, if constant { Role::CONSTANT } else { Role::of_field(outer.site, &signal.encoding) });
+        self.check_keys(merged, if constant { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) });
         match &merged.field.constant {
             None => {
                 leaves.signals.push(signal);
@@ -146,7 +146,7 @@ impl Resolver<'_> {
                 (is_sound && !names_another).then_some(())
             }
             Some(text) => {
-                let at = merged.path(self.diagnostics, "const");
+                let at = merged.path(self.diagnostics, Key::Const);
                 let value = self.integer(&at, text, 0, place.max())?;
                 leaves.constants.push((signal, value));
                 self.is_sound(merged).then_some(())
@@ -179,7 +179,7 @@ impl Resolver<'_> {
 
     /// Reads `bytes` or `bits`.
     fn place(&mut self, path: &Path, name: &str, merged: &Merged, word: Option<Place>) -> Option<Place> {
-        let (bytes, bits) = (merged.path(self.diagnostics, "bytes"), merged.path(self.diagnostics, "bits"));
+        let (bytes, bits) = (merged.path(self.diagnostics, Key::Bytes), merged.path(self.diagnostics, Key::Bits));
         match (&merged.field.bytes, &merged.field.bits, word) {
             (Some(text), None, _) => self.bytes(&bytes, text),
             (None, Some(text), Some(word)) => {
@@ -211,15 +211,15 @@ impl Resolver<'_> {
         let field = &merged.field;
         let encoding = self.encoding(name, merged, place, &doc, owner)?;
         let signed = matches!(encoding, Encoding::Number { signed: true, .. });
-        let values = merged.path(self.diagnostics, "values");
+        let values = merged.path(self.diagnostics, Key::Values);
         let named = matches!(encoding, Encoding::Named(_));
         let specials = if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
         let unit = field.unit.as_ref();
-        let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, "unit"), text, field));
+        let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, Key::Unit), text, field));
         let (range_path, default_path) =
-            (merged.path(self.diagnostics, "range"), merged.path(self.diagnostics, "default"));
+            (merged.path(self.diagnostics, Key::Range), merged.path(self.diagnostics, Key::Default));
         let range = field.range.as_ref().and_then(|text| self.range(&range_path, text));
-        let kinds = self.kinds(&merged.path(self.diagnostics, "in"), &field.kinds);
+        let kinds = self.kinds(&merged.path(self.diagnostics, Key::In), &field.kinds);
         let mut signal = Signal {
             name: name.to_owned(),
             doc,
@@ -246,14 +246,14 @@ impl Resolver<'_> {
 
     /// Adds the limits and defaults that device models have in place of those of the signal's types.
     fn add_what_models_change(&mut self, merged: &Merged, signal: &mut Signal) {
-        self.warn_of_hidden(merged, "range", |known| known.range.is_some());
-        self.warn_of_hidden(merged, "default", |known| known.default.is_some());
+        self.warn_of_hidden(merged, Key::Range, |known| known.range.is_some());
+        self.warn_of_hidden(merged, Key::Default, |known| known.default.is_some());
         for model in self.tables.models.ids() {
-            if let Some(known) = self.changed(merged, model, "range", |known| known.range.is_some()) {
+            if let Some(known) = self.changed(merged, model, Key::Range, |known| known.range.is_some()) {
                 let path = known.doc.path.key("range");
                 signal.model_ranges.extend(known.range.map(|value| OfModel { model, value, path }));
             }
-            if let Some(known) = self.changed(merged, model, "default", |known| known.default.is_some()) {
+            if let Some(known) = self.changed(merged, model, Key::Default, |known| known.default.is_some()) {
                 let path = known.doc.path.key("default");
                 let text = known.default.map(|value| value.to_string()).unwrap_or_default();
                 let raw = self.default(&path, signal, &text);
@@ -267,7 +267,7 @@ impl Resolver<'_> {
         &self,
         merged: &Merged,
         model: ModelId,
-        key: &str,
+        key: Key,
         has: impl Fn(&TypeOfModel) -> bool,
     ) -> Option<TypeOfModel> {
         let writes = |source: &Path| self.diagnostics.has(&source.key(key));
@@ -284,7 +284,7 @@ impl Resolver<'_> {
     }
 
     /// Warns of a key that keeps device models from changing it in one of the field's types.
-    fn warn_of_hidden(&mut self, merged: &Merged, key: &str, has: impl Fn(&TypeOfModel) -> bool + Copy) {
+    fn warn_of_hidden(&mut self, merged: &Merged, key: Key, has: impl Fn(&TypeOfModel) -> bool + Copy) {
         for name in &merged.types {
             let models = self.hidden(merged, name, key, has);
             if !models.is_empty() {
@@ -300,7 +300,7 @@ impl Resolver<'_> {
         &self,
         merged: &Merged,
         name: &str,
-        key: &str,
+        key: Key,
         has: impl Fn(&TypeOfModel) -> bool + Copy,
     ) -> Vec<&DeviceModel> {
         let models = self.tables.models.entries();
@@ -336,7 +336,7 @@ impl Resolver<'_> {
             Some("float") => return self.float(name, merged, place),
             Some("text") => return self.text(name, merged, place),
             Some(other) => {
-                let at = merged.path(self.diagnostics, "as");
+                let at = merged.path(self.diagnostics, Key::As);
                 self.lookup(&at, "number format", other, NUMBER_FORMATS.into_iter());
                 return None;
             }
@@ -345,12 +345,12 @@ impl Resolver<'_> {
         if !field.values.is_empty() && !number {
             return self.enumeration(merged, &otherwise, place.width(), doc).map(Encoding::Named);
         }
-        let mut read = |key: &str, text: &Option<String>, otherwise: Rational| match text {
+        let mut read = |key: Key, text: &Option<String>, otherwise: Rational| match text {
             Some(text) => self.number(&merged.path(self.diagnostics, key), text),
             None => Some(otherwise),
         };
-        let scale = read("scale", &field.scale, Rational::ONE)?;
-        let offset = read("offset", &field.offset, Rational::ZERO)?;
+        let scale = read(Key::Scale, &field.scale, Rational::ONE)?;
+        let offset = read(Key::Offset, &field.offset, Rational::ZERO)?;
         Some(Encoding::Number { signed, scale, offset })
     }
 
@@ -381,17 +381,17 @@ impl Resolver<'_> {
 
     /// Makes one text signal of several parts.
     fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
-        let fields = merged.path(self.diagnostics, "fields");
+        let fields = merged.path(self.diagnostics, Key::Fields);
         let inside = Outer { site: Site::Packed, doc: &doc, ..outer };
         let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), inside);
         let parts: Table<PartId, Signal> = leaves.given_up.is_empty().then(|| leaves.signals.into_iter().collect())?;
         let format = merged.field.format.clone()?;
-        let at = merged.path(self.diagnostics, "format");
+        let at = merged.path(self.diagnostics, Key::Format);
         let pieces = self.pieces(&at, &format, &parts)?;
         self.check_pieces(&at, &pieces, &parts);
         self.check_ends(&at, &pieces, &parts);
         let place = self.packed_place(&at, &parts)?;
-        let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, "in"), &merged.field.kinds);
+        let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, Key::In), &merged.field.kinds);
         let (range_path, default_path) = (doc.path.key("range"), doc.path.key("default"));
         Some(Signal {
             name: name.to_owned(),
@@ -499,10 +499,11 @@ impl Resolver<'_> {
 }
 
 /// Warns of a key of a field that takes the effect from what device models say of a type.
-fn hidden_by(at: At, key: &str, name: &str, models: &[&DeviceModel]) -> Diagnostic {
+fn hidden_by(at: At, key: Key, name: &str, models: &[&DeviceModel]) -> Diagnostic {
     let names: Vec<_> = models.iter().map(|model| format!("`{}`", model.name)).collect();
-    let text = format!("this {key} leaves the {key} of {} for the type `{name}` without effect", names.join(", "));
-    let help = format!("put the general {key} into the type `{name}`, or take a type that no model changes");
+    let word = key.name();
+    let text = format!("this {word} leaves the {word} of {} for the type `{name}` without effect", names.join(", "));
+    let help = format!("put the general {word} into the type `{name}`, or take a type that no model changes");
     let places = models.iter().map(|model| model.doc.path.key("types").key(name).key(key).at_value());
     places.fold(Diagnostic::warning(&rules::MODEL_RANGE, at, text).help(help), |known, at| {
         known.other(at, "no effect here")

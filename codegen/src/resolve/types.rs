@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, StatusBit, StatusWord, StatusWordId, raw_limits};
 use crate::rules;
 use crate::suspect::{Claim, suspect};
-use crate::syntax::ast::{self, Field};
+use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
 use crate::words::SEVERITIES;
 
@@ -27,7 +27,7 @@ pub struct Merged {
 
 impl Merged {
     /// Returns where `key` is written.
-    pub fn path(&self, diagnostics: &Diagnostics, key: &str) -> Path {
+    pub fn path(&self, diagnostics: &Diagnostics, key: Key) -> Path {
         let written = self.sources.iter().map(|source| source.key(key)).find(|path| diagnostics.has(path));
         written.unwrap_or_else(|| self.sources[0].clone())
     }
@@ -40,14 +40,6 @@ impl Merged {
         let types = self.types.iter().zip(&self.sources[1..]);
         types.into_iter().find(|(_, source)| Some(*source) == outer).map(|(name, _)| name)
     }
-}
-
-/// Takes a key from a type where the field does not have it.
-macro_rules! take {
-    ($field:expr, $other:expr, $($option:ident)*; $($map:ident)*) => {
-        $(if $field.$option.is_none() { $field.$option.clone_from(&$other.$option); })*
-        $(if $field.$map.is_empty() { $field.$map.clone_from(&$other.$map); })*
-    };
 }
 
 impl Resolver<'_> {
@@ -118,9 +110,7 @@ impl Resolver<'_> {
             merged.sources.push(source.clone());
             merged.types.push(name.clone());
             self.tables.used_types.insert(name.clone());
-            let field = &mut merged.field;
-            take!(field, other, bytes bits format_of_number scale offset unit range format constant send normal continues default outside title;
-                values fields status kinds reply);
+            merged.field.inherit(other);
             self.merge_types(&source, &other.types.0, merged, &[outer, &[name.as_str()]].concat())?;
         }
         Some(())
@@ -148,7 +138,7 @@ impl Resolver<'_> {
     }
 
     /// Returns the type whose key it is, or else the name that the field itself suggests.
-    fn type_name(&self, merged: &Merged, key: &str, otherwise: &str) -> (String, Path) {
+    fn type_name(&self, merged: &Merged, key: Key, otherwise: &str) -> (String, Path) {
         let path = merged.path(self.diagnostics, key);
         let own = merged.sources[0].key(key);
         let types = merged.types.iter().zip(&merged.sources[1..]);
@@ -170,14 +160,14 @@ impl Resolver<'_> {
         if merged.field.values.is_empty() {
             return None;
         }
-        let (name, source) = self.type_name(merged, "values", otherwise);
+        let (name, source) = self.type_name(merged, Key::Values, otherwise);
         let made = |known: &Enumeration| known.name == name && known.doc.path == source;
         if let Some(index) = self.tables.enumerations.position(made) {
             let known = &mut self.tables.enumerations[index];
             known.width = known.width.max(width);
             return Some(index);
         }
-        let values = self.values(&merged.path(self.diagnostics, "values"), &merged.field.values, width, false);
+        let values = self.values(&merged.path(self.diagnostics, Key::Values), &merged.field.values, width, false);
         let doc = self.type_doc(&name, &source, doc);
         Some(self.tables.enumerations.push(Enumeration { name, doc, width, values }))
     }
@@ -242,7 +232,7 @@ impl Resolver<'_> {
 
     /// Finds or makes the status word of a field.
     pub fn status_word(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> StatusWordId {
-        let (name, source) = self.type_name(merged, "status", otherwise);
+        let (name, source) = self.type_name(merged, Key::Status, otherwise);
         let made = |known: &StatusWord| known.name == name && known.doc.path == source;
         if let Some(index) = self.tables.status_words.position(made) {
             let known = &mut self.tables.status_words[index];
@@ -250,7 +240,7 @@ impl Resolver<'_> {
             return index;
         }
         let doc = self.type_doc(&name, &source, doc);
-        let path = merged.path(self.diagnostics, "status");
+        let path = merged.path(self.diagnostics, Key::Status);
         let widest = if self.holds_bits(merged, width) { width } else { WIDEST };
         let entries = merged.field.status.iter();
         let mut bits: Vec<_> =
@@ -263,11 +253,11 @@ impl Resolver<'_> {
     /// Tests that not several bits lie beyond the end of the word, where rather the place of the word is wrong.
     fn holds_bits(&mut self, merged: &Merged, width: u8) -> bool {
         let is_beyond = |bit: &ast::StatusBit| bit.bit.parse::<u8>().is_ok_and(|bit| (width..WIDEST).contains(&bit));
-        let path = merged.path(self.diagnostics, "status");
+        let path = merged.path(self.diagnostics, Key::Status);
         let beyond = merged.field.status.iter().filter(|(_, bit)| is_beyond(bit));
         let beyond: Vec<_> = beyond.map(|(name, _)| path.key(name).key("bit").at_value()).collect();
         let [first, _, ..] = beyond.as_slice() else { return true };
-        let key = if merged.field.bytes.is_some() { "bytes" } else { "bits" };
+        let key = if merged.field.bytes.is_some() { Key::Bytes } else { Key::Bits };
         let at = merged.path(self.diagnostics, key);
         let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
         let help = "correct the place of the word, or the numbers of the bits";

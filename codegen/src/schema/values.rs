@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use crate::model::NoteRule;
 use crate::model::{Failure, Kind, Unit};
 use crate::rules::RULES;
+use crate::syntax::ast::Key;
 use crate::words::{ANSWERS, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
 
 /// The form of a text; what YAML reads as a number needs none.
@@ -21,60 +22,101 @@ const RANGE: Form = Form { pattern: r"N\.\.N", message: "Write the limits as `41
 /// From the most to the least significant.
 pub const PLACE: Form = Form { pattern: r"N(\.\.N)?", message: "Write `7..4` or one number." };
 
-/// Keys after which a text has a form, by the struct that has them.
-const FORMS: [(&str, &str, Form); 17] = [
+/// What a value is, beyond its kind.
+enum Demand {
+    /// A text has a form.
+    Form(Form),
+    /// One of a few words.
+    Choice(Vec<&'static str>),
+    /// Whatever its kind allows.
+    Anything,
+}
+
+/// Keys after which a text has a form, by the struct that has them; those of a field are in [`of_field`].
+const FORMS: [(&str, &str, Form); 7] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
     ("Access", "report", NUMBER),
     ("Access", "request", NUMBER),
-    ("Field", "bits", PLACE),
-    ("Field", "bytes", Form { message: "Write `0..3` or one number.", ..PLACE }),
-    ("Field", "const", NUMBER),
-    ("Field", "continues", NUMBER),
-    ("Field", "normal", NUMBER),
-    ("Field", "offset", NUMBER),
-    ("Field", "range", RANGE),
-    ("Field", "reply", NUMBER),
-    ("Field", "scale", NUMBER),
-    ("Field", "send", NUMBER),
     ("Message", "length", NUMBER),
     ("Message", "match", NUMBER),
     ("StatusBit", "bit", NUMBER),
 ];
 
 /// Returns the keys after which one of a few words stands, by the struct that has them.
-fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 14] {
-    let kinds = Kind::ALL.map(Kind::name).to_vec();
+fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 10] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();
     [
         ("Access", "answers", answers.clone()),
-        ("Access", "in", kinds.clone()),
+        ("Access", "in", kinds()),
         ("Allowance", "rule", RULES.iter().map(|rule| rule.name).collect()),
         ("Erratum", "kind", ERRATUM_KINDS.to_vec()),
         ("Example", "fails", Failure::ALL.map(|(_, word)| word).to_vec()),
         ("Example", "notes", NoteRule::ALL.map(|(_, name)| name).to_vec()),
         ("Example", "origin", ORIGINS.to_vec()),
-        ("Field", "as", NUMBER_FORMATS.to_vec()),
-        ("Field", "in", kinds),
-        ("Field", "outside", OUTSIDE.to_vec()),
-        ("Field", "unit", Unit::ALL.map(|unit| unit.symbol).to_vec()),
         ("Message", "answers", answers),
         ("Message", "in", vec![Kind::Request.name(), Kind::Reply.name()]),
         ("StatusBit", "severity", SEVERITIES.map(|(word, _)| word).to_vec()),
     ]
 }
 
+fn kinds() -> Vec<&'static str> {
+    Kind::ALL.map(Kind::name).to_vec()
+}
+
+/// Returns what stands after a key of a field.
+fn of_field(key: Key) -> Demand {
+    match key {
+        Key::Bytes => Demand::Form(Form { message: "Write `0..3` or one number.", ..PLACE }),
+        Key::Bits => Demand::Form(PLACE),
+        Key::Scale | Key::Offset | Key::Const | Key::Send | Key::Normal | Key::Continues | Key::Reply => {
+            Demand::Form(NUMBER)
+        }
+        Key::Range => Demand::Form(RANGE),
+        Key::As => Demand::Choice(NUMBER_FORMATS.to_vec()),
+        Key::In => Demand::Choice(kinds()),
+        Key::Outside => Demand::Choice(OUTSIDE.to_vec()),
+        Key::Unit => Demand::Choice(Unit::ALL.map(|unit| unit.symbol).to_vec()),
+        Key::Type
+        | Key::Values
+        | Key::Fields
+        | Key::Status
+        | Key::Format
+        | Key::Default
+        | Key::Examples
+        | Key::Title
+        | Key::Note
+        | Key::Section
+        | Key::Erratum => Demand::Anything,
+    }
+}
+
+/// Returns every key with what stands after it, by the struct that has it.
+fn demands() -> impl Iterator<Item = (&'static str, &'static str, Demand)> {
+    let forms = FORMS.into_iter().map(|(item, key, form)| (item, key, Demand::Form(form)));
+    let choices = choices().into_iter().map(|(item, key, words)| (item, key, Demand::Choice(words)));
+    let fields = Key::ALL.iter().map(|key| ("Field", key.name(), of_field(*key)));
+    forms.chain(choices).chain(fields)
+}
+
 /// Adds all that to the schema.
 pub fn restrict(schema: &mut Value) {
-    for (item, key, form) in FORMS {
+    for (item, key, demand) in demands() {
         if let Some(value) = value_of(schema, item, key) {
-            form.demand(value);
+            demand.add_to(value);
         }
     }
-    for (item, key, words) in choices() {
-        if let Some(value) = value_of(schema, item, key) {
-            value.remove("type");
-            value.insert("enum".to_owned(), words.into());
+}
+
+impl Demand {
+    fn add_to(self, value: &mut Map<String, Value>) {
+        match self {
+            Self::Form(form) => form.demand(value),
+            Self::Choice(words) => {
+                value.remove("type");
+                value.insert("enum".to_owned(), words.into());
+            }
+            Self::Anything => {}
         }
     }
 }
@@ -106,9 +148,7 @@ mod tests {
     #[test]
     fn every_key_that_is_restricted_exists() -> serde_json::Result<()> {
         let mut schema = serde_json::from_str(&crate::schema::schema())?;
-        let forms = FORMS.map(|(item, key, _)| (item, key));
-        let choices = choices().map(|(item, key, _)| (item, key));
-        for (item, key) in forms.into_iter().chain(choices) {
+        for (item, key, _) in demands().filter(|(_, _, demand)| !matches!(demand, Demand::Anything)) {
             assert!(value_of(&mut schema, item, key).is_some(), "{item}.{key}");
         }
         Ok(())

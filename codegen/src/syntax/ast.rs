@@ -1,8 +1,10 @@
 //! A spec as it is written: every leaf is still its text.
 
+mod field;
 mod message;
 mod reading;
 
+pub use field::{Field, Key};
 pub use message::{Example, Means, Message, Sequence};
 
 use indexmap::IndexMap;
@@ -106,90 +108,6 @@ pub enum IdentifierEntry {
     Place(String),
     /// A field with its `bits`: `{bits: 28..16}`.
     Field(Box<Field>),
-}
-
-/// A named bit range with a meaning: in the identifier, the header, a message, a word, or a type to take keys from.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Field {
-    /// Bytes of the frame, 0 to 7, from the most to the least significant: `0..3` is big-endian, `7..4` little-endian,
-    /// `2` a single byte. A field has either `bytes` or `bits`.
-    pub bytes: Option<String>,
-    /// Bits of the identifier or of the word around the field, from the most to the least significant, which is 0:
-    /// `31..16`, or `7` for a single bit.
-    pub bits: Option<String>,
-    /// Entry of `types`, or a list of them, from which the field takes the keys that it does not have itself: `real` or
-    /// `[real, volts]`, where the last one wins; none if absent.
-    #[serde(rename = "type", default)]
-    pub types: Names,
-    /// Number format: `unsigned`, `signed` (two's complement), `float` (IEEE 754 in 32 bits) or `text` (ASCII in whole
-    /// bytes); `unsigned` if absent.
-    #[serde(rename = "as")]
-    pub format_of_number: Option<String>,
-    /// Step of the raw value in the field's unit, exact: `1/10` or `0.02`; 1 if absent. The physical value is raw x
-    /// scale + offset; an address has a scale of 1 or -1.
-    pub scale: Option<String>,
-    /// Physical value of raw 0 in the field's unit, exact: `-40` or `0xFD`; 0 if absent.
-    pub offset: Option<String>,
-    /// Unit of the physical value: `V`, `A`, `W`, `Hz`, `°C`, `%`, `s`, `ms`, `min`, `h`, `rpm` or `m`; none if absent.
-    pub unit: Option<String>,
-    /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`; all that the bits hold if
-    /// absent. An address type must have it, with the addresses that the document names: `0x00..0x3B`.
-    pub range: Option<String>,
-    /// Names of raw values, before scale and offset: `{0: standby, 1: running}`; none if absent. Beside `unit`,
-    /// `scale`, `offset` or `range` they are special values, which lie outside the range.
-    #[serde(default)]
-    pub values: Map<String>,
-    /// Fields by name that are the parts of a word, or of a text with a `format`:
-    /// `{mode: {bits: 7..4}, stage: {bits: 3..0}}`; none if absent.
-    #[serde(default)]
-    pub fields: Map<Field>,
-    /// Bits of a status word by name, in place of `fields`: `{fan_fault: {bit: 3, severity: fault}}`; none if absent.
-    #[serde(default)]
-    pub status: Map<StatusBit>,
-    /// Form of a text that the parts in `fields` make up, a number with at least so many digits:
-    /// `"{letter}-{number:4}"`; none if absent.
-    pub format: Option<String>,
-    /// Raw value that is always sent and required: `0x1205`; none if absent. Another value in the identifier is another
-    /// protocol, in a message it is another message.
-    #[serde(rename = "const")]
-    pub constant: Option<String>,
-    /// Raw value of a field of the identifier, or number of an address type, that is sent unless the caller chooses
-    /// another: `0xF0`. If absent, the field is 0 and the address the caller's to choose.
-    pub send: Option<String>,
-    /// Raw value of a reply that is no error reply, in a field of the identifier or the header: `0`; none if absent.
-    /// Any other value gets the note `error_code`.
-    pub normal: Option<String>,
-    /// Raw value of a field of the identifier or the header that says that more frames of a set follow: `1`; any other
-    /// value says that this one is the last. None if absent; only one field of a protocol has it.
-    pub continues: Option<String>,
-    /// Physical value without its unit, or name, that the device starts with and that stands for a signal left out:
-    /// `60` or `automatic`; none if absent.
-    pub default: Option<String>,
-    /// What a number outside the `range` of an address type is: with `refused` something else than such an address. If
-    /// absent, it is accepted with the note `address`.
-    pub outside: Option<String>,
-    /// Raw values that fields of the identifier and the header have in every reply of a message with this field:
-    /// `{result_type: 0x41}`; none if absent.
-    #[serde(default)]
-    pub reply: Pattern,
-    /// The only kinds of frames that have the field, of `request`, `reply` and `report`: `[request]`; if absent, those
-    /// that the access says.
-    #[serde(rename = "in", default)]
-    pub kinds: Vec<String>,
-    /// Bytes and what they mean, in an entry of `types` only: `[{bytes: 43FA0000, means: 500}]`; none if absent.
-    #[serde(default)]
-    pub examples: Vec<ValueExample>,
-    /// What it is, in a few words without a full stop: `Output voltage`; if absent, what its type says.
-    pub title: Option<String>,
-    /// What else a reader must know, in one sentence: `0 until a group has been set`.
-    pub note: Option<String>,
-    /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
-    pub section: Option<String>,
-    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
-    #[serde(default)]
-    pub erratum: Names,
 }
 
 /// One bit of a status word.
