@@ -4,7 +4,7 @@ use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
-use crate::model::{Identifier, IdentifierField, Table};
+use crate::model::{Doc, Identifier, IdentifierField, Table};
 use crate::rules;
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{Field, IdentifierEntry, Key};
@@ -77,7 +77,7 @@ impl Resolver<'_> {
     fn identifier_field(&mut self, path: &Path, name: &str, field: &Field) -> Option<(IdentifierField, Run)> {
         self.check_name(path, name);
         let merged = self.merged(path, field)?;
-        self.check_keys(&merged, Role::Identifier);
+        self.check_keys(&merged, Role::of_identifier(&merged.field));
         let Some(text) = &merged.field.bits else {
             let help = "say which bits, for instance `bits: 28..26`";
             self.error_with_help(&rules::PLACE, path.at_key(), format!("the field `{name}` has no place"), help);
@@ -93,7 +93,7 @@ impl Resolver<'_> {
         let send = number(Key::Send, &merged.field.send);
         let normal = number(Key::Normal, &merged.field.normal);
         let continues = number(Key::Continues, &merged.field.continues);
-        let doc = remarks!(field).doc(path, None);
+        let doc = Doc { title: merged.field.title.clone(), ..remarks!(field).doc(path, None) };
         let enumeration = self.enumeration(&merged, &format!("{name}_code"), width, &doc);
         let run = Run { high, low, place: path.key("bits") };
         let name = name.to_owned();

@@ -20,6 +20,7 @@ pub enum Site {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     Identifier,
+    IdentifierConstant,
     Address,
     OfModel,
     Header,
@@ -43,6 +44,9 @@ const QUANTITIES: &[Role] = &[Role::Number, Role::Float];
 /// Signals that are not put together of parts.
 const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text]];
 
+/// Fields of the identifier.
+const IDENTIFIER: &[Role] = &[Role::Identifier, Role::IdentifierConstant];
+
 /// What has other fields inside.
 const WORDS: &[Role] = &[Role::Word, Role::HeaderWord, Role::PackedWord];
 
@@ -54,6 +58,7 @@ impl Role {
     fn name(self) -> &'static str {
         match self {
             Self::Identifier => "a field of the identifier",
+            Self::IdentifierConstant => "a constant field of the identifier",
             Self::Address => "an address type",
             Self::OfModel => "a type of a model",
             Self::Header => "a field of the header",
@@ -77,19 +82,20 @@ impl Role {
         let signal = SIGNALS.concat().contains(&self);
         let among = |roles: &[Self]| roles.contains(&self);
         match key {
-            Key::Title | Key::Note | Key::Section | Key::Erratum => true,
+            Key::Section | Key::Erratum => true,
+            Key::Title | Key::Note => !among(WORDS) && self != Self::OfModel,
             Key::Type => !among(&[Self::Address, Self::OfModel]),
             Key::Bytes => signal || among(WORDS) || among(PLACED),
-            Key::Bits => signal || among(WORDS) || among(PLACED) || self == Self::Identifier,
-            Key::As => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::PackedText]),
+            Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
+            Key::As => among(QUANTITIES) || among(&[Self::Text, Self::PackedText]),
             Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
             Key::Unit => among(QUANTITIES),
             Key::Range => among(QUANTITIES) || among(&[Self::Address, Self::OfModel, Self::PackedNumber]),
-            Key::Values => among(&[Self::Identifier, Self::Header, Self::Constant, Self::Number, Self::Named]),
+            Key::Values => among(IDENTIFIER) || among(&[Self::Header, Self::Constant, Self::Number, Self::Named]),
             Key::Fields => among(WORDS) || self == Self::Packed,
             Key::Status => self == Self::Status,
             Key::Format => self == Self::Packed,
-            Key::Const => among(&[Self::Identifier, Self::Constant]),
+            Key::Const => among(&[Self::IdentifierConstant, Self::Constant]),
             Key::Send => among(&[Self::Identifier, Self::Address]),
             Key::Normal | Key::Continues => among(&[Self::Identifier, Self::Header]),
             Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::OfModel]),
@@ -104,6 +110,11 @@ impl Role {
         let anywhere = [Key::Type, Key::Title, Key::Note, Key::Section, Key::Erratum];
         let keys = Key::ALL.iter().filter(|key| self.reads(**key) && !anywhere.contains(key));
         keys.map(|key| key.name()).collect()
+    }
+
+    /// Returns the role of a field of the identifier.
+    pub fn of_identifier(field: &Field) -> Self {
+        if field.constant.is_some() { Self::IdentifierConstant } else { Self::Identifier }
     }
 
     /// Returns the role of a word.
@@ -181,9 +192,7 @@ impl Resolver<'_> {
     /// Refuses the keys of a field, and of its types, that its role does not read.
     pub fn check_keys(&mut self, merged: &Merged, role: Role) {
         let field = &merged.sources[0];
-        let is_in_type = field.ancestors().any(|outer| *outer == Path::default().key("types"));
-        let is_read = |key: Key| role.reads(key) || (key == Key::Examples && is_in_type);
-        for key in merged.field.keys().filter(|key| !is_read(*key)) {
+        for key in merged.field.keys().filter(|key| !role.reads(*key)) {
             let path = merged.path(self.diagnostics, key);
             match merged.type_at(&path) {
                 Some(name) => self.misplaced_by_type(field, name, &path, key, role),

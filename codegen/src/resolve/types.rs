@@ -207,7 +207,7 @@ impl Resolver<'_> {
                 None => (format!("the raw value `{text}` is not a whole number"), "write the number in the frame"),
                 Some(whole) => {
                     let help = if whole < 0 && first == 0 {
-                        "numbers below 0 need `as: signed`"
+                        "only a number with `as: signed` has raw values below 0"
                     } else {
                         "correct the number, or give the field more bits"
                     };
