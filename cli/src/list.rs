@@ -3,11 +3,8 @@
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
-use canspec_codegen::model::{
-    DeviceModel, Document, Encoding, Enumeration, Example, Message, MessageId, NamedValue, PartId, Piece, Protocol,
-    SelectorId, Signal, StatusWord, Table,
-};
-use canspec_codegen::number::Rational;
+use canspec_codegen::interpret::description;
+use canspec_codegen::model::{DeviceModel, Document, Example, Message, MessageId, Protocol, SelectorId, Signal};
 use canspec_specs::SPECS;
 use clap::Args;
 
@@ -190,41 +187,9 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     let mut items = Vec::new();
     items.extend(signal.range.map(|range| format!("{}..{}", range.minimum, range.maximum)));
     items.extend((!signal.model_ranges.is_empty()).then(|| "limits by model".to_owned()));
-    match &signal.encoding {
-        Encoding::Number { scale, .. } if *scale != Rational::ONE => items.push(format!("step {scale}")),
-        Encoding::Float => items.push("float".to_owned()),
-        Encoding::Named(id) => items.extend(names(&protocol[*id])),
-        Encoding::Status(id) => items.extend(bits(&protocol[*id])),
-        Encoding::Text => items.push(format!("text of {} characters", signal.place.width().div_ceil(8))),
-        Encoding::Packed { pieces, parts } => items.push(form(pieces, parts)),
-        Encoding::Number { .. } => {}
-    }
+    items.extend(description(protocol, signal));
     items.extend(signal.specials.iter().map(|special| format!("{} = {}", special.raw, special.name)));
     items
-}
-
-fn names(enumeration: &Enumeration) -> Vec<String> {
-    let digits = usize::from(enumeration.width.div_ceil(4));
-    let is_small = enumeration.values.iter().all(|value| value.raw < 10);
-    let shown = |value: &NamedValue| match value.raw {
-        raw if is_small => format!("{raw} = {}", value.name),
-        raw => format!("0x{raw:0digits$X} = {}", value.name),
-    };
-    enumeration.values.iter().map(shown).collect()
-}
-
-fn bits(word: &StatusWord) -> Vec<String> {
-    word.bits.iter().map(|bit| format!("bit {} {}", bit.bit, bit.name)).collect()
-}
-
-/// Returns a packed text's form as the spec writes it.
-fn form(pieces: &[Piece], parts: &Table<PartId, Signal>) -> String {
-    let piece = |piece: &Piece| match piece {
-        Piece::Literal(text) => text.clone(),
-        Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", parts[*part].name),
-        Piece::Part { part, digits: None } => format!("{{{}}}", parts[*part].name),
-    };
-    pieces.iter().map(piece).collect()
 }
 
 fn words(text: &str) -> Vec<String> {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressPattern, Encoding, Kind, Mode, Protocol, Signal};
+use canspec_codegen::model::{AddressPattern, Kind, Mode, Protocol, Signal};
 
 use crate::columns::{Columns, wrap};
 use crate::line::{Origin, bit_names};
@@ -167,7 +167,7 @@ fn value(protocol: &Protocol, signal: &Signal, reading: &Reading) -> String {
     match &reading.value {
         Value::None => format!("? (raw 0x{:X})", reading.bits),
         Value::Integer(number) => number.to_string(),
-        Value::Number(number) if matches!(signal.encoding, Encoding::Float) => single(*number),
+        Value::Number(number) if signal.encoding.is_single() => single(*number),
         Value::Number(number) => format!("{number:?}"),
         Value::Name(text) | Value::Text(text) => text.escape_debug().to_string(),
         Value::Status { set, unknown } => status(&bit_names(protocol, signal, set), *unknown),

@@ -8,11 +8,12 @@ mod value;
 
 pub use decode::decode;
 pub use encode::encode;
-pub use request::{Target, parse_input, request, requests};
+pub use request::{Target, request, requests};
 pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
+pub use crate::encoding::{Input, Value, description};
 use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, NoteRule, SelectorId, SignalId, Table, Travel};
 
 /// A frame as it stood on the bus.
@@ -102,28 +103,6 @@ pub struct Reading {
     pub value: Value,
 }
 
-/// A physical value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// Unnamed, not finite, or a text that would not give the same bytes.
-    None,
-    /// An unscaled number.
-    Integer(i128),
-    /// A scaled or floating-point number.
-    Number(f64),
-    /// The name of a named value.
-    Name(String),
-    /// A text, packed or in ASCII.
-    Text(String),
-    /// The set bits of a status word.
-    Status {
-        /// Numbers of the set bits that have a name.
-        set: Vec<u8>,
-        /// Set bits without a name.
-        unknown: u64,
-    },
-}
-
 /// Something about a recognised frame that the document does not foresee.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
@@ -199,26 +178,6 @@ pub struct Content {
     pub signals: Vec<(String, Input)>,
     /// Bits to set beside the signals, first byte first.
     pub reserved: Vec<u8>,
-}
-
-/// A value to send.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Input {
-    /// The raw value: sign-extended where the signal is signed, or the bit pattern.
-    Raw(i128),
-    /// An unscaled number, or a whole one that is still to be scaled.
-    Integer(i128),
-    /// A physical value.
-    Number(f64),
-    /// A name, or a text.
-    Text(String),
-    /// The set bits of a status word.
-    Status {
-        /// Names of the set bits.
-        set: Vec<String>,
-        /// Set bits without a name.
-        unknown: u64,
-    },
 }
 
 /// Why a frame was not made; names message, signal, value, unit and limits.

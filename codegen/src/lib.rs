@@ -9,6 +9,7 @@ mod builder;
 pub mod check;
 pub mod diagnostic;
 pub mod emit;
+mod encoding;
 pub mod files;
 pub mod interpret;
 mod lint;
@@ -23,7 +24,6 @@ pub mod source;
 mod summary;
 mod suspect;
 pub mod syntax;
-mod texts;
 mod words;
 
 pub use builder::{Builder, Generated, generate};

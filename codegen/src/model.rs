@@ -4,6 +4,7 @@
 
 mod address;
 mod data;
+mod encoding;
 mod example;
 mod id;
 mod identifier;
@@ -15,6 +16,7 @@ mod signal;
 
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
+pub use encoding::{Encoding, Piece, raw_limits};
 pub use example::{Example, Failure, Meaning, Misfit, ValueExample};
 pub use id::{
     AccessId, AddressTypeId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId, ModelId,
@@ -25,10 +27,7 @@ pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Messag
 pub use note::NoteRule;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
-pub use signal::{
-    Encoding, Enumeration, NamedValue, OfModel, Piece, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit,
-    raw_limits,
-};
+pub use signal::{Enumeration, NamedValue, OfModel, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit};
 
 /// A whole protocol.
 #[derive(Clone, Debug)]

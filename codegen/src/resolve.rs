@@ -18,6 +18,7 @@ use std::collections::{HashMap, HashSet};
 use indexmap::IndexSet;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::encoding::Words;
 use crate::model::{self, EnumerationId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table};
 use crate::rules::{RULES, Rule};
 use crate::syntax::ast;
@@ -104,6 +105,11 @@ impl Resolver<'_> {
             enumerations: self.tables.enumerations,
             status_words: self.tables.status_words,
         })
+    }
+
+    /// Returns what encodings refer to, as far as it is known.
+    fn words(&self) -> Words<'_> {
+        Words { enumerations: &self.tables.enumerations, status_words: &self.tables.status_words }
     }
 
     /// Tests that the allowances name rules.

@@ -2,8 +2,22 @@
 
 use crate::model::{Severity, Who};
 
+/// How a number or a text is written in bits.
+#[derive(Clone, Copy)]
+pub enum NumberFormat {
+    Unsigned,
+    Signed,
+    Float,
+    Text,
+}
+
 /// What may stand after `as`.
-pub const NUMBER_FORMATS: [&str; 4] = ["unsigned", "signed", "float", "text"];
+pub const NUMBER_FORMATS: [(&str, NumberFormat); 4] = [
+    ("unsigned", NumberFormat::Unsigned),
+    ("signed", NumberFormat::Signed),
+    ("float", NumberFormat::Float),
+    ("text", NumberFormat::Text),
+];
 
 /// What may stand after `outside`.
 pub const OUTSIDE: [&str; 1] = ["refused"];

@@ -134,7 +134,7 @@ impl<'a> NoteObject<'a> {
 #[serde(untagged)]
 enum SignalObject<'a> {
     Value {
-        raw: Raw,
+        raw: i128,
         value: ValueObject<'a>,
         #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<&'static str>,
@@ -144,13 +144,6 @@ enum SignalObject<'a> {
         set: Vec<&'a str>,
         unknown: u64,
     },
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Raw {
-    Unsigned(u64),
-    Signed(i64),
 }
 
 #[derive(Serialize)]
@@ -173,7 +166,7 @@ impl<'a> SignalObject<'a> {
                 return Self::Status { raw: reading.bits, set: bit_names(protocol, signal, set), unknown: *unknown };
             }
         };
-        Self::Value { raw: raw(signal, reading.bits), value, unit: signal.unit.map(|unit| unit.symbol) }
+        Self::Value { raw: signal.raw_of(reading.bits), value, unit: signal.unit.map(|unit| unit.symbol) }
     }
 }
 
@@ -182,14 +175,6 @@ pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> Vec
     let Encoding::Status(word) = signal.encoding else { return Vec::new() };
     let bits = protocol.status_words[word].bits.iter();
     bits.filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str()).collect()
-}
-
-fn raw(signal: &Signal, bits: u64) -> Raw {
-    if !matches!(signal.encoding, Encoding::Number { signed: true, .. }) {
-        return Raw::Unsigned(bits);
-    }
-    let unused = 64_u32.saturating_sub(signal.place.width().into());
-    Raw::Signed(bits.wrapping_shl(unused).cast_signed().wrapping_shr(unused))
 }
 
 fn identifier<'a>(protocol: &'a Protocol, values: &Table<FieldId, u32>) -> Members<&'a str, u32> {

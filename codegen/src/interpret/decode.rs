@@ -3,11 +3,12 @@
 use std::cmp::Reverse;
 use std::fmt::Display;
 
-use super::value::{float, in_range, named, physical, whole_in_range};
+use super::value::physical;
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
+use crate::encoding::Words;
 use crate::model::{
-    AddressPattern, Course, Direction, Encoding, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId,
-    NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
+    AddressPattern, Course, Direction, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId, NoteRule,
+    Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
 /// Decodes a frame that goes to a device model, or comes from one.
@@ -322,7 +323,7 @@ impl<'a> Decoder<'a> {
         let reserved = self.reserved(frame);
         let mut notes = self.error_notes(frame, &selectors);
         notes.extend(self.address_notes(message, frame, &addressing));
-        let note = |reading: &Reading| signal_note(&message[reading.signal], self.model, reading);
+        let note = |reading: &Reading| signal_note(self.protocol, &message[reading.signal], self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         if reserved != [0; 8] {
             let bits = hex(&reserved[..self.frame.data.len()]);
@@ -362,7 +363,7 @@ impl<'a> Decoder<'a> {
         let wrong = fields.chain(payload);
         wrong
             .map(|(name, value, _, enumeration)| {
-                let named = enumeration.and_then(|id| named(&self.protocol[id], value));
+                let named = enumeration.and_then(|id| self.protocol[id].named(value));
                 let text = match named {
                     Some(meaning) => format!("{name} {value}: {}", meaning.name),
                     None => format!("{name} {value}, which the document does not name"),
@@ -397,21 +398,15 @@ impl<'a> Decoder<'a> {
     }
 }
 
-fn signal_note(signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
-    let name = &signal.name;
-    let note = |rule, text| Some(Note { rule, text });
-    match (&signal.encoding, &reading.value) {
-        (Encoding::Float, Value::None) => note(NoteRule::NotFinite, format!("{name} is {}", float(reading.bits))),
-        (Encoding::Named(_), Value::None) => {
-            note(NoteRule::UnknownValue, format!("{name} {:#X} has no name", reading.bits))
-        }
-        (_, Value::None) => note(NoteRule::UnknownValue, format!("{name} is not a text of the documented form")),
-        (_, Value::Status { unknown, .. }) if *unknown != 0 => {
-            note(NoteRule::UnknownBit, format!("{name} has bits {unknown:#X} set that have no name"))
-        }
-        (_, Value::Integer(value)) => range_note(signal, model, value, |range| whole_in_range(range, *value)),
-        (_, Value::Number(value)) => range_note(signal, model, value, |range| in_range(signal, range, *value)),
-        _ => None,
+fn signal_note(protocol: &Protocol, signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
+    let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
+    if let Some((rule, text)) = oddity {
+        return Some(Note { rule, text });
+    }
+    match &reading.value {
+        Value::Integer(value) => range_note(signal, model, value, |range| range.has_whole(*value)),
+        Value::Number(value) => range_note(signal, model, value, |range| signal.is_within(range, *value)),
+        Value::None | Value::Name(_) | Value::Text(_) | Value::Status { .. } => None,
     }
 }
 
@@ -422,7 +417,7 @@ fn range_note(
     is_inside: impl FnOnce(&Range) -> bool,
 ) -> Option<Note> {
     let range = signal.range_for(model).filter(|range| !is_inside(range))?;
-    let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
+    let unit = signal.unit_text();
     let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
     Some(Note { rule: NoteRule::OutOfRange, text })
 }

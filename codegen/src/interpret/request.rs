@@ -4,9 +4,8 @@ use super::content::constant_data;
 use super::encode::{find_message, frame, not_of, refuse};
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
-use crate::model::{
-    AddressType, Encoding, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, SelectorPlace, Set, Signal,
-};
+use crate::encoding::Words;
+use crate::model::{AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, SelectorPlace, Set};
 use crate::number::Rational;
 
 /// Whom a request goes to.
@@ -243,7 +242,7 @@ fn put_signals(
     }
     for signal in carried {
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
-            Some((_, text)) => parse_input(signal, text),
+            Some((_, text)) => Words::from(protocol).with(signal, |room| room.typed(text)),
             None => Input::Raw(
                 signal
                     .default_for(model)
@@ -267,25 +266,5 @@ fn not_carried(protocol: &Protocol, message: &Message, layout: &FrameLayout, nam
         (true, _) => format!("`{access}` does not send `{name}`; {} does", senders.join(", ")),
         (false, true) => format!("there is no signal `{name}`; `{access}` sends none"),
         (false, false) => format!("there is no signal `{name}`; `{access}` sends {}", sent.join(", ")),
-    }
-}
-
-/// Reads a value as a person types it: `750V`, `750 V`, `750`, `on`, `[fan_fault]`.
-pub fn parse_input(signal: &Signal, text: &str) -> Input {
-    if matches!(signal.encoding, Encoding::Status(_)) {
-        let names = text.trim_start_matches('[').trim_end_matches(']').split(',').map(str::trim);
-        let set = names.filter(|name| !name.is_empty()).map(str::to_owned).collect();
-        return Input::Status { set, unknown: 0 };
-    }
-    if !matches!(signal.encoding, Encoding::Number { .. } | Encoding::Float) {
-        return Input::Text(text.to_owned());
-    }
-    let number = signal.unit.and_then(|unit| text.strip_suffix(unit.symbol)).unwrap_or(text).trim();
-    match Rational::parse(number) {
-        Some(value) => match value.to_integer() {
-            Some(whole) => Input::Integer(whole),
-            None => Input::Number(value.to_f64()),
-        },
-        None => Input::Text(text.to_owned()),
     }
 }

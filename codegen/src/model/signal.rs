@@ -2,7 +2,7 @@
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, EnumerationId, Kind, ModelId, PartId, StatusWordId, Table};
+use crate::model::{Doc, Encoding, Kind, ModelId, raw_limits};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -18,6 +18,13 @@ pub struct Enumeration {
     pub width: u8,
     /// Named values in the order of the spec.
     pub values: Vec<NamedValue>,
+}
+
+impl Enumeration {
+    /// Finds the named value of raw bits.
+    pub fn named(&self, bits: u64) -> Option<&NamedValue> {
+        self.values.iter().find(|value| value.raw == i128::from(bits))
+    }
 }
 
 /// A raw value with a name.
@@ -150,10 +157,43 @@ impl Signal {
 
     /// Returns the physical limits of what the bits hold; `None` of what is no number.
     pub fn held(&self) -> Option<Range> {
-        let Encoding::Number { signed, .. } = self.encoding else { return None };
-        let (first, last) = raw_limits(self.place.width(), signed);
+        let (first, last) = self.raw_limits();
         let (one, other) = (self.encoding.value_of(first)?, self.encoding.value_of(last)?);
         Some(Range { minimum: one.min(other), maximum: one.max(other) })
+    }
+
+    /// Tests a physical value against limits; of a float, the floats nearest to them are legal too.
+    pub fn is_within(&self, limits: &Range, value: f64) -> bool {
+        let is_within = |minimum: f64, maximum: f64| (minimum..=maximum).contains(&value);
+        #[allow(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
+        let nearest = |limit: f64| f64::from(limit as f32);
+        let (minimum, maximum) = (limits.minimum.to_f64(), limits.maximum.to_f64());
+        is_within(minimum, maximum) || (self.encoding.is_single() && is_within(nearest(minimum), nearest(maximum)))
+    }
+
+    /// Returns the least and the greatest raw value.
+    pub fn raw_limits(&self) -> (i128, i128) {
+        raw_limits(self.place.width(), self.encoding.is_signed())
+    }
+
+    /// Returns the raw value of bits, sign-extended where the signal is signed.
+    pub fn raw_of(&self, bits: u64) -> i128 {
+        let width = self.place.width();
+        let is_negative = self.encoding.is_signed() && bits >> (width - 1) & 1 == 1;
+        i128::from(bits) - if is_negative { 1 << width } else { 0 }
+    }
+
+    /// Returns the bits of a raw value, if there are enough for it.
+    pub fn bits_of(&self, raw: i128) -> Option<u64> {
+        let (first, last) = self.raw_limits();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the mask keeps the bits that fit")]
+        let bits = raw as u64 & self.place.max();
+        (first..=last).contains(&raw).then_some(bits)
+    }
+
+    /// Returns the unit as it stands behind a number, with the blank before it; nothing if there is none.
+    pub fn unit_text(&self) -> String {
+        self.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
     }
 
     /// Tests whether no limit has a fraction.
@@ -169,70 +209,9 @@ impl Signal {
     }
 }
 
-/// Returns the least and the greatest raw value of a width.
-pub fn raw_limits(width: u8, signed: bool) -> (i128, i128) {
-    if signed { (-(1 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1 << width) - 1) }
-}
-
 /// Returns what a device model has of its own.
 fn own<T: Copy>(known: &[OfModel<T>], model: Option<ModelId>) -> Option<T> {
     known.iter().find(|own| Some(own.model) == model).map(|own| own.value)
-}
-
-/// What a signal's bits mean.
-#[derive(Clone, Debug)]
-pub enum Encoding {
-    /// physical = raw * scale + offset.
-    Number {
-        /// Two's complement.
-        signed: bool,
-        /// Physical value of one step.
-        scale: Rational,
-        /// Physical value of raw 0.
-        offset: Rational,
-    },
-    /// IEEE 754 single precision.
-    Float,
-    /// Values with names.
-    Named(EnumerationId),
-    /// Conditions, one a bit.
-    Status(StatusWordId),
-    /// ASCII, the first character at the most significant byte of the place.
-    Text,
-    /// One text made of several parts.
-    Packed {
-        /// What the text consists of, in order.
-        pieces: Vec<Piece>,
-        /// Bits of the payload that the pieces name.
-        parts: Table<PartId, Signal>,
-    },
-}
-
-impl Encoding {
-    /// Returns the exact physical value of a raw number; `None` of what is no number, and on overflow.
-    pub fn value_of(&self, raw: i128) -> Option<Rational> {
-        let Self::Number { scale, offset, .. } = self else { return None };
-        Rational::integer(raw).times(*scale)?.plus(*offset)
-    }
-
-    /// Tests whether the physical value is a raw integer.
-    pub fn is_unscaled(&self) -> bool {
-        matches!(self, Self::Number { scale, offset, .. } if *scale == Rational::ONE && *offset == Rational::ZERO)
-    }
-}
-
-/// A piece of a packed value's text.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Piece {
-    /// A text that stands as it is.
-    Literal(String),
-    /// The text or the number of a part.
-    Part {
-        /// The part.
-        part: PartId,
-        /// To how many digits a number is filled with zeros.
-        digits: Option<usize>,
-    },
 }
 
 /// Physical limits, both legal.
@@ -246,6 +225,11 @@ pub struct Range {
 }
 
 impl Range {
+    /// Tests an integer that is its own physical value, however many digits it has.
+    pub fn has_whole(&self, value: i128) -> bool {
+        (self.minimum..=self.maximum).contains(&Rational::integer(value))
+    }
+
     /// Returns the least range that holds both.
     fn hull(self, other: Self) -> Self {
         Self { minimum: self.minimum.min(other.minimum), maximum: self.maximum.max(other.maximum) }

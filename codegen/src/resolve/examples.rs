@@ -14,7 +14,6 @@ use crate::model::{
 use crate::rules;
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;
-use crate::texts::raw_of_text;
 use crate::words::ORIGINS;
 
 /// The messages of the protocol.
@@ -246,7 +245,7 @@ impl Resolver<'_> {
 
     fn meaning(&mut self, path: &Path, id: SignalId, signal: &Signal, means: &Means) -> Option<Meaning> {
         let (text, raw) = match means {
-            Means::Value(text) => (text.clone(), raw_of_text(&self.tables.enumerations, signal, text, true)),
+            Means::Value(text) => (text.clone(), self.words().with(signal, |room| room.parse(text, true))),
             Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?),
             Means::Signals(_) => {
                 let text = format!("`{}` is one value, not a map", signal.name);
@@ -303,7 +302,7 @@ impl Resolver<'_> {
         let remarks = remarks_of_value(example);
         let doc = remarks.doc(path, Some(outer));
         let signal = self.signal(name, &merged, Place::bytes(0, last), outer.clone(), "")?;
-        let raw = raw_of_text(&self.tables.enumerations, &signal, &example.means, true);
+        let raw = self.words().with(&signal, |room| room.parse(&example.means, true));
         debug_assert_eq!(first_byte(signal.place), 0);
         let meaning = Meaning { signal: SignalId::new(0), text: example.means.clone(), raw, path: path.key("means") };
         Some(ValueExample { doc, signal, data, meaning })

@@ -137,11 +137,11 @@ impl Role {
 
     /// Returns the role of a field that is neither a word nor a packed value.
     pub fn of_field(site: Site, encoding: &Encoding) -> Self {
-        match (site, encoding) {
-            (Site::Message, _) => Self::of_signal(encoding),
-            (Site::Header, _) => Self::Header,
-            (Site::Packed, Encoding::Text) => Self::PackedText,
-            (Site::Packed, _) => Self::PackedNumber,
+        match site {
+            Site::Message => Self::of_signal(encoding),
+            Site::Header => Self::Header,
+            Site::Packed if encoding.is_text() => Self::PackedText,
+            Site::Packed => Self::PackedNumber,
         }
     }
 

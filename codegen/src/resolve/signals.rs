@@ -14,8 +14,7 @@ use crate::number::Rational;
 use crate::rules;
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
-use crate::texts::raw_of_text;
-use crate::words::NUMBER_FORMATS;
+use crate::words::{NUMBER_FORMATS, NumberFormat};
 
 /// Most fields of a message, with those of its words, of its packed values and of their types.
 const FIELD_LIMIT: usize = 256;
@@ -210,7 +209,7 @@ impl Resolver<'_> {
     pub fn signal(&mut self, name: &str, merged: &Merged, place: Place, doc: Doc, owner: &str) -> Option<Signal> {
         let field = &merged.field;
         let encoding = self.encoding(name, merged, place, &doc, owner)?;
-        let signed = matches!(encoding, Encoding::Number { signed: true, .. });
+        let signed = encoding.is_signed();
         let values = merged.path(self.diagnostics, Key::Values);
         let named = matches!(encoding, Encoding::Named(_));
         let specials = if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
@@ -310,18 +309,14 @@ impl Resolver<'_> {
     }
 
     fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {
-        let bits = match raw_of_text(&self.tables.enumerations, signal, text, false) {
-            Ok(bits) => bits,
+        match self.words().with(signal, |room| room.parse(text, false)) {
+            Ok(bits) => Some(signal.raw_of(bits)),
             Err(Misfit { why, help }) => {
                 let misfit = Diagnostic { help, ..Diagnostic::error(&rules::VALUE, path.at_value(), why) };
                 self.diagnostics.push_first(misfit);
-                return None;
+                None
             }
-        };
-        let signed = matches!(signal.encoding, Encoding::Number { signed: true, .. });
-        let width = signal.place.width();
-        let negative = signed && bits >> (width - 1) == 1;
-        Some(i128::from(bits) - if negative { 1 << width } else { 0 })
+        }
     }
 
     fn encoding(&mut self, name: &str, merged: &Merged, place: Place, doc: &Doc, owner: &str) -> Option<Encoding> {
@@ -330,16 +325,11 @@ impl Resolver<'_> {
         if !field.status.is_empty() {
             return Some(Encoding::Status(self.status_word(merged, &otherwise, place.width(), doc)));
         }
-        let signed = match field.format_of_number.as_deref() {
-            None | Some("unsigned") => false,
-            Some("signed") => true,
-            Some("float") => return self.float(name, merged, place),
-            Some("text") => return self.text(name, merged, place),
-            Some(other) => {
-                let at = merged.path(self.diagnostics, Key::As);
-                self.lookup(&at, "number format", other, NUMBER_FORMATS.into_iter());
-                return None;
-            }
+        let signed = match self.number_format(merged)? {
+            NumberFormat::Unsigned => false,
+            NumberFormat::Signed => true,
+            NumberFormat::Float => return self.float(name, merged, place),
+            NumberFormat::Text => return self.text(name, merged, place),
         };
         let number = field.scale.is_some() || field.offset.is_some() || field.unit.is_some() || field.range.is_some();
         if !field.values.is_empty() && !number {
@@ -352,6 +342,14 @@ impl Resolver<'_> {
         let scale = read(Key::Scale, &field.scale, Rational::ONE)?;
         let offset = read(Key::Offset, &field.offset, Rational::ZERO)?;
         Some(Encoding::Number { signed, scale, offset })
+    }
+
+    /// Reads `as`.
+    fn number_format(&mut self, merged: &Merged) -> Option<NumberFormat> {
+        let Some(word) = &merged.field.format_of_number else { return Some(NumberFormat::Unsigned) };
+        let at = merged.path(self.diagnostics, Key::As);
+        let index = self.lookup(&at, "number format", word, NUMBER_FORMATS.iter().map(|(word, _)| *word))?;
+        Some(NUMBER_FORMATS[index].1)
     }
 
     fn float(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
@@ -463,7 +461,7 @@ impl Resolver<'_> {
     /// Tests that a number without so many digits ends where no digit follows.
     fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &Table<PartId, Signal>) {
         let number = |piece: &Piece| match piece {
-            Piece::Part { part, digits } if !matches!(parts[*part].encoding, Encoding::Text) => Some((*part, *digits)),
+            Piece::Part { part, digits } if !parts[*part].encoding.is_text() => Some((*part, *digits)),
             Piece::Part { .. } | Piece::Literal(_) => None,
         };
         for pair in pieces.windows(2) {

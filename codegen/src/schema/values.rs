@@ -73,7 +73,7 @@ fn of_field(key: Key) -> Demand {
             Demand::Form(NUMBER)
         }
         Key::Range => Demand::Form(RANGE),
-        Key::As => Demand::Choice(NUMBER_FORMATS.to_vec()),
+        Key::As => Demand::Choice(NUMBER_FORMATS.map(|(word, _)| word).to_vec()),
         Key::In => Demand::Choice(kinds()),
         Key::Outside => Demand::Choice(OUTSIDE.to_vec()),
         Key::Unit => Demand::Choice(Unit::ALL.map(|unit| unit.symbol).to_vec()),

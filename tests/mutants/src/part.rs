@@ -28,7 +28,14 @@ pub const PARTS: [Part; 3] = [
     },
     Part {
         name: "interpreter",
-        sources: &["codegen/src/interpret.rs", "codegen/src/interpret", "codegen/src/model/signal.rs"],
+        sources: &[
+            "codegen/src/interpret.rs",
+            "codegen/src/interpret",
+            "codegen/src/encoding.rs",
+            "codegen/src/encoding",
+            "codegen/src/model/encoding.rs",
+            "codegen/src/model/signal.rs",
+        ],
         without: &[],
         tests: &["--package", "canspec-codegen", "--test", "interpreter"],
         optimization: "0",

@@ -5,10 +5,10 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
+use crate::encoding::Words;
 use crate::model::{Encoding, Protocol, Signal, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
-use crate::texts::raw_of_text;
 
 /// A change of one key.
 pub struct Repair {
@@ -71,7 +71,7 @@ pub fn find(
         fields.iter().all(|field| {
             let signal = repair.change.of(field.signal);
             let bears_out = |evidence: &Evidence| {
-                let raw = raw_of_text(&protocol.enumerations, &signal, &evidence.meaning.text, true);
+                let raw = Words::from(protocol).with(&signal, |room| room.parse(&evidence.meaning.text, true));
                 raw == Ok(signal.place.get(&evidence.data))
             };
             !repair.change.overlaps(field) && field.evidence.iter().all(bears_out)

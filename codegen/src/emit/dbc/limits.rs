@@ -1,7 +1,8 @@
 //! What a protocol says and a DBC cannot.
 
+use super::signals::written;
 use super::text::ascii;
-use crate::model::{Encoding, Kind, Message, Protocol, Signal};
+use crate::model::{Kind, Message, Protocol, Signal};
 
 /// Returns a sentence for each.
 pub fn limits(protocol: &Protocol, mask: u32) -> Vec<String> {
@@ -9,14 +10,9 @@ pub fn limits(protocol: &Protocol, mask: u32) -> Vec<String> {
     limits.extend(identifier(protocol, mask));
     limits.extend(foreign(protocol));
     limits.extend(models(protocol));
-    limits.extend(about(protocol, "is a text; it is given as a number", |signal| {
-        matches!(signal.encoding, Encoding::Text)
-    }));
-    limits.extend(about(protocol, "is one text of several parts; each part is a signal", |signal| {
-        matches!(signal.encoding, Encoding::Packed { .. })
-    }));
-    limits.extend(about(protocol, "has limits that depend on the device model", |signal| {
-        !signal.model_ranges.is_empty()
+    limits.extend(about(protocol, |signal| written(protocol, signal, &signal.name).loss));
+    limits.extend(about(protocol, |signal| {
+        (!signal.model_ranges.is_empty()).then_some("has limits that depend on the device model")
     }));
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
         limits.push("which request a reply answers, and who answers it".to_owned());
@@ -44,11 +40,12 @@ fn models(protocol: &Protocol) -> Option<String> {
     (!names.is_empty()).then(|| format!("the device models {}", names.join(", ")))
 }
 
-/// Says something about all signals of a kind.
-fn about(protocol: &Protocol, what: &str, is: impl Fn(&Signal) -> bool) -> Vec<String> {
+/// Says what there is to say about signals.
+fn about(protocol: &Protocol, what: impl Fn(&Signal) -> Option<&'static str>) -> Vec<String> {
     let of = |message: &Message| {
-        let signals = message.signals.iter().filter(|signal| is(signal));
-        signals.map(|signal| format!("`{}.{}` {what}", message.name, signal.name)).collect::<Vec<_>>()
+        let signals = message.signals.iter().filter_map(|signal| Some((signal, what(signal)?)));
+        let sentence = |(signal, what): (&Signal, &str)| format!("`{}.{}` {what}", message.name, signal.name);
+        signals.map(sentence).collect::<Vec<_>>()
     };
     protocol.messages.iter().flat_map(of).collect()
 }

@@ -9,38 +9,51 @@ use crate::model::{
 };
 use crate::number::Rational;
 
+/// What becomes of a signal.
+pub struct Written {
+    pub signals: Vec<Signal>,
+    /// What the file cannot say, as what follows the signal's name in a sentence.
+    pub loss: Option<&'static str>,
+}
+
 /// Returns what becomes of a signal: one signal, or one for each status bit or part.
-pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal> {
+pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
+    let whole = |signals| Written { signals, loss: None };
+    let range = signal.range.or_else(|| signal.held());
     match &signal.encoding {
-        Encoding::Packed { parts, .. } => {
-            parts.iter().flat_map(|part| signals(protocol, part, &format!("{name}_{}", part.name))).collect()
+        Encoding::Number { signed, scale, offset } => {
+            whole(vec![Signal { signed: *signed, factor: *scale, offset: *offset, range, ..plain(signal, name) }])
         }
-        Encoding::Status(word) => status(&protocol[*word], signal.place, name),
-        encoding @ (Encoding::Number { .. } | Encoding::Float | Encoding::Named(_) | Encoding::Text) => {
-            vec![single(protocol, signal, encoding, name)]
+        Encoding::Float => whole(vec![Signal { float: true, range, ..plain(signal, name) }]),
+        Encoding::Named(id) => {
+            let values = named(&protocol[*id].values);
+            let signed = values.iter().any(|(raw, _)| *raw < 0);
+            whole(vec![Signal { signed, named: values, ..plain(signal, name) }])
+        }
+        Encoding::Status(word) => whole(status(&protocol[*word], signal.place, name)),
+        Encoding::Text => {
+            Written { signals: vec![plain(signal, name)], loss: Some("is a text; it is given as a number") }
+        }
+        Encoding::Packed { parts, .. } => {
+            let signals = parts.iter().flat_map(|part| signals(protocol, part, &format!("{name}_{}", part.name)));
+            let loss = Some("is one text of several parts; each part is a signal");
+            Written { signals: signals.collect(), loss }
         }
     }
 }
 
-fn single(protocol: &Protocol, signal: &Meaning, encoding: &Encoding, name: &str) -> Signal {
-    let plain = Signal {
+/// Returns the signals that become of one.
+pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal> {
+    written(protocol, signal, name).signals
+}
+
+fn plain(signal: &Meaning, name: &str) -> Signal {
+    Signal {
         unit: signal.unit.map_or("", unit),
         comment: remarks(&signal.doc),
         named: named(&signal.specials),
         start: signal.default,
         ..Signal::new(name.to_owned(), signal.place)
-    };
-    let range = signal.range.or_else(|| signal.held());
-    match encoding {
-        Encoding::Number { signed, scale, offset } => {
-            Signal { signed: *signed, factor: *scale, offset: *offset, range, ..plain }
-        }
-        Encoding::Float => Signal { float: true, range, ..plain },
-        Encoding::Named(index) => {
-            let values = named(&protocol[*index].values);
-            Signal { signed: values.iter().any(|(raw, _)| *raw < 0), named: values, ..plain }
-        }
-        Encoding::Status(_) | Encoding::Text | Encoding::Packed { .. } => plain,
     }
 }
 

@@ -94,7 +94,7 @@ fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> Value {
     };
     Value::record()
         .with("place", place(part.place))
-        .maybe("text", matches!(part.encoding, Encoding::Text).then(|| Value::flag(true)))
+        .maybe("text", part.encoding.is_text().then(|| Value::flag(true)))
         .maybe("digits", digits.map(|digits| Value::Plain(digits.to_string())))
         .maybe("range", part.range.map(|known| range(part, known)))
 }
@@ -135,7 +135,7 @@ fn range(signal: &Signal, range: Range) -> Value {
         let exact = limit.to_f64();
         #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
         let nearest = f64::from(exact as f32);
-        (exact, if matches!(signal.encoding, Encoding::Float) { nearest } else { exact })
+        (exact, if signal.encoding.is_single() { nearest } else { exact })
     });
     Value::list([minimum.0.min(minimum.1), maximum.0.max(maximum.1)], Value::double)
 }

@@ -1,0 +1,148 @@
+//! What bits mean, both ways: a room for each encoding, and one door to all of them.
+//!
+//! The interpreter, the stages that read values in a spec, and the command ask here. A new encoding is a file in this
+//! folder and an arm in [`Words::with`].
+
+mod allowed;
+mod float;
+mod named;
+mod number;
+mod packed;
+mod quantity;
+mod status;
+mod text;
+
+pub use allowed::Allowed;
+
+use crate::model::{
+    Encoding, Enumeration, EnumerationId, Misfit, NoteRule, Protocol, Signal, StatusWord, StatusWordId, Table,
+};
+
+/// A physical value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Unnamed, not finite, or a text that would not give the same bytes.
+    None,
+    /// An unscaled number.
+    Integer(i128),
+    /// A scaled or floating-point number.
+    Number(f64),
+    /// The name of a named value.
+    Name(String),
+    /// A text, packed or in ASCII.
+    Text(String),
+    /// The set bits of a status word.
+    Status {
+        /// Numbers of the set bits that have a name.
+        set: Vec<u8>,
+        /// Set bits without a name.
+        unknown: u64,
+    },
+}
+
+/// A value to send.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// The raw value: sign-extended where the signal is signed, or the bit pattern.
+    Raw(i128),
+    /// An unscaled number, or a whole one that is still to be scaled.
+    Integer(i128),
+    /// A physical value.
+    Number(f64),
+    /// A name, or a text.
+    Text(String),
+    /// The set bits of a status word.
+    Status {
+        /// Names of the set bits.
+        set: Vec<String>,
+        /// Set bits without a name.
+        unknown: u64,
+    },
+}
+
+impl Input {
+    /// Says what it is, and that something else is wanted.
+    fn is_not(&self, wanted: &str) -> String {
+        let what = match self {
+            Self::Raw(raw) => format!("raw {raw}"),
+            Self::Integer(value) => value.to_string(),
+            Self::Number(value) => value.to_string(),
+            Self::Text(text) => format!("the text `{text}`"),
+            Self::Status { .. } => "a set of bits".to_owned(),
+        };
+        format!("{what} is not {wanted}")
+    }
+}
+
+/// What every encoding answers about a signal.
+pub trait Room {
+    /// Returns the physical value of raw bits.
+    fn value(&self, bits: u64) -> Value;
+
+    /// Returns the raw bits of a value to send, or says what it has to be.
+    fn raw(&self, input: &Input, allowed: &Allowed) -> Result<u64, String>;
+
+    /// Returns the raw bits of a value as a spec writes it, with its unit if `unit` says so.
+    fn parse(&self, text: &str, unit: bool) -> Result<u64, Misfit>;
+
+    /// Reads a value as a person types it.
+    fn typed(&self, text: &str) -> Input {
+        Input::Text(text.to_owned())
+    }
+
+    /// Returns what is odd about bits and the value that they have, whatever the range is.
+    fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)>;
+
+    /// Says in a few words how values are made.
+    fn description(&self) -> Vec<String>;
+}
+
+/// What encodings refer to.
+#[derive(Clone, Copy)]
+pub struct Words<'a> {
+    pub enumerations: &'a Table<EnumerationId, Enumeration>,
+    pub status_words: &'a Table<StatusWordId, StatusWord>,
+}
+
+impl<'a> From<&'a Protocol> for Words<'a> {
+    fn from(protocol: &'a Protocol) -> Self {
+        Self { enumerations: &protocol.enumerations, status_words: &protocol.status_words }
+    }
+}
+
+impl Words<'_> {
+    /// Asks the room of a signal's encoding.
+    pub fn with<R>(self, signal: &Signal, ask: impl FnOnce(&dyn Room) -> R) -> R {
+        match &signal.encoding {
+            Encoding::Number { scale, offset, .. } => ask(&number::Number { signal, scale: *scale, offset: *offset }),
+            Encoding::Float => ask(&float::Float { signal }),
+            Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
+            Encoding::Status(id) => ask(&status::Status { signal, word: &self.status_words[*id] }),
+            Encoding::Text => ask(&text::Text { signal }),
+            Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),
+        }
+    }
+}
+
+/// Says in a few words how the values of a signal are made.
+pub fn description(protocol: &Protocol, signal: &Signal) -> Vec<String> {
+    Words::from(protocol).with(signal, |room| room.description())
+}
+
+/// Returns raw bits, which a signal may be too narrow for.
+fn bits(signal: &Signal, raw: i128) -> Result<u64, String> {
+    signal.bits_of(raw).ok_or_else(|| {
+        let (width, (first, last)) = (signal.place.width(), signal.raw_limits());
+        format!("raw {raw} does not fit {width} bits, which hold {first}..{last}")
+    })
+}
+
+/// Returns the raw bits of a number in a spec.
+fn bits_of_spec(signal: &Signal, raw: i128) -> Result<u64, Misfit> {
+    signal.bits_of(raw).ok_or_else(|| {
+        let why = format!("the raw value {raw} does not fit the {} bits of `{}`", signal.place.width(), signal.name);
+        let is_below = raw < 0 && !signal.encoding.is_signed();
+        let help = is_below.then(|| "numbers below 0 need `as: signed` or an `offset`".to_owned());
+        Misfit { why, help }
+    })
+}

@@ -1,0 +1,65 @@
+//! What a number to send must keep to.
+
+use std::cmp::Ordering;
+use std::fmt::Display;
+
+use crate::model::{Range, Signal};
+
+/// What a value of one signal must keep to beside its bits.
+#[derive(Clone, Copy, Debug)]
+pub enum Allowed {
+    /// Nothing, as in a reply.
+    Everything,
+    /// As in a request: a finite number, within the range if there is one.
+    Within {
+        /// The limits of the device model, or of all models together.
+        range: Option<Range>,
+        /// What to do about a number outside them.
+        advice: &'static str,
+    },
+}
+
+impl Allowed {
+    /// Tests a number that may be infinite or none at all.
+    pub fn check_float(&self, signal: &Signal, value: f64) -> Result<(), String> {
+        if matches!(self, Self::Within { .. }) && !value.is_finite() {
+            return Err(format!("{value} is not a finite number"));
+        }
+        self.check(signal, value)
+    }
+
+    /// Tests a number.
+    pub fn check(&self, signal: &Signal, value: f64) -> Result<(), String> {
+        self.check_shown(signal, value, &value)
+    }
+
+    /// Tests a number that a double may only come near to.
+    pub fn check_shown(&self, signal: &Signal, value: f64, shown: &dyn Display) -> Result<(), String> {
+        let missed = self.missed(signal, value);
+        missed.map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", signal.unit_text())))
+    }
+
+    /// Tests a number to send, and what it becomes by rounding: another number, or a special value.
+    pub fn check_sent(&self, signal: &Signal, value: f64, sent: f64, special: Option<&str>) -> Result<(), String> {
+        let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
+        if matches!(self, Self::Everything) || is_exact && special.is_some() {
+            return Ok(());
+        }
+        self.check(signal, value)?;
+        let unit = signal.unit_text();
+        match (special, self.missed(signal, sent)) {
+            (Some(name), _) => Err(format!("{value}{unit} would be sent as `{name}`")),
+            (None, Some(limits)) => {
+                Err(format!("{value}{unit} would be sent as {sent}{unit}, which is outside {limits}"))
+            }
+            (None, None) => Ok(()),
+        }
+    }
+
+    /// Returns the limits outside which a number lies.
+    fn missed(&self, signal: &Signal, value: f64) -> Option<String> {
+        let Self::Within { range: Some(range), advice } = self else { return None };
+        let text = || format!("{}..{}{}{advice}", range.minimum, range.maximum, signal.unit_text());
+        (!signal.is_within(range, value)).then(text)
+    }
+}

@@ -1,0 +1,57 @@
+//! Values that have names and no numbers.
+
+use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
+use crate::model::{Enumeration, Misfit, NamedValue, NoteRule, Signal};
+use crate::number::Rational;
+
+pub struct Named<'a> {
+    pub signal: &'a Signal,
+    pub known: &'a Enumeration,
+}
+
+impl Room for Named<'_> {
+    fn value(&self, bits: u64) -> Value {
+        self.known.named(bits).map_or(Value::None, |value| Value::Name(value.name.clone()))
+    }
+
+    fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {
+        match input {
+            Input::Raw(raw) => bits(self.signal, *raw),
+            Input::Text(name) => bits(self.signal, self.called(name).ok_or_else(|| self.unnamed(name))?.raw),
+            Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("the name of a value")),
+        }
+    }
+
+    fn parse(&self, text: &str, _: bool) -> Result<u64, Misfit> {
+        let named = self.called(text).map(|value| value.raw);
+        let raw = named.or_else(|| Rational::parse(text).and_then(Rational::to_integer));
+        bits_of_spec(self.signal, raw.ok_or_else(|| self.unnamed(text))?)
+    }
+
+    fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)> {
+        let text = || format!("{} {bits:#X} has no name", self.signal.name);
+        (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
+    }
+
+    fn description(&self) -> Vec<String> {
+        let digits = usize::from(self.known.width.div_ceil(4));
+        let is_small = self.known.values.iter().all(|value| value.raw < 10);
+        let shown = |value: &NamedValue| match value.raw {
+            raw if is_small => format!("{raw} = {}", value.name),
+            raw => format!("0x{raw:0digits$X} = {}", value.name),
+        };
+        self.known.values.iter().map(shown).collect()
+    }
+}
+
+impl Named<'_> {
+    fn called(&self, name: &str) -> Option<&NamedValue> {
+        self.known.values.iter().find(|value| value.name == name)
+    }
+
+    /// Says which names a signal has.
+    fn unnamed(&self, text: &str) -> String {
+        let names: Vec<_> = self.known.values.iter().map(|value| format!("`{}`", value.name)).collect();
+        format!("`{}` has no value `{text}`; it has {}", self.signal.name, names.join(", "))
+    }
+}

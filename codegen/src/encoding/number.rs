@@ -1,0 +1,119 @@
+//! Integers, scaled or not, with special values.
+
+use canspec_runtime::{Scale, nearest};
+
+use super::quantity::{as_double, quantity, typed, wanted};
+use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
+use crate::model::{Misfit, NamedValue, NoteRule, Range, Signal};
+use crate::number::Rational;
+
+pub struct Number<'a> {
+    pub signal: &'a Signal,
+    pub scale: Rational,
+    pub offset: Rational,
+}
+
+impl Room for Number<'_> {
+    fn value(&self, bits: u64) -> Value {
+        let raw = self.signal.raw_of(bits);
+        match self.special(raw) {
+            Some(special) => Value::Name(special.name.clone()),
+            None if self.is_unscaled() => Value::Integer(raw),
+            None => Value::Number(self.physical(raw)),
+        }
+    }
+
+    fn raw(&self, input: &Input, allowed: &Allowed) -> Result<u64, String> {
+        match input {
+            Input::Raw(raw) => self.raw_number(*raw, allowed),
+            Input::Integer(value) if self.is_unscaled() => self.whole(*value, allowed),
+            Input::Integer(value) => self.number(as_double(*value), allowed),
+            Input::Number(value) => self.number(*value, allowed),
+            Input::Text(name) => {
+                let special = self.signal.specials.iter().find(|special| special.name == *name);
+                bits(self.signal, special.ok_or_else(|| input.is_not(&wanted(self.signal)))?.raw)
+            }
+            Input::Status { .. } => Err(input.is_not(&wanted(self.signal))),
+        }
+    }
+
+    fn parse(&self, text: &str, unit: bool) -> Result<u64, Misfit> {
+        if let Some(special) = self.signal.specials.iter().find(|special| special.name == text) {
+            return bits_of_spec(self.signal, special.raw);
+        }
+        let value = quantity(self.signal, text, unit)?;
+        let raw = value.minus(self.offset).and_then(|value| value.over(self.scale)).and_then(Rational::to_integer);
+        let (scale, name) = (self.scale, &self.signal.name);
+        let raw = raw.ok_or_else(|| format!("`{text}` is no whole number of steps of {scale} for `{name}`"))?;
+        bits_of_spec(self.signal, raw)
+    }
+
+    fn typed(&self, text: &str) -> Input {
+        typed(self.signal, text)
+    }
+
+    fn oddity(&self, _: u64, _: &Value) -> Option<(NoteRule, String)> {
+        None
+    }
+
+    fn description(&self) -> Vec<String> {
+        (self.scale != Rational::ONE).then(|| format!("step {}", self.scale)).into_iter().collect()
+    }
+}
+
+impl Number<'_> {
+    fn is_unscaled(&self) -> bool {
+        self.signal.encoding.is_unscaled()
+    }
+
+    fn special(&self, raw: i128) -> Option<&NamedValue> {
+        self.signal.specials.iter().find(|special| special.raw == raw)
+    }
+
+    fn physical(&self, raw: i128) -> f64 {
+        i64::try_from(raw).map_or(f64::NAN, |raw| self.runtime_scale().physical(raw))
+    }
+
+    /// Returns the scale as the runtime computes with it; the checks have made sure that its numbers fit.
+    fn runtime_scale(&self) -> Scale {
+        let part = |number: i128| i64::try_from(number).unwrap_or(1);
+        Scale::new(part(self.scale.numerator()), part(self.scale.denominator()))
+            .offset(part(self.offset.numerator()), part(self.offset.denominator()))
+    }
+
+    fn number(&self, value: f64, allowed: &Allowed) -> Result<u64, String> {
+        let raw = if self.is_unscaled() { nearest(value) } else { self.runtime_scale().raw(value) };
+        let Some(raw) = raw.map(i128::from) else {
+            allowed.check(self.signal, value)?;
+            return Err(self.misfit(value));
+        };
+        let special = self.special(raw).map(|special| special.name.as_str());
+        allowed.check_sent(self.signal, value, self.physical(raw), special)?;
+        bits(self.signal, raw).map_err(|_| self.misfit(value))
+    }
+
+    /// Encodes an unscaled number.
+    fn whole(&self, value: i128, allowed: &Allowed) -> Result<u64, String> {
+        if self.special(value).is_none() {
+            allowed.check_shown(self.signal, as_double(value), &value)?;
+        }
+        bits(self.signal, value).map_err(|_| self.misfit(value))
+    }
+
+    /// Encodes a raw number, which in a request must lie in the range too.
+    fn raw_number(&self, raw: i128, allowed: &Allowed) -> Result<u64, String> {
+        let bits = bits(self.signal, raw)?;
+        if self.special(raw).is_none() {
+            allowed.check(self.signal, self.physical(raw))?;
+        }
+        Ok(bits)
+    }
+
+    /// Says what the bits can hold.
+    fn misfit(&self, value: impl std::fmt::Display) -> String {
+        let (unit, width) = (self.signal.unit_text(), self.signal.place.width());
+        let held =
+            self.signal.held().map(|Range { minimum, maximum }| format!(", which hold {minimum}..{maximum}{unit}"));
+        format!("{value}{unit} does not fit {width} bits{}", held.unwrap_or_default())
+    }
+}

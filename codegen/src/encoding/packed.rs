@@ -1,0 +1,116 @@
+//! One text that is made of several parts.
+
+use super::text::Text;
+use super::{Allowed, Input, Room, Value, bits};
+use crate::model::{Misfit, NoteRule, PartId, Piece, Signal, Table};
+use crate::number::Rational;
+
+pub struct Packed<'a> {
+    pub signal: &'a Signal,
+    pub pieces: &'a [Piece],
+    pub parts: &'a Table<PartId, Signal>,
+}
+
+impl Room for Packed<'_> {
+    fn value(&self, bits: u64) -> Value {
+        self.text(bits).map_or(Value::None, Value::Text)
+    }
+
+    fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {
+        match input {
+            Input::Raw(raw) => bits(self.signal, *raw),
+            Input::Text(text) => self.bits(text).ok_or_else(|| format!("`{text}` is not of the documented form")),
+            Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("a text")),
+        }
+    }
+
+    fn parse(&self, text: &str, _: bool) -> Result<u64, Misfit> {
+        self.bits(text).ok_or_else(|| format!("`{text}` is not of the form of `{}`", self.signal.name).into())
+    }
+
+    fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
+        let text = || format!("{} is not a text of the documented form", self.signal.name);
+        (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
+    }
+
+    /// Returns the form as the spec writes it.
+    fn description(&self) -> Vec<String> {
+        let piece = |piece: &Piece| match piece {
+            Piece::Literal(text) => text.clone(),
+            Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", self.parts[*part].name),
+            Piece::Part { part, digits: None } => format!("{{{}}}", self.parts[*part].name),
+        };
+        vec![self.pieces.iter().map(piece).collect()]
+    }
+}
+
+impl Packed<'_> {
+    /// Reads a text; `None` if it has another form or a part does not fit.
+    fn bits(&self, text: &str) -> Option<u64> {
+        let mut data = [0; 8];
+        let mut rest = text;
+        for (index, piece) in self.pieces.iter().enumerate() {
+            match piece {
+                Piece::Literal(literal) => rest = rest.strip_prefix(literal.as_str())?,
+                Piece::Part { part, digits } => {
+                    let part = &self.parts[*part];
+                    let is_last = index + 1 == self.pieces.len();
+                    let (piece, after) = rest.split_at_checked(length(part, *digits, rest, is_last))?;
+                    part.place.put(&mut data, bits_of_part(part, piece)?);
+                    rest = after;
+                }
+            }
+        }
+        rest.is_empty().then(|| self.signal.place.get(&data))
+    }
+
+    /// Writes a text; `None` if it would not give the same bits.
+    fn text(&self, bits: u64) -> Option<String> {
+        let mut data = [0; 8];
+        self.signal.place.put(&mut data, bits);
+        let texts = self.pieces.iter().map(|piece| self.piece(piece, data));
+        let text = texts.collect::<Option<String>>()?;
+        (self.bits(&text) == Some(bits)).then_some(text)
+    }
+
+    fn piece(&self, piece: &Piece, data: [u8; 8]) -> Option<String> {
+        match piece {
+            Piece::Literal(literal) => Some(literal.clone()),
+            Piece::Part { part, digits } => {
+                let part = &self.parts[*part];
+                let raw = part.place.get(&data);
+                if part.encoding.is_text() {
+                    return Text { signal: part }.text(raw);
+                }
+                Some(format!("{raw:0width$}", width = digits.unwrap_or(1)))
+            }
+        }
+    }
+}
+
+/// Returns how much of a text belongs to a part.
+fn length(part: &Signal, digits: Option<usize>, rest: &str, is_last: bool) -> usize {
+    if part.encoding.is_text() {
+        return Text { signal: part }.length();
+    }
+    match digits {
+        Some(digits) => digits,
+        None if is_last => rest.len(),
+        None => rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len()),
+    }
+}
+
+fn bits_of_part(part: &Signal, text: &str) -> Option<u64> {
+    if part.encoding.is_text() {
+        return Text { signal: part }.bits(text).ok();
+    }
+    let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let raw: u64 = digits.then(|| text.parse().ok()).flatten()?;
+    (raw <= part.place.max() && in_range(part, raw)).then_some(raw)
+}
+
+/// Tests a part against its range.
+fn in_range(part: &Signal, raw: u64) -> bool {
+    let raw = Rational::integer(raw.into());
+    part.range.is_none_or(|range| range.minimum <= raw && raw <= range.maximum)
+}

@@ -1,0 +1,65 @@
+//! Numbers with a unit, as people and specs write them.
+
+use super::Input;
+use crate::model::{Misfit, Signal, Unit};
+use crate::multiples;
+use crate::number::Rational;
+
+/// Splits the unit off and reads the number.
+pub fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational, Misfit> {
+    let Some(unit) = signal.unit.filter(|_| with_unit) else {
+        return Rational::parse(text).ok_or_else(|| format!("`{text}` is not a number for `{}`", signal.name).into());
+    };
+    let number = text.strip_suffix(unit.symbol).and_then(|number| Rational::parse(number.trim_end()));
+    number.ok_or_else(|| {
+        let why = format!("`{text}` is not a number of {} for `{}`", unit.symbol, signal.name);
+        let help =
+            converted(text, unit).map_or_else(|| what_fits(signal, unit), |value| format!("write it as `{value}`"));
+        Misfit::with_help(why, help)
+    })
+}
+
+/// Reads `750V`, `750 V`, `750` or a name.
+pub fn typed(signal: &Signal, text: &str) -> Input {
+    let number = signal.unit.and_then(|unit| text.strip_suffix(unit.symbol)).unwrap_or(text).trim();
+    match Rational::parse(number) {
+        Some(value) => match value.to_integer() {
+            Some(whole) => Input::Integer(whole),
+            None => Input::Number(value.to_f64()),
+        },
+        None => Input::Text(text.to_owned()),
+    }
+}
+
+/// Names what a signal takes.
+pub fn wanted(signal: &Signal) -> String {
+    let unit = signal.unit.map_or_else(|| " without a unit".to_owned(), |unit| format!(" in {}", unit.symbol));
+    format!("a number{unit}{}", specials(signal))
+}
+
+/// Returns the nearest double.
+#[allow(clippy::cast_precision_loss, reason = "rounds to nearest")]
+pub fn as_double(value: i128) -> f64 {
+    value as f64
+}
+
+/// Writes a value in the unit of its signal, if it stands without a unit or in a multiple of it.
+fn converted(text: &str, unit: Unit) -> Option<String> {
+    let is_of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '.' | '/');
+    let (number, symbol) = text.split_at(text.find(|letter| !is_of_number(letter)).unwrap_or(text.len()));
+    let factor = match symbol.trim_start() {
+        "" => Rational::ONE,
+        symbol => multiples::factor(symbol, unit)?,
+    };
+    let value = Rational::parse(number)?.times(factor)?;
+    Some(format!("{value} {}", unit.symbol))
+}
+
+/// Says which values a signal has.
+fn what_fits(signal: &Signal, unit: Unit) -> String {
+    format!("values of `{}` are numbers in {}{}", signal.name, unit.symbol, specials(signal))
+}
+
+fn specials(signal: &Signal) -> String {
+    signal.specials.iter().map(|special| format!(" or `{}`", special.name)).collect()
+}

@@ -1,0 +1,65 @@
+//! ASCII in whole bytes, filled up with NUL.
+
+use super::{Allowed, Input, Room, Value, bits};
+use crate::model::{Misfit, NoteRule, Signal};
+
+pub struct Text<'a> {
+    pub signal: &'a Signal,
+}
+
+impl Room for Text<'_> {
+    fn value(&self, bits: u64) -> Value {
+        self.text(bits).map_or(Value::None, Value::Text)
+    }
+
+    fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {
+        match input {
+            Input::Raw(raw) => bits(self.signal, *raw),
+            Input::Text(text) => self.bits(text),
+            Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("a text")),
+        }
+    }
+
+    fn parse(&self, text: &str, _: bool) -> Result<u64, Misfit> {
+        Ok(self.bits(text)?)
+    }
+
+    fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
+        let text = || format!("{} is not a text of the documented form", self.signal.name);
+        (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
+    }
+
+    fn description(&self) -> Vec<String> {
+        vec![format!("text of {} characters", self.signal.place.width().div_ceil(8))]
+    }
+}
+
+impl Text<'_> {
+    /// Returns how many characters there is room for.
+    pub fn length(&self) -> usize {
+        usize::from(self.signal.place.width() / 8)
+    }
+
+    /// Returns the bits of a text.
+    ///
+    /// # Errors
+    ///
+    /// Says how long the text may be.
+    pub fn bits(&self, text: &str) -> Result<u64, String> {
+        let bytes = self.length();
+        let printable = text.bytes().all(|byte| byte == b' ' || byte.is_ascii_graphic());
+        if !printable || text.len() > bytes {
+            let name = &self.signal.name;
+            return Err(format!("`{text}` is not a text of at most {bytes} ASCII characters for `{name}`"));
+        }
+        let filled = text.bytes().chain(std::iter::repeat_n(0, bytes - text.len()));
+        Ok(filled.fold(0, |bits, byte| bits << 8 | u64::from(byte)))
+    }
+
+    /// Returns the text of raw bits, without the NULs at its end; `None` if that text would not give the same bits.
+    pub fn text(&self, bits: u64) -> Option<String> {
+        let bytes = bits.to_be_bytes();
+        let text = std::str::from_utf8(&bytes[8 - self.length()..]).ok()?.trim_end_matches('\0');
+        (self.bits(text) == Ok(bits)).then(|| text.to_owned())
+    }
+}
