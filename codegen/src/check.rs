@@ -1,27 +1,27 @@
 //! The rules of the last stage: what is resolved must also be right.
 
-pub(crate) mod ambiguous;
-pub(crate) mod default_value;
-pub(crate) mod direction;
-pub(crate) mod erratum;
+mod ambiguous;
+mod default_value;
+mod direction;
+mod erratum;
 mod example;
-pub(crate) mod grid;
-pub(crate) mod model_range;
+mod grid;
+mod model_range;
 mod no_example;
-pub(crate) mod no_unit;
-pub(crate) mod nobody_replies;
-pub(crate) mod outside_frame;
-pub(crate) mod overlap;
-pub(crate) mod range_width;
-pub(crate) mod read_only_range;
-pub(crate) mod refusal;
+mod no_unit;
+mod nobody_replies;
+mod outside_frame;
+mod overlap;
+mod range_width;
+mod read_only_range;
+mod refusal;
 mod reply;
 pub(crate) mod rust_name;
-pub(crate) mod section;
-pub(crate) mod set;
-pub(crate) mod special_value;
+mod section;
+mod set;
+mod special_value;
 mod stale_allowance;
-pub(crate) mod unreachable;
+mod unreachable;
 
 pub use example::Counts;
 pub use grid::{fits, has_exact_steps};
@@ -29,13 +29,44 @@ pub use stale_allowance::allow;
 
 use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;
-use crate::rules::RULES;
+use crate::resolve::rules;
+use crate::rule::Rule;
+
+/// Looks for breaches of one rule.
+pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
+
+/// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
+pub(crate) const RULES: [(&Rule, Option<Check>); 23] = [
+    (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
+    (&overlap::OVERLAP, Some(overlap::check)),
+    (&grid::GRID, Some(grid::check)),
+    (&range_width::RANGE_WIDTH, Some(range_width::check)),
+    (&read_only_range::READ_ONLY_RANGE, Some(read_only_range::check)),
+    (&no_unit::NO_UNIT, Some(no_unit::check)),
+    (&rules::MODEL_RANGE, Some(model_range::check)),
+    (&special_value::SPECIAL_VALUE, Some(special_value::check)),
+    (&default_value::DEFAULT_VALUE, Some(default_value::check)),
+    (&rules::SET, Some(set::check)),
+    (&direction::DIRECTION, Some(direction::check)),
+    (&ambiguous::AMBIGUOUS, Some(ambiguous::check)),
+    (&refusal::REFUSAL, Some(refusal::check)),
+    (&unreachable::UNREACHABLE, Some(unreachable::check)),
+    (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),
+    (&rust_name::RUST_NAME, Some(rust_name::check)),
+    (&erratum::ERRATUM, Some(erratum::check)),
+    (&section::SECTION, Some(section::check)),
+    (&reply::REPLY, None),
+    (&rules::EXAMPLE, None),
+    (&example::EXPECTED_FAILURE, None),
+    (&no_example::NO_EXAMPLE, None),
+    (&stale_allowance::STALE_ALLOWANCE, None),
+];
 
 /// Applies every rule; the document's examples are run only by a protocol that is otherwise right.
 ///
 /// Of a hundred messages so many must have an example, where anybody asks for that.
 pub fn check(protocol: &Protocol, percent: Option<u8>, diagnostics: &mut Diagnostics) -> Counts {
-    for check in RULES.iter().filter_map(|rule| rule.check) {
+    for check in RULES.iter().filter_map(|(_, check)| *check) {
         check(protocol, diagnostics);
     }
     if let Some(percent) = percent {

@@ -10,50 +10,14 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::rules::Rule;
-use crate::source::{Source, visible};
+use crate::rule::Rule;
+pub use crate::rule::Severity;
+use crate::source::text::{Source, visible};
+pub use crate::syntax::tree::At;
 use crate::syntax::tree::{Node, Path};
 
 /// Most errors, and most warnings, that the later stages report of one spec.
 const MOST: usize = 1000;
-
-/// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Severity {
-    /// The spec cannot be used.
-    Error,
-    /// The spec can be used, but somebody should look.
-    Warning,
-}
-
-impl fmt::Display for Severity {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Error => "error",
-            Self::Warning => "warning",
-        })
-    }
-}
-
-/// A place in a spec.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum At {
-    /// The file as a whole.
-    File,
-    /// A range of bytes of the text.
-    Span(Range<usize>),
-    /// The key of an entry; where there is no such entry, the key of what it should be in.
-    Key(Path),
-    /// The value of an entry; of a map or a list its key, or its first line where it has no key.
-    Value(Path),
-}
-
-impl From<Range<usize>> for At {
-    fn from(span: Range<usize>) -> Self {
-        Self::Span(span)
-    }
-}
 
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -17,6 +17,7 @@ pub mod model;
 pub mod multiples;
 pub mod number;
 mod resolve;
+mod rule;
 pub mod rules;
 #[cfg(feature = "schema")]
 pub mod schema;
@@ -57,7 +58,7 @@ pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
     if usable.is_some() {
         lint::lint(&mut diagnostics);
     }
-    let resolved = usable.as_ref().and_then(|spec| resolve::resolve(spec, &file, &mut diagnostics));
+    let resolved = usable.as_ref().and_then(|spec| resolve::resolve(spec, &file, &rules::RULES, &mut diagnostics));
     let counts = match &resolved {
         Some(protocol) if !diagnostics.has_errors() => check::check(protocol, percent, &mut diagnostics),
         _ => check::Counts::default(),

@@ -9,20 +9,26 @@ mod table;
 mod uneven;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::rule::Rule;
 use crate::syntax::tree::Node;
 use table::Table;
 
 /// Looks for breaches of one rule in a spec, of which the maps with names are found already.
 type Lint = fn(&Node, &[Table]) -> Vec<Diagnostic>;
 
-/// The rules on what is written, in order.
-const RULES: [Lint; 4] = [quantity::lint, spelling::lint, order::lint, uneven::lint];
+/// The rules on how a spec is written, in order, each with what looks for breaches.
+pub(crate) const RULES: [(&Rule, Lint); 4] = [
+    (&quantity::QUANTITY, quantity::lint),
+    (&spelling::SPELLING, spelling::lint),
+    (&order::ORDER, order::lint),
+    (&uneven::UNEVEN, uneven::lint),
+];
 
 /// Applies every rule to a spec that could be read.
 pub fn lint(diagnostics: &mut Diagnostics) {
     let Some(tree) = diagnostics.tree() else { return };
     let tables = table::tables(tree);
-    let found: Vec<_> = RULES.iter().flat_map(|rule| rule(tree, &tables)).collect();
+    let found: Vec<_> = RULES.iter().flat_map(|(_, lint)| lint(tree, &tables)).collect();
     for item in found {
         diagnostics.push(item);
     }

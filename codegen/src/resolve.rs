@@ -8,6 +8,7 @@ mod identifier;
 mod keys;
 mod messages;
 mod patterns;
+pub(crate) mod rules;
 mod sets;
 mod signals;
 mod texts;
@@ -20,20 +21,26 @@ use indexmap::IndexSet;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::Words;
 use crate::model::{self, EnumerationId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table};
-use crate::rules::{RULES, Rule};
+use crate::rule::Rule;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
-/// Resolves a spec; `file` is its name without folders.
+/// Resolves a spec; `file` is its name without folders, and `rules` are those that it can allow.
 ///
 /// The protocol is `None` if something it needs is missing. One that is returned beside errors is only good for further checks.
-pub fn resolve(spec: &ast::Spec, file: &str, diagnostics: &mut Diagnostics) -> Option<Protocol> {
-    Resolver { spec, diagnostics, tables: Tables::default() }.protocol(file)
+pub fn resolve(
+    spec: &ast::Spec,
+    file: &str,
+    rules: &[&'static Rule],
+    diagnostics: &mut Diagnostics,
+) -> Option<Protocol> {
+    Resolver { spec, rules, diagnostics, tables: Tables::default() }.protocol(file)
 }
 
 /// What the stage works on.
 struct Resolver<'a> {
     spec: &'a ast::Spec,
+    rules: &'a [&'static Rule],
     diagnostics: &'a mut Diagnostics,
     tables: Tables,
 }
@@ -116,7 +123,7 @@ impl Resolver<'_> {
     fn check_allowances(&mut self) {
         let root = Path::default().key("allow");
         for (index, allowance) in self.spec.allow.iter().enumerate() {
-            let names = RULES.iter().map(|rule| rule.name);
+            let names = self.rules.iter().map(|rule| rule.name);
             self.lookup(&root.index(index).key("rule"), "rule", &allowance.rule, names);
         }
     }

@@ -3,10 +3,10 @@
 pub mod ast;
 mod gate;
 mod reader;
+pub(crate) mod rules;
 pub mod tree;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::rules;
 use crate::source::Source;
 
 /// Reads a spec, and reports all that is wrong with its syntax at once; there is a spec only if nothing is.

@@ -69,7 +69,7 @@ fn every_rule_has_a_folder_with_both_specs() -> Result {
 
 #[test]
 fn every_rule_has_a_document_with_its_summary_and_examples() {
-    for rule in RULES {
+    for rule in RULES.iter() {
         assert!(rule.summary().ends_with('.'), "{}: the first line is one sentence", rule.name);
         let paragraphs = rule.document.split("\n\n").count();
         assert!(paragraphs >= 2, "{}: the document says why", rule.name);

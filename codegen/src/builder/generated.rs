@@ -7,7 +7,6 @@ use super::list;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{self, Options};
 use crate::files::File;
-use crate::rules;
 use crate::source::Source;
 use crate::syntax::tree;
 use crate::{Outcome, check, compile};
@@ -73,5 +72,7 @@ fn unclaimed(one: Generated, others: &[Generated]) -> Result<Generated, Diagnost
         None => return Ok(one),
     };
     let place = tree::Path::default().key("protocol");
-    Err(one.warnings.with([Diagnostic::error(&rules::RUST_NAME, place.at_value(), what).help("choose another name")]))
+    Err(one.warnings.with([
+        Diagnostic::error(&crate::check::rust_name::RUST_NAME, place.at_value(), what).help("choose another name")
+    ]))
 }

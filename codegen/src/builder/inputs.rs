@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::rules;
 use crate::source;
 
 /// What is to be compiled.
@@ -60,7 +59,10 @@ fn distinct(mut paths: Vec<PathBuf>) -> Vec<PathBuf> {
 fn misnamed(path: &Path) -> Diagnostics {
     let name = path.with_extension("yaml");
     let what = format!("the folder's specs end in `.yaml`, this file in `.{}`", ending(path));
-    refused(path, Diagnostic::error(&rules::FILE, At::File, what).help(format!("rename it to {}", name.display())))
+    refused(
+        path,
+        Diagnostic::error(&crate::source::rules::FILE, At::File, what).help(format!("rename it to {}", name.display())),
+    )
 }
 
 fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
@@ -72,7 +74,8 @@ fn unreadable(folder: &Path, error: &io::Error) -> Diagnostics {
     };
     refused(
         folder,
-        Diagnostic::error(&rules::FILE, At::File, what).help("check the path and the folder it starts from"),
+        Diagnostic::error(&crate::source::rules::FILE, At::File, what)
+            .help("check the path and the folder it starts from"),
     )
 }
 

@@ -4,8 +4,12 @@ use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldId, FrameId, FrameLayout, Id, Protocol};
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::Path;
+
+rules! {
+    AMBIGUOUS "ambiguous" Check ERROR;
+}
 
 /// Inclusive raw ranges.
 pub type Ranges = Vec<(u32, u32)>;
@@ -14,8 +18,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     if !protocol.recognition.is_whole {
         let text = "the constants of the messages can be combined in too many ways to tell frames apart";
         let help = "let one field choose among the messages, with a constant in each";
-        diagnostics
-            .push(Diagnostic::error(&rules::AMBIGUOUS, Path::default().key("messages").at_key(), text).help(help));
+        diagnostics.push(Diagnostic::error(&AMBIGUOUS, Path::default().key("messages").at_key(), text).help(help));
         return;
     }
     let mut reported = HashSet::new();
@@ -81,7 +84,7 @@ fn report(
     } else {
         (place.at_key(), second.at_key())
     };
-    diagnostics.push(Diagnostic::error(&rules::AMBIGUOUS, at, text).help(help).other(second, "the other one"));
+    diagnostics.push(Diagnostic::error(&AMBIGUOUS, at, text).help(help).other(second, "the other one"));
 }
 
 /// Returns the places of the sets that two frames are part of; where they are part of one, or of none, those of their messages.

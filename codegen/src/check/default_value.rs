@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Encoding, Message, ModelId, Protocol, Signal};
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    DEFAULT_VALUE "default_value" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -30,6 +34,6 @@ fn check_for(model: Option<ModelId>, message: &Message, signal: &Signal, diagnos
         let own = signal.model_defaults.iter().find(|own| Some(own.model) == model);
         let at = own.map_or(&signal.default_path, |own| &own.path).at_value();
         let help = "correct the default or the range";
-        diagnostics.push_first(Diagnostic::error(&rules::DEFAULT_VALUE, at, text).help(help));
+        diagnostics.push_first(Diagnostic::error(&DEFAULT_VALUE, at, text).help(help));
     }
 }

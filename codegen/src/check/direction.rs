@@ -2,8 +2,12 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldTest, IdentifierField, Mode, Protocol};
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::Path;
+
+rules! {
+    DIRECTION "direction" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let pairs = protocol
@@ -34,7 +38,7 @@ fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let text = format!("{text}: `{}` of `{}` has no constant in `{}`", known.key, known.mode.name, field.name);
         let help = format!("give `{}` a constant here, as the other patterns have", field.name);
         let at = known.mode.doc.path.key(known.key).at_key();
-        diagnostics.push(Diagnostic::error(&rules::DIRECTION, at, text).help(help));
+        diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(help));
     }
 }
 
@@ -54,12 +58,12 @@ fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagn
         let help = "give one field a constant in `request` and another one in the replies; or, where the controller has \
                     addresses that no module has, give their type `outside: refused`";
         let at = Path::default().key("addressing").at_key();
-        return diagnostics.push(Diagnostic::error(&rules::DIRECTION, at, text).help(help));
+        return diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(help));
     };
     let (name, value) = (&field.name, field.get(request.pattern.value));
     let text = format!("a request and a reply look alike: both have {value} in `{name}`");
     let place = |known: &Known| known.mode.doc.path.key(known.key).key(name).at_value();
-    let diagnostic = Diagnostic::error(&rules::DIRECTION, place(reply), text).other(place(request), "the request");
+    let diagnostic = Diagnostic::error(&DIRECTION, place(reply), text).other(place(request), "the request");
     diagnostics.push(diagnostic.help("give the reply another constant here"));
 }
 

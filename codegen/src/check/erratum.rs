@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    ERRATUM "erratum" Check EITHER;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let docs = protocol.docs();
@@ -13,7 +17,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 "add `erratum: {}` to the item that departs from the document, or take the erratum out",
                 erratum.name
             );
-            diagnostics.push(Diagnostic::warning(&rules::ERRATUM, erratum.path.at_key(), text).help(help));
+            diagnostics.push(Diagnostic::warning(&ERRATUM, erratum.path.at_key(), text).help(help));
         }
     }
     for doc in &docs {
@@ -21,8 +25,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             if !protocol.errata.iter().any(|erratum| erratum.name == *name) {
                 let text = format!("there is no erratum `{name}`");
                 let at = doc.path.key("erratum").at_value();
-                diagnostics
-                    .push(Diagnostic::error(&rules::ERRATUM, at, text).help("correct the name, or add it to `errata`"));
+                diagnostics.push(Diagnostic::error(&ERRATUM, at, text).help("correct the name, or add it to `errata`"));
             }
         }
     }

@@ -15,7 +15,11 @@ use crate::interpret::{
 use crate::model::{
     Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, SignalId, ValueExample,
 };
-use crate::rules;
+use crate::resolve::rules;
+
+crate::rule::rules! {
+    EXPECTED_FAILURE "expected_failure" Check ERROR;
+}
 
 /// How many examples hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -274,7 +278,7 @@ impl<'a> Checker<'a> {
             Some(seen) => format!("write `fails: {}`, or correct the frame", seen.name()),
         };
         let at = self.example.doc.path.key("fails").at_value();
-        Err(Box::new(Diagnostic::error(&rules::EXPECTED_FAILURE, at, text).help(help)))
+        Err(Box::new(Diagnostic::error(&EXPECTED_FAILURE, at, text).help(help)))
     }
 
     /// Returns how a frame fails in fact.

@@ -4,7 +4,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::Float;
 use crate::model::{Encoding, Protocol, Signal};
 use crate::number::Rational;
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    GRID "grid" Check ERROR;
+}
 
 /// What sum and product of a raw value must stay below, as a power of two.
 const DOUBLE: u32 = 50;
@@ -84,7 +88,7 @@ fn each_scaled(
             if let Some(why) = fault(signal, signed, scale, offset) {
                 let text = format!("`{}.{}`: {why}", message.name, signal.name);
                 let at = signal.doc.path.key("scale").at_value();
-                diagnostics.push(Diagnostic::error(&rules::GRID, at, text).help(help));
+                diagnostics.push(Diagnostic::error(&GRID, at, text).help(help));
             }
         }
     }
@@ -102,8 +106,7 @@ fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     "the limits of `{}.{}` reach 2^{EXACT}, beyond which a single misses integers",
                     message.name, signal.name
                 );
-                diagnostics
-                    .push(Diagnostic::error(&rules::GRID, path.at_value(), text).help("say the limits in the note"));
+                diagnostics.push(Diagnostic::error(&GRID, path.at_value(), text).help("say the limits in the note"));
             }
         }
     }

@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Message, MessageId, Protocol};
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    NO_EXAMPLE "no_example" Check EITHER;
+}
 
 /// Tests that of a hundred messages at least so many have an example.
 pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
@@ -15,7 +19,7 @@ pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
         let have = if shown == 1 { "has" } else { "have" };
         let text = format!("{shown} of {all} messages {have} an example, {percent} % are asked for");
         let help = "add frames of the document to `examples` of a message, or your own with `origin: ours`";
-        diagnostics.push(Diagnostic::error(&rules::NO_EXAMPLE, At::File, text).help(help));
+        diagnostics.push(Diagnostic::error(&NO_EXAMPLE, At::File, text).help(help));
     }
 }
 
@@ -29,7 +33,7 @@ fn nothing_shows(protocol: &Protocol, message: &Message) -> Diagnostic {
     });
     let which = if failing.is_some() { " that holds" } else { "" };
     let text = format!("the message `{}` has no example{which}", message.name);
-    let warning = Diagnostic::warning(&rules::NO_EXAMPLE, message.doc.path.at_key(), text);
+    let warning = Diagnostic::warning(&NO_EXAMPLE, message.doc.path.at_key(), text);
     let warning = warning.help("add a frame of it to `examples`");
     match failing {
         Some(example) => warning.other(example.doc.path.key("fails").at_value(), "one that must fail does not count"),

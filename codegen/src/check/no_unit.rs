@@ -3,7 +3,11 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Encoding, Protocol, Signal};
 use crate::number::Rational;
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    NO_UNIT "no_unit" Check WARNING;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -11,7 +15,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let what = if has_scale(signal) { "a scale" } else { "an offset" };
             let text = format!("`{}.{}` has {what}, but neither a unit nor a title", message.name, signal.name);
             let help = "write its `unit`; if the language does not have that unit, say it in the `title`";
-            diagnostics.push(Diagnostic::warning(&rules::NO_UNIT, signal.doc.path.at_key(), text).help(help));
+            diagnostics.push(Diagnostic::warning(&NO_UNIT, signal.doc.path.at_key(), text).help(help));
         }
     }
 }

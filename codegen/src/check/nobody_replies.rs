@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Exchange, Kind, Message, Protocol, Who};
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    NOBODY_REPLIES "nobody_replies" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -16,9 +20,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let text =
                 format!("`{}` has a reply by `{}`, but `answers` says that nobody answers", message.name, access.name);
             let help = "say who answers, or use an access without `reply`";
-            diagnostics.push_first(
-                Diagnostic::error(&rules::NOBODY_REPLIES, at(protocol, message, exchange), text).help(help),
-            );
+            diagnostics
+                .push_first(Diagnostic::error(&NOBODY_REPLIES, at(protocol, message, exchange), text).help(help));
         }
     }
 }

@@ -2,8 +2,12 @@
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::Protocol;
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::Path;
+
+rules! {
+    OUTSIDE_FRAME "outside_frame" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -19,7 +23,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 );
                 let help = "correct the place, or the `length` of the message";
                 let at = place(&signal.doc.path, diagnostics);
-                diagnostics.push_first(Diagnostic::error(&rules::OUTSIDE_FRAME, at, text).help(help));
+                diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at, text).help(help));
             }
         }
     }

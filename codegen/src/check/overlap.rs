@@ -4,8 +4,12 @@ use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Encoding, FrameLayout, Message, Protocol, SelectorPlace, Signal};
-use crate::rules;
+use crate::rule::rules;
 use crate::suspect::{Claim, suspect};
+
+rules! {
+    OVERLAP "overlap" Check ERROR;
+}
 
 /// A leaf of a frame: its name, its remarks, its bits with byte 0 highest.
 type Leaf<'a> = (&'a str, &'a Doc, u64);
@@ -65,7 +69,7 @@ fn report(message: &Message, [earlier, later]: [&Leaf; 2], is_later: bool, diagn
     let help = "correct one of the two places, or remove one of the two";
     let (wrong, right) = if is_later { (later, earlier) } else { (earlier, later) };
     let at = |leaf: &Leaf| diagnostics.written(&leaf.1.path, &["bytes", "bits"]);
-    let diagnostic = Diagnostic::error(&rules::OVERLAP, at(wrong), text).help(help).other(at(right), "the other one");
+    let diagnostic = Diagnostic::error(&OVERLAP, at(wrong), text).help(help).other(at(right), "the other one");
     diagnostics.push(diagnostic);
 }
 

@@ -3,8 +3,12 @@
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Protocol, Range, Signal};
 use crate::number::Rational;
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::Path;
+
+rules! {
+    RANGE_WIDTH "range_width" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -29,13 +33,13 @@ fn report(signal: &Signal, place: At, field: &str, exceeding: &[(Range, Path)]) 
     if exceeding.len() > 1 {
         let text = format!("{field}; {} ranges lie outside", exceeding.len());
         let first = format!("{minimum}..{maximum}, the first of them");
-        return Some(Diagnostic::error(&rules::RANGE_WIDTH, place, text).other(path.at_value(), first));
+        return Some(Diagnostic::error(&RANGE_WIDTH, place, text).other(path.at_value(), first));
     }
     let text = format!("{field}; its range is {minimum}..{maximum}");
     if path.ancestors().any(|outer| *outer == signal.doc.path) {
-        return Some(Diagnostic::error(&rules::RANGE_WIDTH, path.at_value(), text));
+        return Some(Diagnostic::error(&RANGE_WIDTH, path.at_value(), text));
     }
-    Some(Diagnostic::error(&rules::RANGE_WIDTH, place, text).other(path.at_value(), "its range"))
+    Some(Diagnostic::error(&RANGE_WIDTH, place, text).other(path.at_value(), "its range"))
 }
 
 /// Says what the bits of a signal hold.

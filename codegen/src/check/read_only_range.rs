@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Kind, Message, Protocol, SignalId};
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    READ_ONLY_RANGE "read_only_range" Check WARNING;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -16,8 +20,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 );
                 let help =
                     "take the range out, since what is read is not limited, or allow it with a reason in `allow`";
-                diagnostics
-                    .push(Diagnostic::warning(&rules::READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
+                diagnostics.push(Diagnostic::warning(&READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
             }
         }
     }

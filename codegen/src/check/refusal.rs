@@ -2,8 +2,12 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Constant, FrameLayout, Kind, Message, Protocol};
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::Path;
+
+rules! {
+    REFUSAL "refusal" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -11,7 +15,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             if let Some((text, help)) = complaint(protocol, message, refusal) {
                 let access = &protocol[refusal.access].name;
                 let at = Path::default().key("access").key(access).key("refusal").at_key();
-                diagnostics.push_first(Diagnostic::error(&rules::REFUSAL, at, text).help(help));
+                diagnostics.push_first(Diagnostic::error(&REFUSAL, at, text).help(help));
             }
         }
     }

@@ -6,7 +6,11 @@ use crate::model::{
     AddressPattern, AddressTypeId, Constant, Example, FieldId, FrameLayout, Kind, Message, MessageId, Mode, Protocol,
     SelectorId, SelectorPlace, Table, Who,
 };
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    REPLY "reply" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let mut latest: Option<(&Example, Decoded)> = None;
@@ -25,7 +29,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 if let Some(why) = mismatch(protocol, asked, &decoded) {
                     let help = "correct the frame, or put the request that it answers before it";
                     let diagnostic =
-                        Diagnostic::error(&rules::REPLY, example.doc.path.key("reply").at_value(), why).help(help);
+                        Diagnostic::error(&REPLY, example.doc.path.key("reply").at_value(), why).help(help);
                     diagnostics.push(diagnostic.other(request.doc.path.key("request").at_value(), "the request"));
                 }
             }

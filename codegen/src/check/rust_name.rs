@@ -3,8 +3,12 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{camel_case, is_word_of_rust, member};
 use crate::model::{Doc, Protocol};
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::Path;
+
+rules! {
+    RUST_NAME "rust_name" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     check_types(protocol, diagnostics);
@@ -33,12 +37,11 @@ fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a
     for (rust, name, doc) in names {
         if is_word_of_rust(&rust) {
             let text = format!("`{name}` is a keyword of Rust");
-            diagnostics.push(Diagnostic::error(&rules::RUST_NAME, doc.path.at_key(), text).help("choose another name"));
+            diagnostics.push(Diagnostic::error(&RUST_NAME, doc.path.at_key(), text).help("choose another name"));
         }
         if let Some((_, other, earlier)) = seen.iter().find(|(known, _, _)| *known == rust) {
             let text = format!("`{other}` and `{name}` are one {what} in Rust: `{rust}`");
-            let diagnostic =
-                Diagnostic::error(&rules::RUST_NAME, doc.path.at_key(), text).help("rename one of the two");
+            let diagnostic = Diagnostic::error(&RUST_NAME, doc.path.at_key(), text).help("rename one of the two");
             diagnostics.push(diagnostic.other(earlier.path.at_key(), "the other name"));
         }
         seen.push((rust, name, doc));

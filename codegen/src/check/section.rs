@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::Protocol;
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    SECTION "section" Check WARNING;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let messages = protocol.messages.iter().map(|message| ("message", &message.name, &message.doc));
@@ -14,7 +18,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let text = format!("the {what} `{name}` has no section");
             let help =
                 "say where the document has it, for instance `section: \"2.4\"`, or allow it with a reason in `allow`";
-            diagnostics.push(Diagnostic::warning(&rules::SECTION, doc.path.at_key(), text).help(help));
+            diagnostics.push(Diagnostic::warning(&SECTION, doc.path.at_key(), text).help(help));
         }
     }
 }

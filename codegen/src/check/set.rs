@@ -4,7 +4,7 @@ use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{
     Access, Constant, Exchange, FrameLayout, IdentifierField, Kind, Message, MessageId, Protocol, SelectorPlace, Set,
 };
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::tree::Path;
 
 /// The most members that a set can have: one bit each in the machine's widest integer.

@@ -2,7 +2,11 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Protocol, Range, Signal};
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    SPECIAL_VALUE "special_value" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -27,7 +31,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     "them out of the range, or their names"
                 };
                 let help = format!("take {what} out of `values`");
-                diagnostics.push_first(Diagnostic::error(&rules::SPECIAL_VALUE, path.at_value(), text).help(help));
+                diagnostics.push_first(Diagnostic::error(&SPECIAL_VALUE, path.at_value(), text).help(help));
             }
         }
     }

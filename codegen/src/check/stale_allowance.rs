@@ -1,9 +1,13 @@
 #![doc = include_str!("../rules/stale_allowance.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::ast::Allowance;
 use crate::syntax::tree::Path;
+
+rules! {
+    STALE_ALLOWANCE "stale_allowance" Check WARNING;
+}
 
 /// Takes out the warnings that are allowed; an allowance without any is stale, unless an error kept rules from being applied.
 pub fn allow(allowances: &[Allowance], diagnostics: &mut Diagnostics) {
@@ -15,6 +19,6 @@ pub fn allow(allowances: &[Allowance], diagnostics: &mut Diagnostics) {
         let path = Path::default().key("allow").index(index).key("rule");
         let text = format!("there is no warning of the rule `{rule}` in `{at}`");
         let help = "take the allowance out, or correct `rule` and `at`; errors cannot be allowed";
-        diagnostics.push(Diagnostic::warning(&rules::STALE_ALLOWANCE, path.at_value(), text).help(help));
+        diagnostics.push(Diagnostic::warning(&STALE_ALLOWANCE, path.at_value(), text).help(help));
     }
 }

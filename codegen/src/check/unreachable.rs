@@ -3,7 +3,11 @@
 use super::ambiguous::{Ranges, accepted};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{AddressPattern, FieldId, Foreign, FrameLayout, IdentifierField, Message, Protocol, Table};
-use crate::rules;
+use crate::rule::rules;
+
+rules! {
+    UNREACHABLE "unreachable" Check ERROR;
+}
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
@@ -26,13 +30,13 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 fn without_mode(message: &Message) -> Diagnostic {
     let text = format!("no frame is ever decoded as `{}`: no addressing mode is used with it", message.name);
     let help = "say in `answers` of its access in which addressing modes it is used, and who answers";
-    Diagnostic::error(&rules::UNREACHABLE, message.doc.path.key("access").at_key(), text).help(help)
+    Diagnostic::error(&UNREACHABLE, message.doc.path.key("access").at_key(), text).help(help)
 }
 
 fn claimed(message: &Message, foreign: &Foreign) -> Diagnostic {
     let text = format!("no frame is ever decoded as `{}`: all frames that it could have are foreign", message.name);
     let help = "correct the constants of the message, or let the foreign identifiers leave it some";
-    let diagnostic = Diagnostic::error(&rules::UNREACHABLE, message.doc.path.at_key(), text).help(help);
+    let diagnostic = Diagnostic::error(&UNREACHABLE, message.doc.path.at_key(), text).help(help);
     diagnostic.other(foreign.doc.path.key("match").at_key(), "this claims them first")
 }
 

@@ -5,8 +5,12 @@ use indexmap::IndexMap;
 use super::table::Table;
 use crate::diagnostic::{At, Diagnostic};
 use crate::number::Rational;
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::{Node, Path};
+
+rules! {
+    ORDER "order" Lint WARNING;
+}
 
 /// How many siblings show an order.
 const FEWEST: usize = 5;
@@ -112,7 +116,7 @@ fn misplaced(sequence: &Sequence) -> Option<Diagnostic> {
     let text = format!("`{text}` is out of order: it stands between `{before}` and `{after}`");
     let others = steps.len() - 1;
     let help = format!("the {others} others are in order: correct the number, or move the entry to its place");
-    Some(Diagnostic::warning(&rules::ORDER, at.clone(), text).help(help))
+    Some(Diagnostic::warning(&ORDER, at.clone(), text).help(help))
 }
 
 fn is_before(left: Range, right: Range, may_repeat: bool) -> bool {

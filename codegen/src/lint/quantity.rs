@@ -5,9 +5,13 @@ mod phrase;
 use super::table::Table;
 use crate::diagnostic::Diagnostic;
 use crate::model::Unit;
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::{Node, Path};
 use phrase::{Reading, read};
+
+rules! {
+    QUANTITY "quantity" Lint WARNING;
+}
 
 /// The unit of a share of anything.
 const PERCENT: &str = "%";
@@ -64,5 +68,5 @@ fn contradiction(measured: &Measured) -> Option<Diagnostic> {
     let text = format!("`{name}` is in `{unit}`, but its {source} says {}", quantity.name);
     let units = quantity.units.join("`, `");
     let help = format!("{} is in `{units}`: correct the unit, or say in name and title what it is", quantity.name);
-    Some(Diagnostic::warning(&rules::QUANTITY, path.at_value(), text).help(help))
+    Some(Diagnostic::warning(&QUANTITY, path.at_value(), text).help(help))
 }

@@ -6,9 +6,13 @@ use std::ops::RangeInclusive;
 
 use super::table::{Name, Table};
 use crate::diagnostic::Diagnostic;
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::{Node, Path};
 use words::{Vocabulary, words};
+
+rules! {
+    SPELLING "spelling" Lint WARNING;
+}
 
 /// Longest name that is looked at, in bytes.
 const LONGEST: usize = 48;
@@ -45,7 +49,7 @@ fn mistyped(name: &Name, meant: &str) -> Diagnostic {
     let text = format!("`{}`: is `{meant}` meant?", name.text);
     let help = format!("write `{meant}`; if `{}` is right, its `title` can say so", name.text);
     let label = "the spec has no such word elsewhere";
-    Diagnostic::warning(&rules::SPELLING, name.at.clone(), text).label(label).help(help)
+    Diagnostic::warning(&SPELLING, name.at.clone(), text).label(label).help(help)
 }
 
 /// Tells whether a name has a word that the spec has nowhere else.
@@ -108,7 +112,7 @@ fn misnumbered(name: &Name) -> Option<Diagnostic> {
     }
     let text = format!("`{}` has the number {number}, but its title has {}", name.text, others.join(", "));
     let help = format!("its title is `{title}`: correct the one that is wrong");
-    Some(Diagnostic::warning(&rules::SPELLING, name.at.clone(), text).help(help))
+    Some(Diagnostic::warning(&SPELLING, name.at.clone(), text).help(help))
 }
 
 /// Returns the numbers in a text, without leading zeros.

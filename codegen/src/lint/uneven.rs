@@ -4,8 +4,12 @@ use indexmap::IndexMap;
 
 use super::table::Table;
 use crate::diagnostic::Diagnostic;
-use crate::rules;
+use crate::rule::rules;
 use crate::syntax::tree::{Entry, Node, Path};
+
+rules! {
+    UNEVEN "uneven" Lint WARNING;
+}
 
 /// How many entries show what all of them have.
 const FEWEST: usize = 4;
@@ -77,5 +81,5 @@ fn diagnostic(siblings: &[Sibling], odd: usize, key: &str) -> Diagnostic {
         .map_or_else(|| path.clone(), |known| path.key(known));
     let text = format!("`{name}` has no `{key}`, which all {} others have", siblings.len() - 1);
     let help = format!("write `{key}`; if the document leaves it out, say so with an entry of `allow`");
-    Diagnostic::warning(&rules::UNEVEN, at.at_key(), text).label(format!("`{key}` is missing after this")).help(help)
+    Diagnostic::warning(&UNEVEN, at.at_key(), text).label(format!("`{key}` is missing after this")).help(help)
 }

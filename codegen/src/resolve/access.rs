@@ -4,7 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Table, Timing, TimingId, Who};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 use crate::words::ANSWERS;

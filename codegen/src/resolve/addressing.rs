@@ -2,6 +2,7 @@
 
 use super::Resolver;
 use super::keys::Role;
+use super::patterns::{is_address_type, patterns};
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
@@ -9,7 +10,7 @@ use crate::model::{
     Mode, ModeId, Table,
 };
 use crate::number::Rational;
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast::{self, Pattern};
 use crate::syntax::tree::Path;
 use crate::words::OUTSIDE;
@@ -223,20 +224,6 @@ impl Resolver<'_> {
         }
         free.first().copied()
     }
-}
-
-/// Returns every addressing pattern and the key it stands under.
-pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Pattern)> {
-    spec.addressing.values().flat_map(|mode| {
-        let keys = [("request", &mode.request), ("one", &mode.one), ("each", &mode.each)];
-        let keys = keys.into_iter().chain([("coordinator", &mode.coordinator)]);
-        keys.filter_map(|(key, pattern)| Some((key, pattern.as_ref()?)))
-    })
-}
-
-/// Tells whether an addressing pattern names a type.
-pub fn is_address_type(spec: &ast::Spec, name: &str) -> bool {
-    patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name))
 }
 
 /// Tells whether a type has what an address type has, and nothing else.

@@ -7,7 +7,7 @@ use crate::model::{
     DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, Timing, TimingId, TypeOfModel, Unit,
 };
 use crate::number::Rational;
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 use crate::words::ERRATUM_KINDS;

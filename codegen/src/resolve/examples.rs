@@ -11,7 +11,7 @@ use crate::model::{
     Doc, Encoding, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Signal,
     SignalId, StatusBit, Table, ValueExample,
 };
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
 use crate::syntax::tree::Path;
 use crate::words::ORIGINS;

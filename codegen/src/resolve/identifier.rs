@@ -5,7 +5,7 @@ use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{Doc, Identifier, IdentifierField, Table};
-use crate::rules;
+use crate::resolve::rules;
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{Field, IdentifierEntry, Key};
 use crate::syntax::tree::Path;

@@ -4,7 +4,7 @@ use super::Resolver;
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::Encoding;
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::{Node, Path};
 
@@ -243,7 +243,7 @@ impl Resolver<'_> {
     /// Refuses a type of which a field cannot read a key.
     fn misplaced_by_type(&mut self, field: &Path, name: &str, path: &Path, key: Key, role: Role) {
         let (what, key) = (role.name(), key.name());
-        let (text, help) = if super::addressing::is_address_type(self.spec, name) {
+        let (text, help) = if super::patterns::is_address_type(self.spec, name) {
             let text = format!("`{name}` is an address type, and the field that names it is {what}");
             (text, "name another type, or leave `type` out".to_owned())
         } else {

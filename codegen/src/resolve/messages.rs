@@ -9,7 +9,7 @@ use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
     Message, MessageId, ModelId, Selector, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel,
 };
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 

@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::model::{Constant, Encoding, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast::{self, Key, Pattern};
 use crate::syntax::tree::Path;
 
@@ -126,4 +126,18 @@ impl Resolver<'_> {
 /// Finds a field by name, in words too.
 fn ast_field<'a>(fields: &'a ast::Map<ast::Field>, name: &str) -> Option<&'a ast::Field> {
     fields.get(name).or_else(|| fields.values().find_map(|field| ast_field(&field.fields, name)))
+}
+
+/// Returns every addressing pattern and the key it stands under.
+pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Pattern)> {
+    spec.addressing.values().flat_map(|mode| {
+        let keys = [("request", &mode.request), ("one", &mode.one), ("each", &mode.each)];
+        let keys = keys.into_iter().chain([("coordinator", &mode.coordinator)]);
+        keys.filter_map(|(key, pattern)| Some((key, pattern.as_ref()?)))
+    })
+}
+
+/// Tells whether an addressing pattern names a type.
+pub fn is_address_type(spec: &ast::Spec, name: &str) -> bool {
+    patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name))
 }

@@ -4,7 +4,7 @@ use super::Resolver;
 use super::messages::{Draft, Owner, Surroundings};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Constant, Exchange, Id, Kind, Message, MessageId, SelectorId, Set, Table};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 

@@ -11,7 +11,7 @@ use crate::model::{
     DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, OfModel, PartId, Piece, Signal, Table, TypeOfModel,
 };
 use crate::number::Rational;
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
 use crate::words::{NUMBER_FORMATS, NumberFormat};

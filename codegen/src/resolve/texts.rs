@@ -9,7 +9,7 @@ use crate::diagnostic::At;
 use crate::model::{Doc, Id, Kind, Quantity, Range, Table, Unit};
 use crate::multiples;
 use crate::number::Rational;
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::ast::{Field, Names};
 use crate::syntax::tree::Path;
 

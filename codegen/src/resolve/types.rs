@@ -4,7 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, StatusBit, StatusWord, StatusWordId, raw_limits};
-use crate::rules;
+use crate::resolve::rules;
 use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
@@ -55,7 +55,7 @@ impl Resolver<'_> {
         let spec = self.spec;
         for (name, field) in &spec.types {
             self.check_document_name(&root.key(name), name);
-            let is_address = super::addressing::is_address_type(spec, name);
+            let is_address = super::patterns::is_address_type(spec, name);
             let is_used = is_address || self.tables.used_types.contains(name) || !field.examples.is_empty();
             if !is_used && !self.diagnostics.has_errors() {
                 let diagnostic = Diagnostic::warning(
@@ -89,7 +89,7 @@ impl Resolver<'_> {
         for name in names.iter().rev() {
             let at = path.key("type");
             let Some((_, name, other)) = spec.types.get_full(name) else {
-                let fields = spec.types.keys().filter(|name| !super::addressing::is_address_type(spec, name));
+                let fields = spec.types.keys().filter(|name| !super::patterns::is_address_type(spec, name));
                 let offered: Vec<_> = fields.map(String::as_str).collect();
                 self.report_name(at.at_value(), "type", name, &offered, Some("define it in `types`"));
                 return None;

@@ -10,8 +10,9 @@ use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 
 use super::tree::{Content, Entry, Node};
 use crate::diagnostic::Diagnostic;
-use crate::rules::{self, Rule};
+use crate::rule::Rule;
 use crate::source::{Source, forbidden};
+use crate::syntax::rules;
 
 /// Deepest nesting of maps and lists.
 const DEPTH_LIMIT: usize = 64;
@@ -160,7 +161,7 @@ impl Gate<'_> {
         }
         text.chars().find_map(|character| Some((character, forbidden(character)?))).map(|(character, what)| {
             let message = format!("the text holds the {what} U+{:04X}", u32::from(character));
-            Diagnostic::error(&rules::ENCODING, span, message).help("write it without this character")
+            Diagnostic::error(&crate::source::rules::ENCODING, span, message).help("write it without this character")
         })
     }
 

@@ -6,8 +6,6 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use crate::diagnostic::At;
-
 /// A value in the file and where it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
@@ -137,6 +135,25 @@ fn shortened(text: &str) -> String {
     match text.char_indices().nth(40) {
         None => text.to_owned(),
         Some((end, _)) => format!("{}...", &text[..end]),
+    }
+}
+
+/// A place in a spec.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum At {
+    /// The file as a whole.
+    File,
+    /// A range of bytes of the text.
+    Span(Range<usize>),
+    /// The key of an entry; where there is no such entry, the key of what it should be in.
+    Key(Path),
+    /// The value of an entry; of a map or a list its key, or its first line where it has no key.
+    Value(Path),
+}
+
+impl From<Range<usize>> for At {
+    fn from(span: Range<usize>) -> Self {
+        Self::Span(span)
     }
 }
 

@@ -9,8 +9,14 @@ mod rendered;
 mod text;
 
 use canspec_codegen::diagnostic::Diagnostics;
+use canspec_codegen::rules::{self, Rule};
 use canspec_codegen::source::Source;
 use canspec_codegen::syntax::{ast, parse};
+
+/// Finds a rule.
+fn rule(name: &str) -> &'static Rule {
+    rules::find(name).unwrap_or_else(|| panic!("there is no rule `{name}`"))
+}
 
 /// Seven lines that are a whole spec; what a test adds starts at line 8.
 const WHOLE: &str = "\

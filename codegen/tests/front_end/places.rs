@@ -1,10 +1,9 @@
 //! Where things stand.
 
 use canspec_codegen::diagnostic::{At, Diagnostic, Severity};
-use canspec_codegen::rules;
 use canspec_codegen::syntax::tree::{Content, Path};
 
-use super::{WHOLE, first};
+use super::{WHOLE, first, rule};
 
 #[test]
 fn paths_lead_to_keys_and_values() {
@@ -40,9 +39,9 @@ fn the_tree_keeps_the_order_of_the_file() {
 #[test]
 fn diagnostics_are_sorted_by_place_and_counted() {
     let mut diagnostics = first(WHOLE);
-    diagnostics.push(Diagnostic::warning(&rules::ORDER, Path::default().key("length").at_value(), "is eight"));
-    diagnostics.push(Diagnostic::error(&rules::YAML, 0..7, "is old").label("here").other(At::File, "there"));
-    diagnostics.push(Diagnostic::error(&rules::FILE, At::File, "is short"));
+    diagnostics.push(Diagnostic::warning(rule("order"), Path::default().key("length").at_value(), "is eight"));
+    diagnostics.push(Diagnostic::error(rule("yaml"), 0..7, "is old").label("here").other(At::File, "there"));
+    diagnostics.push(Diagnostic::error(rule("file"), At::File, "is short"));
     assert_eq!((diagnostics.errors(), diagnostics.warnings()), (2, 1));
     assert_eq!(diagnostics.sorted()[2].severity, Severity::Warning);
     assert_eq!(

@@ -1,10 +1,9 @@
 //! How it is shown.
 
 use canspec_codegen::diagnostic::{At, Diagnostic};
-use canspec_codegen::rules;
 use canspec_codegen::source::Source;
 
-use super::{WHOLE, first};
+use super::{WHOLE, first, rule};
 
 #[test]
 fn lines_are_underlined_with_labels_and_help() {
@@ -64,7 +63,7 @@ error[plain_word]: `on` is written without quotes
 fn a_warning_about_the_whole_file_names_it() {
     let mut diagnostics = first(WHOLE);
     diagnostics.push(
-        Diagnostic::warning(&rules::SECTION, At::File, "says little").other(At::File, "as others do").help("say more"),
+        Diagnostic::warning(rule("section"), At::File, "says little").other(At::File, "as others do").help("say more"),
     );
     let expected = "\
 warning[section]: says little

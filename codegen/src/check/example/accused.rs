@@ -6,7 +6,7 @@ use super::evidence::{Evidence, Field, collect, missing_bit};
 use super::repair::{self, Repair};
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::model::{Encoding, Protocol, Signal};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::tree::{Path, Step};
 
 /// Most examples that are shown beside a field.

@@ -9,7 +9,7 @@ use super::shown;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::interpret::{Frame, Reading, decode};
 use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::tree::{Content, Path};
 
 /// What one example says of a field.

@@ -6,7 +6,7 @@ use super::shown;
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Decoded, Reading, Value};
 use crate::model::{Example, MessageId, Protocol, Range, Signal};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::tree::Path;
 
 /// The range of the field whose value lies outside it, or nearest to one of its ends.

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, decode};
 use crate::model::{Example, Message, MessageId, Protocol};
-use crate::rules;
+use crate::resolve::rules;
 use crate::syntax::tree::Path;
 
 /// Most examples that are shown beside a message.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::diagnostic::Diagnostic;
-use crate::rules;
+use crate::syntax::rules;
 
 /// Finds a quote without an end; the parser stops at its start.
 pub(super) fn open_quote(text: &str, at: usize, complaint: &str) -> Option<Diagnostic> {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{DEPTH_LIMIT, cause};
 use crate::diagnostic::Diagnostic;
-use crate::rules;
+use crate::syntax::rules;
 
 /// Part of the parser's message, our message, and the help.
 const TRANSLATIONS: [(&str, &str, &str); 19] = [

@@ -1,7 +1,7 @@
 //! What serde complains about, in words for people.
 
 use crate::diagnostic::Diagnostic;
-use crate::rules;
+use crate::syntax::rules;
 use crate::syntax::tree::{Content, Node, Path, Step};
 
 /// An error of the reading.

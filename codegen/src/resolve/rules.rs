@@ -1,0 +1,51 @@
+//! The rules on what is written, and those of a later stage that are tested here already.
+
+use crate::rule::{Rule, rules};
+
+rules! {
+    MISPLACED_KEY "misplaced_key" Resolve ERROR;
+    VERSION "version" Resolve ERROR;
+    IDENTIFIER_NAME "identifier_name" Resolve ERROR;
+    NAME "name" Resolve ERROR;
+    NUMBER "number" Resolve ERROR;
+    RANGE "range" Resolve ERROR;
+    UNIT "unit" Resolve ERROR;
+    PLACE "place" Resolve ERROR;
+    IDENTIFIER_LAYOUT "identifier_layout" Resolve ERROR;
+    TYPE "type" Resolve ERROR;
+    FORMAT "format" Resolve ERROR;
+    UNUSED_TYPE "unused_type" Resolve WARNING;
+    NAMED_VALUE "named_value" Resolve ERROR;
+    VALUE_WIDTH "value_width" Resolve ERROR;
+    STATUS_BIT "status_bit" Resolve ERROR;
+    VALUE "value" Resolve ERROR;
+    ADDRESSING "addressing" Resolve EITHER;
+    ACCESS "access" Resolve ERROR;
+    MATCH "match" Resolve ERROR;
+    MODEL_RANGE "model_range" Check EITHER;
+    SET "set" Check ERROR;
+    EXAMPLE "example" Check ERROR;
+}
+
+/// All of the stage, in order.
+pub static RULES: &[&Rule] = &[
+    &MISPLACED_KEY,
+    &VERSION,
+    &IDENTIFIER_NAME,
+    &NAME,
+    &NUMBER,
+    &RANGE,
+    &UNIT,
+    &PLACE,
+    &IDENTIFIER_LAYOUT,
+    &TYPE,
+    &FORMAT,
+    &UNUSED_TYPE,
+    &NAMED_VALUE,
+    &VALUE_WIDTH,
+    &STATUS_BIT,
+    &VALUE,
+    &ADDRESSING,
+    &ACCESS,
+    &MATCH,
+];

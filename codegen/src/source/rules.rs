@@ -1,0 +1,11 @@
+//! The rules on the bytes of a spec.
+
+use crate::rule::{Rule, rules};
+
+rules! {
+    FILE "file" Source ERROR;
+    ENCODING "encoding" Source ERROR;
+}
+
+/// All of the stage, in order.
+pub static RULES: &[&Rule] = &[&FILE, &ENCODING];
