@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use canspec_codegen::model::Protocol;
 use canspec_codegen::source::Source;
-use canspec_codegen::{Outcome, compile};
+use canspec_codegen::{Outcome, compile, nearest};
 use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
@@ -87,9 +87,7 @@ pub fn load(source: Source) -> Result<Protocol, Failure> {
 /// Says what could be meant by a name.
 fn unknown(name: &str, specs: &[Spec]) -> String {
     let names: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
-    let nearest = names.iter().filter(|known| strsim::osa_distance(name, known) <= 2);
-    let nearest = nearest.min_by_key(|known| strsim::osa_distance(name, known));
-    let help = match nearest {
+    let help = match nearest(name, names.iter().copied()) {
         Some(known) => format!("did you mean `{known}`?"),
         None => "a spec of your own is named by its file".to_owned(),
     };

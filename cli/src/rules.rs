@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use canspec_codegen::nearest;
 use canspec_codegen::rules::{self, RULES};
 use clap::Args;
 
@@ -39,8 +40,7 @@ fn list(out: &mut impl Write) -> io::Result<()> {
 }
 
 fn unknown(name: &str) -> String {
-    let distance = |known: &&str| strsim::damerau_levenshtein(known, name);
-    let nearest = RULES.iter().map(|rule| rule.name).min_by_key(distance).filter(|known| distance(known) <= 2);
+    let nearest = nearest(name, RULES.iter().map(|rule| rule.name));
     let help =
         nearest.map_or_else(|| "`canspec rules` lists them".to_owned(), |known| format!("did you mean `{known}`?"));
     format!("there is no rule `{name}`; {help}")

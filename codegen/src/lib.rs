@@ -15,6 +15,7 @@ pub mod interpret;
 mod lint;
 pub mod model;
 pub mod multiples;
+mod nearest;
 pub mod number;
 mod resolve;
 mod rule;
@@ -30,6 +31,7 @@ mod words;
 pub use builder::{Builder, Generated, generate};
 use diagnostic::Diagnostics;
 use model::Protocol;
+pub use nearest::nearest;
 use source::Source;
 pub use summary::Summary;
 

@@ -86,6 +86,11 @@ impl Rational {
         self.to_string().parse().unwrap_or(self.numerator as f64 / self.denominator as f64)
     }
 
+    /// Returns the least common multiple of both denominators, or `None` on overflow.
+    pub fn common_denominator(self, other: Self) -> Option<i128> {
+        (self.denominator / greatest_common_divisor(self.denominator, other.denominator)).checked_mul(other.denominator)
+    }
+
     /// Returns `self + other`, or `None` on overflow.
     pub fn plus(self, other: Self) -> Option<Self> {
         let left = self.numerator.checked_mul(other.denominator)?;

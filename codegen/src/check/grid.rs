@@ -59,12 +59,10 @@ fn missed_by_single(
     scale: Rational,
     offset: Rational,
 ) -> Option<String> {
-    let Some(denominator) =
-        common_denominator(scale, offset).filter(|common| is_below(Some(common.numerator()), EXACT))
-    else {
+    let Some(denominator) = scale.common_denominator(offset).filter(|common| is_below(Some(*common), EXACT)) else {
         return Some(format!("the denominator of {scale} reaches 2^{EXACT}, beyond which a single misses integers"));
     };
-    let limit = if denominator.numerator().count_ones() == 1 { EXACT } else { SINGLE };
+    let limit = if denominator.count_ones() == 1 { EXACT } else { SINGLE };
     let extreme = largest(
         documented.unwrap_or_else(|| full_width(signal.place.width(), signed) - i128::from(!signed)),
         scale,
@@ -136,14 +134,8 @@ fn documented(signal: &Signal, scale: Rational, offset: Rational) -> Option<i128
 
 /// Returns the largest |raw * a + b| where physical = (raw * a + b) / c; `None` on overflow.
 fn largest(raw: i128, scale: Rational, offset: Rational) -> Option<i128> {
-    let common = common_denominator(scale, offset)?;
+    let common = Rational::integer(scale.common_denominator(offset)?);
     let step = scale.times(common)?.to_integer()?;
     let start = offset.times(common)?.to_integer()?;
     raw.checked_mul(step.checked_abs()?)?.checked_add(start.checked_abs()?)
-}
-
-/// Returns the least common multiple of the denominators.
-fn common_denominator(one: Rational, other: Rational) -> Option<Rational> {
-    let shared = Rational::new(one.denominator(), other.denominator())?.numerator();
-    Some(Rational::integer(shared.checked_mul(other.denominator())?))
 }

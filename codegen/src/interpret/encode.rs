@@ -3,6 +3,7 @@
 use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
 use crate::model::{FrameLayout, Kind, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace};
+use crate::nearest;
 
 /// Notes that a request does not get: it is refused.
 const FORBIDDEN: [NoteRule; 3] = [NoteRule::Address, NoteRule::Addressing, NoteRule::ModelDependent];
@@ -30,9 +31,8 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
 /// Finds a message by name.
 pub fn find_message<'a>(protocol: &'a Protocol, name: &str) -> Result<(MessageId, &'a Message), Refusal> {
     protocol.messages.entries().find(|(_, message)| message.name == name).ok_or_else(|| {
-        let names = protocol.messages.iter().map(|message| (strsim::jaro_winkler(&message.name, name), &message.name));
-        let near = names.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
-        let hint = near.map_or_else(String::new, |(_, near)| format!("; did you mean `{near}`?"));
+        let near = nearest(name, protocol.messages.iter().map(|message| message.name.as_str()));
+        let hint = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         Refusal(format!("`{}` has no message `{name}`{hint}", protocol.name))
     })
 }

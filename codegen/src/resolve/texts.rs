@@ -8,6 +8,7 @@ use super::Resolver;
 use crate::diagnostic::At;
 use crate::model::{Doc, Id, Kind, Quantity, Range, Table, Unit};
 use crate::multiples;
+use crate::nearest;
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Names};
@@ -309,10 +310,8 @@ fn scaled_unit(symbol: &str, field: &Field) -> Option<String> {
 
 /// Names the nearest of the known names, or all of them.
 pub fn suggestion(what: &str, name: &str, names: &[&str]) -> String {
-    let near = names.iter().map(|known| (strsim::jaro_winkler(known, name), known));
-    let best = near.filter(|(score, _)| *score > 0.8).max_by(|one, other| one.0.total_cmp(&other.0));
-    if let Some((_, best)) = best {
-        return format!("did you mean `{best}`?");
+    if let Some(nearest) = nearest(name, names.iter().copied()) {
+        return format!("did you mean `{nearest}`?");
     }
     let known: Vec<_> = names.iter().map(|known| format!("`{known}`")).collect();
     match known.as_slice() {

@@ -2,7 +2,7 @@
 
 use can_dbc::{Dbc, MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
 use canspec_codegen::check::has_exact_steps;
-use canspec_codegen::model::Unit;
+use canspec_codegen::model::{Unit, raw_limits};
 use canspec_codegen::multiples::{prefixed, respelled};
 use canspec_codegen::number::Rational;
 
@@ -70,7 +70,7 @@ fn number(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
         return Err(format!("a double cannot tell the steps of {scale} of its {width} bits apart"));
     }
     let value = |raw: i128| Rational::integer(raw).times(scale)?.plus(offset);
-    let (first, last) = raw_limits(width, signed);
+    let (first, last) = raw_limits(width.clamp(1, 64), signed);
     let mut meaning = Meaning::default();
     let named = fitting(named, (first, last), &mut meaning);
     let held = value(first).zip(value(last)).map(|(one, other)| (one.min(other), one.max(other)));
@@ -94,12 +94,6 @@ fn exact(number: f64) -> Option<Rational> {
 
 fn range_key((minimum, maximum): Range) -> (&'static str, String) {
     ("range", format!("{minimum}..{maximum}"))
-}
-
-/// Returns the lowest and the highest raw value of so many bits.
-fn raw_limits(width: u8, signed: bool) -> (i128, i128) {
-    let all = 1_i128 << width.min(64);
-    if signed { (-all / 2, all / 2 - 1) } else { (0, all - 1) }
 }
 
 /// Returns the limits that the DBC states; two zeros state none.

@@ -46,8 +46,8 @@ pub struct Signal {
     pub start: Option<i128>,
     /// Its value chooses which other signals the frame has.
     pub multiplexor: bool,
-    /// The multiplexor on which it depends, as an index into the frame's signals, and that one's value.
-    pub under: Option<(usize, u64)>,
+    /// Name of the multiplexor on which it depends, and that one's value.
+    pub under: Option<(String, u64)>,
 }
 
 /// Longer names are written as a short one and an attribute.
@@ -147,8 +147,10 @@ impl Frame {
         }
         let names = self.names();
         for (signal, name) in self.signals.iter().zip(&names) {
-            if let Some((multiplexor, value)) = signal.under {
-                writeln!(out, "SG_MUL_VAL_ {} {name} {} {value}-{value};", self.number(), names[multiplexor])?;
+            let Some((multiplexor, value)) = &signal.under else { continue };
+            let is_meant = |(other, _): &(&Signal, &String)| other.name == *multiplexor;
+            if let Some((_, multiplexor)) = self.signals.iter().zip(&names).find(is_meant) {
+                writeln!(out, "SG_MUL_VAL_ {} {name} {multiplexor} {value}-{value};", self.number())?;
             }
         }
         Ok(())
@@ -176,7 +178,7 @@ impl Signal {
     }
 
     fn marker(&self) -> String {
-        let under = self.under.map_or(String::new(), |(_, value)| format!("m{value}"));
+        let under = self.under.as_ref().map_or(String::new(), |(_, value)| format!("m{value}"));
         let multiplexor = if self.multiplexor { "M" } else { "" };
         let space = if under.is_empty() && multiplexor.is_empty() { "" } else { " " };
         format!("{space}{under}{multiplexor}")

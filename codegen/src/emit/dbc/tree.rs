@@ -60,7 +60,7 @@ struct Grower<'p, 'a> {
 /// Where in the tree a signal stands.
 struct Branch {
     /// The multiplexor and its value.
-    under: Option<(usize, u64)>,
+    under: Option<(String, u64)>,
     /// What the multiplexors' values mean.
     label: String,
 }
@@ -92,7 +92,7 @@ impl<'a> Grower<'_, 'a> {
         let labels = self.labels(chosen, &branches);
         let multiplexor = self.multiplexor(candidates[0], chosen, &labels, branch);
         for ((value, label), of) in labels.into_iter().zip(branches.values()) {
-            self.grow(of, left.clone(), &Branch { under: Some((multiplexor, value)), label });
+            self.grow(of, left.clone(), &Branch { under: Some((multiplexor.clone(), value)), label });
         }
     }
 
@@ -147,13 +147,12 @@ impl<'a> Grower<'_, 'a> {
         }
     }
 
-    fn multiplexor(&mut self, of: Candidate, id: SelectorId, labels: &[(u64, String)], branch: &Branch) -> usize {
+    fn multiplexor(&mut self, of: Candidate, id: SelectorId, labels: &[(u64, String)], branch: &Branch) -> String {
         let mut signal = Signal { multiplexor: true, ..self.selector(id, None, of, branch) };
         if signal.named.is_empty() {
             signal.named = labels.iter().map(|(value, label)| (i128::from(*value), label.clone())).collect();
         }
-        self.add(signal, branch);
-        self.signals.len() - 1
+        self.add(signal, branch)
     }
 
     fn selector(&self, id: SelectorId, only: Option<u64>, of: Candidate, branch: &Branch) -> Signal {
@@ -177,9 +176,11 @@ impl<'a> Grower<'_, 'a> {
         branches.keys().zip(labels).map(|(value, label)| (*value, named(*value).unwrap_or(label))).collect()
     }
 
-    fn add(&mut self, signal: Signal, branch: &Branch) {
+    /// Adds a signal, and returns the name that it gets.
+    fn add(&mut self, signal: Signal, branch: &Branch) -> String {
         let name = unique(&signal.name, &mut self.taken);
-        self.signals.push(Signal { name, under: branch.under, ..signal });
+        self.signals.push(Signal { name: name.clone(), under: branch.under.clone(), ..signal });
+        name
     }
 }
 

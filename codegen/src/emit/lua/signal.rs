@@ -68,16 +68,12 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
 
 /// Adds the scale and the offset over one denominator: (raw * numerator + offset) / denominator, with one division.
 fn scaled(record: Value, scale: Rational, offset: Rational) -> Value {
-    let denominator = least_common_multiple(scale.denominator(), offset.denominator());
+    let denominator = scale.common_denominator(offset).unwrap_or(1);
     let over = |number: Rational| number.numerator() * (denominator / number.denominator());
     record
         .with("numerator", Value::number(over(scale)))
         .with("offset", Value::number(over(offset)))
         .with("denominator", Value::number(denominator))
-}
-
-fn least_common_multiple(one: i128, other: i128) -> i128 {
-    Rational::new(one, other).map_or(one, |fraction| fraction.numerator() * other)
 }
 
 fn status_bit(bit: &StatusBit) -> Value {

@@ -1,6 +1,7 @@
 //! What serde complains about, in words for people.
 
 use crate::diagnostic::Diagnostic;
+use crate::nearest;
 use crate::syntax::rules;
 use crate::syntax::tree::{Content, Node, Path, Step};
 
@@ -71,18 +72,12 @@ impl Complaint {
 
 fn unknown_key(path: &Path, key: &str, allowed: &[String]) -> Diagnostic {
     let listed = allowed.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
-    let nearest = nearest(key, allowed).map(|nearest| format!("did you mean `{nearest}`?"));
+    let nearest = nearest(key, allowed.iter().map(String::as_str)).map(|nearest| format!("did you mean `{nearest}`?"));
     let help = match nearest.or_else(|| said_otherwise(key, allowed)) {
         Some(what) => format!("{what} allowed here: {listed}"),
         None => format!("allowed here: {listed}"),
     };
     Diagnostic::error(&rules::UNKNOWN_KEY, path.at_key(), format!("unknown key `{key}`")).help(help)
-}
-
-fn nearest<'a>(key: &str, allowed: &'a [String]) -> Option<&'a str> {
-    let near = |other: &&String| strsim::damerau_levenshtein(key, other) <= key.chars().count().max(3) / 3;
-    let nearest = allowed.iter().filter(near).min_by_key(|other| strsim::damerau_levenshtein(key, other));
-    nearest.map(String::as_str)
 }
 
 /// Says how to write what other descriptions of frames have a key of their own for.
