@@ -284,23 +284,23 @@ impl Compiled {
 }
 
 fn received(protocol: &Protocol, frames: &[Frame]) -> String {
-    frames.iter().map(|frame| format!("{:?}\n", decode(protocol, None, frame))).collect()
+    frames.iter().map(|frame| format!("{:?}", decode(protocol, None, frame))).collect::<Vec<_>>().join("\n")
 }
 
 /// Returns the requests of each message: without any value, and without one of the values.
 fn sent(protocol: &Protocol) -> String {
     let target = Target { name: "module".to_owned(), number: Some(3) };
-    let mut sent = String::new();
+    let mut sent = Vec::new();
     for (model, message) in models(protocol).flat_map(|model| protocol.messages.iter().map(move |known| (model, known)))
     {
         let values: Vec<_> = message.signals.iter().filter_map(|signal| value(protocol, signal)).collect();
         for left_out in message.signals.iter().map(|signal| Some(&signal.name)).chain([None]) {
             let values: Vec<_> = values.iter().filter(|(name, _)| Some(name) != left_out).cloned().collect();
             let frames = requests(protocol, model, None, &message.name, &target, None, &values);
-            sent += &format!("{frames:?}\n");
+            sent.push(format!("{frames:?}"));
         }
     }
-    sent
+    sent.join("\n")
 }
 
 /// Returns a value of a signal as a person writes it.
@@ -312,7 +312,7 @@ fn value(protocol: &Protocol, signal: &Signal) -> Option<(String, String)> {
         Meaning::Number(number) => number.to_string(),
         Meaning::Name(text) | Meaning::Text(text) => text,
         Meaning::Status { .. } => "[]".to_owned(),
-        _ => return None,
+        Meaning::None => return None,
     };
     Some((signal.name.clone(), text))
 }

@@ -61,5 +61,6 @@ fn what_fits(signal: &Signal, unit: Unit) -> String {
 }
 
 fn specials(signal: &Signal) -> String {
-    signal.specials.iter().map(|special| format!(" or `{}`", special.name)).collect()
+    let names: Vec<_> = signal.specials.iter().map(|special| format!(" or `{}`", special.name)).collect();
+    names.concat()
 }
