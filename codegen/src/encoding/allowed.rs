@@ -30,12 +30,21 @@ impl Allowed {
 
     /// Tests a number.
     pub fn check(&self, signal: &Signal, value: f64) -> Result<(), String> {
-        self.check_shown(signal, value, &value)
+        self.check_by(signal, value, |range| signal.is_within(range, value))
     }
 
-    /// Tests a number that a double may only come near to.
-    pub fn check_shown(&self, signal: &Signal, value: f64, shown: &dyn Display) -> Result<(), String> {
-        let missed = self.missed(signal, value);
+    /// Tests an integer that is its own physical value, however many digits it has.
+    pub fn check_whole(&self, signal: &Signal, value: i128) -> Result<(), String> {
+        self.check_by(signal, value, |range| range.has_whole(value))
+    }
+
+    fn check_by(
+        &self,
+        signal: &Signal,
+        shown: impl Display,
+        is_within: impl FnOnce(&Range) -> bool,
+    ) -> Result<(), String> {
+        let missed = self.missed(signal, is_within);
         missed.map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", signal.unit_text())))
     }
 
@@ -47,7 +56,7 @@ impl Allowed {
         }
         self.check(signal, value)?;
         let unit = signal.unit_text();
-        match (special, self.missed(signal, sent)) {
+        match (special, self.missed(signal, |range| signal.is_within(range, sent))) {
             (Some(name), _) => Err(format!("{value}{unit} would be sent as `{name}`")),
             (None, Some(limits)) => {
                 Err(format!("{value}{unit} would be sent as {sent}{unit}, which is outside {limits}"))
@@ -57,9 +66,9 @@ impl Allowed {
     }
 
     /// Returns the limits outside which a number lies.
-    fn missed(&self, signal: &Signal, value: f64) -> Option<String> {
+    fn missed(&self, signal: &Signal, is_within: impl FnOnce(&Range) -> bool) -> Option<String> {
         let Self::Within { range: Some(range), advice } = self else { return None };
         let text = || format!("{}..{}{}{advice}", range.minimum, range.maximum, signal.unit_text());
-        (!signal.is_within(range, value)).then(text)
+        (!is_within(range)).then(text)
     }
 }

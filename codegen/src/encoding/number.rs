@@ -1,6 +1,6 @@
 //! Integers, scaled or not, with special values.
 
-use canspec_runtime::{Scale, nearest};
+use canspec_runtime::plumbing::{Scale, nearest};
 
 use super::quantity::{as_double, quantity, typed, wanted};
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
@@ -89,13 +89,16 @@ impl Number<'_> {
         };
         let special = self.special(raw).map(|special| special.name.as_str());
         allowed.check_sent(self.signal, value, self.physical(raw), special)?;
+        if special.is_none() && self.is_unscaled() {
+            allowed.check_whole(self.signal, raw)?;
+        }
         bits(self.signal, raw).map_err(|_| self.misfit(value))
     }
 
     /// Encodes an unscaled number.
     fn whole(&self, value: i128, allowed: &Allowed) -> Result<u64, String> {
         if self.special(value).is_none() {
-            allowed.check_shown(self.signal, as_double(value), &value)?;
+            allowed.check_whole(self.signal, value)?;
         }
         bits(self.signal, value).map_err(|_| self.misfit(value))
     }
@@ -103,8 +106,10 @@ impl Number<'_> {
     /// Encodes a raw number, which in a request must lie in the range too.
     fn raw_number(&self, raw: i128, allowed: &Allowed) -> Result<u64, String> {
         let bits = bits(self.signal, raw)?;
-        if self.special(raw).is_none() {
-            allowed.check(self.signal, self.physical(raw))?;
+        match self.special(raw) {
+            Some(_) => {}
+            None if self.is_unscaled() => allowed.check_whole(self.signal, raw)?,
+            None => allowed.check(self.signal, self.physical(raw))?,
         }
         Ok(bits)
     }
