@@ -4,19 +4,17 @@ mod address;
 mod choice;
 mod derives;
 mod dispatch;
-mod doc;
 mod entries;
 mod exchange;
+mod filter;
 mod identifier;
+mod layout;
 mod lines;
-mod literal;
 mod message;
 mod model;
-mod names;
 mod parts;
-mod place;
+mod plan;
 mod protocol;
-mod rows;
 mod set;
 mod spacing;
 mod word;
@@ -28,12 +26,11 @@ use super::Options;
 use crate::files::MARK;
 use crate::model::Protocol;
 use derives::Derives;
-use message::Emitter;
-use names::Names;
-use set::SetEmitter;
+use layout::formatted;
+use plan::Plan;
 
-pub use names::is_word_of_rust;
-pub(crate) use names::{camel_case, member};
+pub use plan::naming::is_word_of_rust;
+pub(crate) use plan::naming::{camel_case, member};
 
 /// Returns the content of a module that encodes and decodes the protocol, as text to be included as it is.
 pub fn rust(protocol: &Protocol, options: &Options) -> String {
@@ -43,8 +40,9 @@ pub fn rust(protocol: &Protocol, options: &Options) -> String {
 
 /// Returns the same content as tokens, for macros and for build scripts that go on with it.
 pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
-    let items = items(protocol, options);
-    let optional = Derives::new(options).imports();
+    let derives = Derives::new(options);
+    let items = items(&Plan::new(protocol, options), derives);
+    let optional = derives.imports();
     quote! {
         pub use canspec_runtime::prelude::*;
         use canspec_runtime::plumbing::prelude::*;
@@ -53,42 +51,27 @@ pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
     }
 }
 
-/// Lays the code out; if it is no Rust it stays as it is, so that its compiler can say why.
-fn formatted(code: &TokenStream) -> String {
-    let file = syn::parse2(code.clone());
-    file.map_or_else(|_| code.to_string(), |file| spacing::spaced(&lines::joined(&prettyplease::unparse(&file))))
-}
-
-fn items(protocol: &Protocol, options: &Options) -> TokenStream {
-    let (names, derives) = (Names::new(protocol), Derives::new(options));
-    let frame = protocol::frame(protocol);
-    let identifier = identifier::identifier(protocol, &names, derives);
-    let target = address::target(protocol, &names, derives);
-    let addressing = address::addressing(protocol);
-    let continuation = set::continuation(protocol);
-    let models = model::models(protocol, &names, derives, options.float);
-    let accesses = exchange::accesses(protocol, &names);
-    let words = words(protocol, &names, derives);
-    let messages = protocol.messages.iter().zip(&names.messages);
-    let messages = messages.map(|(message, known)| {
-        let emitter = Emitter { protocol, all: &names, names: known, message, derives, float: options.float };
-        SetEmitter::new(&emitter).map_or_else(|| emitter.items(), |set| set.items())
+fn items(plan: &Plan, derives: Derives) -> TokenStream {
+    let frame = filter::base(&plan.base);
+    let selectors = plan.in_data.iter().map(filter::in_data);
+    let identifier = identifier::identifier(&plan.identifier, derives);
+    let continuation = plan.continuation.as_ref().map(filter::continuation);
+    let targets = plan.targets.as_ref().map(|targets| address::targets(targets, derives));
+    let addresses = plan.address_types.iter().map(address::address_type);
+    let modes = plan.modes.iter().map(address::mode);
+    let (accesses, of_models) = (plan.accesses.iter().map(exchange::access), model::models(&plan.models, derives));
+    let enumerations = plan.enumerations.iter().map(|known| word::enumeration(known, derives));
+    let status_words = plan.status_words.iter().map(|known| word::status_word(known, derives));
+    let packed = plan.packed.iter().map(|known| word::packed(known, derives));
+    let messages = plan.messages.iter().zip(&plan.sets).map(|(message, set)| match set {
+        None => message::message(message, derives),
+        Some(set) => set::set(message, set, derives),
     });
-    let last = protocol::protocol(protocol, &names, derives);
-    quote!(#frame #identifier #continuation #target #addressing #accesses #models #words #(#messages)* #last)
-}
-
-fn words(protocol: &Protocol, names: &Names, derives: Derives) -> TokenStream {
-    let enumerations = protocol.enumerations.iter().zip(&names.enumerations);
-    let enumerations = enumerations.map(|(known, name)| word::enumeration(protocol, name, known, derives));
-    let status_words = protocol.status_words.iter().zip(&names.status_words);
-    let status_words = status_words.map(|(known, name)| word::status_word(protocol, name, known, derives));
-    let signals = protocol.messages.iter().zip(&names.messages).flat_map(|(message, known)| {
-        message.signals.iter().zip(&known.packed).map(move |(signal, name)| (message, signal, name))
-    });
-    let packed =
-        signals.filter_map(|(message, signal, name)| word::packed(protocol, name.as_ref()?, message, signal, derives));
-    quote!(#(#enumerations)* #(#status_words)* #(#packed)*)
+    let protocol = protocol::protocol(plan, derives);
+    quote! {
+        #frame #(#selectors)* #identifier #continuation #targets #(#addresses)* #(#modes)* #(#accesses)* #of_models
+        #(#enumerations)* #(#status_words)* #(#packed)* #(#messages)* #protocol
+    }
 }
 
 #[cfg(test)]

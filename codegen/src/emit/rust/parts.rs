@@ -3,7 +3,8 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::names::ident;
+use super::layout::formatted;
+use super::plan::naming::ident;
 
 /// How many lines the arms in one function may have.
 const LINES: usize = 72;
@@ -34,7 +35,7 @@ pub fn part_name(name: &str, index: usize) -> Ident {
 /// Returns how many lines an arm has in a function of an `impl`.
 fn height(arm: &TokenStream) -> usize {
     let around = |arm| quote!(impl Message { fn decode() { match id { #arm _ => last(), } } });
-    let lines = |arm| super::formatted(&around(arm)).lines().count();
+    let lines = |arm| formatted(&around(arm)).lines().count();
     lines(Some(arm)).saturating_sub(lines(None))
 }
 

@@ -1,39 +1,24 @@
 //! Named values, status words and packed values.
 
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::TokenStream;
+use quote::quote;
 
 use super::derives::Derives;
-use super::doc;
-use super::literal::{decimal, hexadecimal};
-use super::names::{ident, screaming, variants};
-use super::place::Written;
-use crate::model::{
-    Encoding, Enumeration, Message, PartId, Piece, Protocol, Severity, Signal, StatusBit, StatusWord, Table,
-};
-
-/// Returns the smallest integer type of so many bits.
-pub fn integer(width: u8, signed: bool) -> TokenStream {
-    let size = width.next_power_of_two().max(8);
-    let name = if signed { format_ident!("i{size}") } else { format_ident!("u{size}") };
-    quote!(#name)
-}
+use super::plan::word::{Enumeration, Packed, PackedPart, Piece, StatusBit, StatusWord, Value};
 
 /// Emits an enum with a variant a name, and one for all other values.
-pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration, derives: Derives) -> TokenStream {
+pub fn enumeration(enumeration: &Enumeration, derives: Derives) -> TokenStream {
+    let Enumeration { name, comment, raw, values, unknown } = enumeration;
     let optional = derives.word(name);
-    let sentence = doc::sentence_of(&doc::title(&enumeration.doc, &enumeration.name));
-    let comment = doc::item(protocol, &enumeration.doc, &sentence, None);
-    let (variants, unknown) = variants(enumeration.values.iter().map(|value| value.name.as_str()));
-    let raws: Vec<_> = enumeration.values.iter().map(|value| decimal(value.raw)).collect();
-    let texts: Vec<_> = enumeration.values.iter().map(|value| &value.name).collect();
-    let comments = enumeration.values.iter().map(|value| doc::line(format!("{}: `{}`.", value.raw, value.name)));
-    let raw = integer(enumeration.width, false);
+    let definitions = values.iter().map(|Value { variant, comment, .. }| quote!(#comment #variant,));
+    let variants: Vec<_> = values.iter().map(|value| &value.variant).collect();
+    let raws: Vec<_> = values.iter().map(|value| &value.raw).collect();
+    let texts = values.iter().map(|value| &value.name);
     quote! {
         #comment
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum #name {
-            #(#comments #variants,)*
+            #(#definitions)*
             /// A value without a name; it is sent as it is.
             #unknown(#raw),
         }
@@ -76,12 +61,14 @@ pub fn enumeration(protocol: &Protocol, name: &Ident, enumeration: &Enumeration,
 }
 
 /// Emits a newtype with a constant a bit.
-pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord, derives: Derives) -> TokenStream {
+pub fn status_word(StatusWord { name, comment, raw, bits }: &StatusWord, derives: Derives) -> TokenStream {
     let optional = derives.word(name);
-    let comment = doc::item(protocol, &word.doc, &doc::sentence_of(&doc::title(&word.doc, &word.name)), None);
-    let raw = integer(word.width, false);
-    let constants = word.bits.iter().map(|bit| constant(protocol, word, bit));
-    let rows = word.bits.iter().map(row);
+    let constants = bits
+        .iter()
+        .map(|StatusBit { constant, comment, mask, .. }| quote!(#comment pub const #constant: Self = Self(#mask);));
+    let rows = bits.iter().map(
+        |StatusBit { constructor, number, name, title, .. }| quote!(StatusBit::#constructor(#number, #name, #title)),
+    );
     quote! {
         #comment
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -133,61 +120,19 @@ pub fn status_word(protocol: &Protocol, name: &Ident, word: &StatusWord, derives
     }
 }
 
-fn constant(protocol: &Protocol, word: &StatusWord, bit: &StatusBit) -> TokenStream {
-    let name = screaming(&bit.name);
-    let mask = hexadecimal(1_u64 << bit.bit, word.width.next_power_of_two().max(8));
-    let severity = bit.severity.map_or_else(String::new, |severity| format!(", {}", severity_name(severity)));
-    let title = doc::title(&bit.doc, &bit.name);
-    let remarks =
-        [("Set when", &bit.set_when), ("Cleared when", &bit.clear_when), ("Effect:", &bit.effect), ("LED:", &bit.led)];
-    let remarks =
-        remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", doc::plain(remark.as_ref()?))));
-    let sentences = std::iter::once(format!("{title}: bit {}{severity}", bit.bit)).chain(remarks);
-    let sentence = sentences.map(|text| doc::sentence_of(&text)).collect::<Vec<_>>().join(" ");
-    let comment = doc::item(protocol, &bit.doc, &sentence, Some(&word.doc));
-    quote!(#comment pub const #name: Self = Self(#mask);)
-}
-
-fn severity_name(severity: Severity) -> &'static str {
-    match severity {
-        Severity::State => "state",
-        Severity::Alarm => "alarm",
-        Severity::Fault => "fault",
-    }
-}
-
-fn row(bit: &StatusBit) -> TokenStream {
-    let constructor = bit.severity.map_or_else(|| format_ident!("new"), |severity| ident(severity_name(severity)));
-    let (number, name) = (Literal::u8_unsuffixed(bit.bit), &bit.name);
-    let title = bit.doc.title.clone().unwrap_or_else(|| bit.name.replace('_', " "));
-    quote!(StatusBit::#constructor(#number, #name, #title))
-}
-
 /// Emits a struct of the parts of a packed value, with their text.
-pub fn packed(
-    protocol: &Protocol,
-    name: &Ident,
-    message: &Message,
-    signal: &Signal,
-    derives: Derives,
-) -> Option<TokenStream> {
-    let Encoding::Packed { pieces, parts } = &signal.encoding else { return None };
-    let titled = if signal.doc.title.is_some() { &signal.doc } else { &message.doc };
-    let sentence = doc::sentence_of(&doc::title(titled, &signal.name));
-    let comment = doc::line(format!("{sentence} Written as `{}`.", format(pieces, parts)));
-    let members = parts.iter().map(|part| member(protocol, part, signal));
-    let constants = parts.iter().map(|part| screaming(&part.name));
-    let first = first_byte(signal);
-    let places = parts.iter().map(|part| Written::new(part.place).counted_from(first).expression());
-    let word = packed_word(name, signal, pieces, parts);
-    let optional = derives.word(name);
-    Some(quote! {
+pub fn packed(packed: &Packed, derives: Derives) -> TokenStream {
+    let Packed { name, comment, parts, .. } = packed;
+    let (optional, word) = (derives.word(name), packed_word(packed));
+    let members = parts.iter().map(|PackedPart { member, comment, kind, .. }| quote!(#comment pub #member: #kind));
+    let constants = parts.iter().map(|PackedPart { constant, place, .. }| quote!(const #constant: Place = #place;));
+    quote! {
         #comment
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct #name { #(#members),* }
 
         impl #name {
-            #(const #constants: Place = #places;)*
+            #(#constants)*
 
             /// Returns the text, or `None` if it would not give the same value.
             #[must_use]
@@ -211,14 +156,13 @@ pub fn packed(
         }
 
         #optional
-    })
+    }
 }
 
-fn packed_word(name: &Ident, signal: &Signal, pieces: &[Piece], parts: &Table<PartId, Signal>) -> TokenStream {
-    let bytes = Literal::u8_unsuffixed(signal.place.width() / 8);
-    let fields: Vec<_> = parts.iter().map(|part| ident(&part.name)).collect();
-    let constants: Vec<_> = parts.iter().map(|part| screaming(&part.name)).collect();
-    let pieces = pieces.iter().map(|known| piece(known, parts));
+fn packed_word(Packed { name, bytes, parts, pieces, .. }: &Packed) -> TokenStream {
+    let fields: Vec<_> = parts.iter().map(|part| &part.member).collect();
+    let constants: Vec<_> = parts.iter().map(|part| &part.constant).collect();
+    let pieces = pieces.iter().map(piece);
     quote! {
         impl Word for #name {
             type Raw = u64;
@@ -236,55 +180,15 @@ fn packed_word(name: &Ident, signal: &Signal, pieces: &[Piece], parts: &Table<Pa
     }
 }
 
-fn first_byte(signal: &Signal) -> u8 {
-    u8::try_from(u64::from_be_bytes(signal.place.mask()).leading_zeros() / 8).unwrap_or(0)
-}
-
-/// Writes the form of the text as in the spec.
-fn format(pieces: &[Piece], parts: &Table<PartId, Signal>) -> String {
-    let piece = |piece: &Piece| match piece {
-        Piece::Literal(literal) => literal.clone(),
-        Piece::Part { part, digits: None } => format!("{{{}}}", parts[*part].name),
-        Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", parts[*part].name),
-    };
-    pieces.iter().map(piece).collect()
-}
-
-fn member(protocol: &Protocol, part: &Signal, signal: &Signal) -> TokenStream {
-    let (name, width) = (ident(&part.name), part.place.width());
-    let is_text = matches!(part.encoding, Encoding::Text);
-    let title = doc::title(&part.doc, &part.name);
-    let range = part.range.map_or_else(String::new, |range| format!(", `{}..={}`", range.minimum, range.maximum));
-    let sentence = doc::sentence_of(&format!("{title}: {}{range}", Written::new(part.place).text()));
-    let comment = doc::item(protocol, &part.doc, &sentence, Some(&signal.doc));
-    let kind = if is_text { text_type(width) } else { integer(width, false) };
-    quote!(#comment pub #name: #kind)
-}
-
-/// Returns the type of a text of so many bits.
-pub fn text_type(width: u8) -> TokenStream {
-    let bytes = Literal::u8_unsuffixed(width / 8);
-    quote!(Text<#bytes>)
-}
-
-fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> TokenStream {
-    let (part, digits) = match piece {
+fn piece(piece: &Piece) -> TokenStream {
+    let (place, digits, limits) = match piece {
         Piece::Literal(literal) => return quote!(Piece::Literal(#literal)),
-        Piece::Part { part, digits } => (&parts[*part], digits),
+        Piece::Text(place) => return quote!(Piece::Text(Self::#place)),
+        Piece::Number { place, digits, limits } => (place, digits, limits),
     };
-    let place = screaming(&part.name);
-    if matches!(part.encoding, Encoding::Text) {
-        return quote!(Piece::Text(Self::#place));
-    }
-    let limits = part.range.map(|range| {
-        let (minimum, maximum) = (decimal(range.minimum.numerator()), decimal(range.maximum.numerator()));
-        quote!(.limits(#minimum, #maximum))
-    });
+    let limits = limits.iter().map(|(minimum, maximum)| quote!(.limits(#minimum, #maximum)));
     match digits {
-        None => quote!(Piece::number(Self::#place) #limits),
-        Some(digits) => {
-            let digits = Literal::usize_unsuffixed(*digits);
-            quote!(Piece::digits(Self::#place, #digits) #limits)
-        }
+        None => quote!(Piece::number(Self::#place) #(#limits)*),
+        Some(digits) => quote!(Piece::digits(Self::#place, #digits) #(#limits)*),
     }
 }

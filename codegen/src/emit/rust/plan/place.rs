@@ -3,7 +3,7 @@
 use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 
 /// A place as bytes, and bits of the word that they make.
 pub struct Written {
@@ -31,16 +31,6 @@ impl Written {
         Self { first: self.first.saturating_sub(byte), last: self.last.saturating_sub(byte), ..self }
     }
 
-    /// Writes the expression.
-    pub fn expression(&self) -> TokenStream {
-        let [first, last] = [self.first, self.last].map(Literal::u8_unsuffixed);
-        let word =
-            if self.first == self.last { quote!(Place::byte(#first)) } else { quote!(Place::bytes(#first, #last)) };
-        let Some((high, low)) = self.bits else { return word };
-        let (high_bit, low_bit) = (Literal::u8_unsuffixed(high), Literal::u8_unsuffixed(low));
-        if high == low { quote!(#word.bit(#high_bit)) } else { quote!(#word.bits(#high_bit, #low_bit)) }
-    }
-
     /// Writes the place for people.
     pub fn text(&self) -> String {
         let bytes = match (self.first, self.last) {
@@ -55,13 +45,27 @@ impl Written {
     }
 }
 
+impl ToTokens for Written {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        let [first, last] = [self.first, self.last].map(Literal::u8_unsuffixed);
+        tokens.extend(if self.first == self.last {
+            quote!(Place::byte(#first))
+        } else {
+            quote!(Place::bytes(#first, #last))
+        });
+        let Some((high, low)) = self.bits else { return };
+        let (high_bit, low_bit) = (Literal::u8_unsuffixed(high), Literal::u8_unsuffixed(low));
+        tokens.extend(if high == low { quote!(.bit(#high_bit)) } else { quote!(.bits(#high_bit, #low_bit)) });
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn written(place: Place) -> (String, String) {
         let written = Written::new(place);
-        (written.expression().to_string().replace(' ', ""), written.text())
+        (written.to_token_stream().to_string().replace(' ', ""), written.text())
     }
 
     #[test]

@@ -25,13 +25,48 @@ pub fn rows(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<FrameId>>> {
 }
 
 /// Returns the lengths of frames, the shortest first, by their constants in the identifier, in the same order.
-pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
+fn all_lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
     let groups = course.choice.iter().flat_map(|choice| choice.ends());
     in_order(groups.map(|group| {
         let frames: Vec<_> = group.choice.iter().flat_map(|choice| choice.ends()).flatten().copied().collect();
         let lengths = group.lengths.iter().map(|(length, _)| *length).collect();
         row(protocol, &frames, |constant| constant.in_identifier().is_some(), lengths)
     }))
+}
+
+/// Returns the lengths of frames by their constants in the identifier, unless fewer constants say the same.
+pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
+    let mut measured: Vec<Row<Vec<u8>>> = Vec::new();
+    for row in all_lengths(protocol, course).into_iter().rev() {
+        let less = measured.iter().rfind(|less| implies(&row.constants, &less.constants));
+        if less.is_none_or(|less| less.outcome != row.outcome) {
+            measured.push(row);
+        }
+    }
+    measured.reverse();
+    measured
+}
+
+/// What is so where one of these sets of constants holds.
+pub struct Arm<T> {
+    /// The sets.
+    pub sets: Vec<Constants>,
+    /// What is so.
+    pub outcome: T,
+}
+
+/// Joins rows with the same outcome, where no row between them holds for the same frame.
+pub fn joined<T: PartialEq>(rows: Vec<Row<T>>) -> Vec<Arm<T>> {
+    let mut joined: Vec<Arm<T>> = Vec::new();
+    for row in rows {
+        let is_apart = |other: &Arm<T>| !other.sets.iter().any(|set| agree(set, &row.constants));
+        let same = joined.iter().rposition(|other| other.outcome == row.outcome);
+        match same.filter(|same| joined[same + 1..].iter().all(is_apart)) {
+            Some(same) => joined[same].sets.push(row.constants),
+            None => joined.push(Arm { sets: vec![row.constants], outcome: row.outcome }),
+        }
+    }
+    joined
 }
 
 /// Makes a row of what frames show between them.
@@ -55,12 +90,12 @@ fn in_order<T>(rows: impl Iterator<Item = Row<T>>) -> Vec<Row<T>> {
 }
 
 /// Tests whether whatever shows the one set of constants shows the other one too.
-pub fn implies(set: &Constants, other: &Constants) -> bool {
+fn implies(set: &Constants, other: &Constants) -> bool {
     other.iter().all(|(selector, value)| set.get(selector) == Some(value))
 }
 
 /// Tests whether a frame can show both sets.
-pub fn agree(set: &Constants, other: &Constants) -> bool {
+fn agree(set: &Constants, other: &Constants) -> bool {
     other.iter().all(|(selector, value)| set.get(selector).is_none_or(|known| known == value))
 }
 

@@ -1,34 +1,48 @@
 //! Documentation comments.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use crate::model::{Doc, Protocol};
 
 /// The longest line of text behind `/// `.
 const WIDTH: usize = 100;
 
-/// Makes a documentation comment of paragraphs.
-pub fn comment(paragraphs: impl IntoIterator<Item = String>) -> TokenStream {
-    let mut lines: Vec<String> = Vec::new();
-    for paragraph in paragraphs {
-        if !lines.is_empty() {
-            lines.push(String::new());
+/// A documentation comment, line by line.
+#[derive(Clone)]
+pub struct Comment {
+    lines: Vec<String>,
+}
+
+impl Comment {
+    /// Makes a comment of paragraphs.
+    pub fn new(paragraphs: impl IntoIterator<Item = String>) -> Self {
+        let mut lines: Vec<String> = Vec::new();
+        for paragraph in paragraphs {
+            if !lines.is_empty() {
+                lines.push(String::new());
+            }
+            lines.extend(wrapped(&paragraph));
         }
-        lines.extend(wrapped(&paragraph));
+        Self { lines }
     }
-    let lines = lines.iter().map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
-    quote!(#(#[doc = #lines])*)
+
+    /// Makes a comment of one sentence.
+    pub fn line(text: impl Into<String>) -> Self {
+        Self::new([text.into()])
+    }
+
+    /// Makes the comment of an item of the spec: a sentence, where it stands in the document, its note and its errata.
+    pub fn item(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> Self {
+        Self::new(paragraphs(protocol, doc, sentence, outer))
+    }
 }
 
-/// Makes a documentation comment of one sentence.
-pub fn line(text: impl Into<String>) -> TokenStream {
-    comment([text.into()])
-}
-
-/// Makes the comment of an item of the spec: a sentence, where it stands in the document, its note and its errata.
-pub fn item(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> TokenStream {
-    comment(paragraphs(protocol, doc, sentence, outer))
+impl ToTokens for Comment {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        let lines = self.lines.iter().map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
+        tokens.extend(quote!(#(#[doc = #lines])*));
+    }
 }
 
 /// Returns the paragraphs of an item's comment; what the outer item says already is not repeated.

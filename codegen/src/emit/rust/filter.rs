@@ -1,0 +1,53 @@
+//! What frames show: of every frame, of the selectors in the data, and of those with constants.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::plan::identifier::Base;
+use super::plan::selector::{Filter, InData, Source};
+
+/// Emits what every frame shows.
+pub fn base(Base { extended, bits, constants, sent, .. }: &Base) -> TokenStream {
+    let width = if *extended { quote!(EXTENDED) } else { quote!(STANDARD) };
+    let bits = bits.iter().map(|(mask, value)| quote!(.id_bits(#mask, #value)));
+    let constants = constants.iter().map(|(place, value)| quote!(.id(Identifier::#place, #value)));
+    let sent = sent.iter().map(|(place, value)| quote!(.send_id(Identifier::#place, #value)));
+    quote! {
+        /// What every frame shows.
+        const FRAME: Filter = Filter::#width #(#bits)* #(#constants)* #(#sent)*;
+    }
+}
+
+/// Emits the filter of replies that are no error replies.
+pub fn normal(base: &Base) -> TokenStream {
+    let normal = base.normal.iter().map(|(place, value)| quote!(.id(Identifier::#place, #value)));
+    quote!(FRAME #(#normal)*)
+}
+
+/// Emits the constant of a selector in the data.
+pub fn in_data(InData { constant, comment, name, place, normal }: &InData) -> TokenStream {
+    let normal = normal.iter().map(|normal| quote!(.normal(#normal)));
+    quote!(#comment pub const #constant: Selector = Selector::new(#name, #place) #(#normal)*;)
+}
+
+/// Emits the field that says whether more frames of a set follow.
+pub fn continuation((source, raw): &(Source, TokenStream)) -> TokenStream {
+    let value = match source {
+        Source::Identifier(place) => quote!(Continuation::identifier(Identifier::#place, #raw)),
+        Source::Data(selector) => quote!(Continuation::data(#selector.place, #raw)),
+    };
+    quote! {
+        /// The field that says whether more frames of a set follow.
+        pub const CONTINUATION: Continuation = #value;
+    }
+}
+
+/// Emits a filter.
+pub fn filter(Filter { selectors, constants }: &Filter) -> TokenStream {
+    let constants = constants.iter().map(|(source, value)| match source {
+        Source::Identifier(place) => quote!(.id(Identifier::#place, #value)),
+        Source::Data(selector) => quote!(.data(#selector.place, #value)),
+    });
+    let selectors = (!selectors.is_empty()).then(|| quote!(.selectors(&[#(#selectors),*])));
+    quote!(FRAME #selectors #(#constants)*)
+}

@@ -1,0 +1,127 @@
+//! What generated Rust consists of: every item with its names, types, comments and relations, settled once.
+
+pub mod address;
+pub mod doc;
+mod encoding;
+pub mod exchange;
+pub mod identifier;
+mod literal;
+pub mod message;
+pub mod models;
+pub mod naming;
+pub mod place;
+pub mod recognition;
+pub mod rows;
+pub mod selector;
+pub mod set;
+pub mod signal;
+mod types;
+pub mod variant;
+pub mod word;
+
+use proc_macro2::TokenStream;
+
+use crate::emit::Options;
+use crate::model::{MessageId, Protocol, SelectorPlace, Table};
+use address::{AddressType, Mode, Targets};
+use exchange::{Access, Accesses};
+use identifier::{Base, Identifier};
+use message::Message;
+use models::Models;
+use recognition::Direction;
+use selector::{InData, Selectors, Source};
+use set::Set;
+use signal::Context;
+use types::Types;
+use variant::Variant;
+use word::{Enumeration, Packed, StatusWord};
+
+/// A whole module.
+pub struct Plan {
+    /// What every frame shows.
+    pub base: Base,
+    /// Every selector.
+    pub selectors: Selectors,
+    /// The constants of the selectors in the data.
+    pub in_data: Vec<InData>,
+    /// The identifier.
+    pub identifier: Identifier,
+    /// The field that says whether more frames of a set follow, and the value that says so, if there are sets.
+    pub continuation: Option<(Source, TokenStream)>,
+    /// Whom requests address.
+    pub targets: Option<Targets>,
+    /// Kinds of addresses.
+    pub address_types: Vec<AddressType>,
+    /// Addressing modes.
+    pub modes: Vec<Mode>,
+    /// What messages share of each access.
+    pub accesses: Vec<Access>,
+    /// Device models.
+    pub models: Models,
+    /// Named values.
+    pub enumerations: Vec<Enumeration>,
+    /// Status words.
+    pub status_words: Vec<StatusWord>,
+    /// Packed values.
+    pub packed: Vec<Packed>,
+    /// Messages.
+    pub messages: Table<MessageId, Message>,
+    /// The messages that are sets.
+    pub sets: Table<MessageId, Option<Set>>,
+    /// The variants of the enum of all messages.
+    pub variants: Vec<Variant>,
+    /// How requests are recognised, if there are any.
+    pub requests: Option<Direction>,
+    /// How replies and reports are recognised, if there are any.
+    pub replies: Option<Direction>,
+}
+
+impl Plan {
+    /// Settles what the module of a protocol consists of.
+    pub fn new(protocol: &Protocol, options: &Options) -> Self {
+        let (types, selectors) = (&Types::new(protocol), selector::selectors(protocol));
+        let (models, accesses) = (Models::new(protocol, options.float), Accesses::new(protocol, &selectors));
+        let context = &Context { protocol, types, models: &models, float: options.float };
+        let planner = message::Planner { context, selectors: &selectors, accesses: &accesses };
+        let messages = protocol.messages.ids().map(|id| planner.message(id)).collect();
+        let planner = recognition::Planner { protocol, types, selectors: &selectors, messages: &messages };
+        let course = &protocol.recognition;
+        Self {
+            base: Base::new(&protocol.identifier),
+            in_data: selector::in_data(protocol, &selectors),
+            identifier: Identifier::new(protocol, types),
+            continuation: continuation(protocol, &selectors),
+            targets: Targets::new(protocol),
+            address_types: protocol.address_types.iter().map(|known| AddressType::new(protocol, known)).collect(),
+            modes: protocol.modes.iter().map(|mode| Mode::new(protocol, mode)).collect(),
+            enumerations: Enumeration::all(protocol, types),
+            status_words: StatusWord::all(protocol, types),
+            packed: Packed::all(protocol, types),
+            sets: protocol.messages.ids().map(|id| Set::new(protocol, types, &messages, id)).collect(),
+            variants: variant::variants(protocol, types),
+            requests: planner.direction(&course.requests),
+            replies: planner.direction(&course.replies),
+            accesses: accesses.shared,
+            models,
+            messages,
+            selectors,
+        }
+    }
+}
+
+/// Finds the field that says whether more frames of a set follow, if there are sets.
+fn continuation(protocol: &Protocol, selectors: &Selectors) -> Option<(Source, TokenStream)> {
+    protocol.messages.iter().find(|message| message.set.is_some())?;
+    let continuation = protocol.continuation()?;
+    let raw = |width| literal::hexadecimal(continuation.raw, width);
+    match continuation.place {
+        SelectorPlace::Identifier(field) => {
+            let (place, width) = identifier::field_place(protocol, field);
+            Some((Source::Identifier(place), raw(width)))
+        }
+        SelectorPlace::Payload(place) => {
+            let id = protocol.selectors.position(|selector| selector.place == continuation.place)?;
+            Some((selectors[id].source.clone(), raw(place.width())))
+        }
+    }
+}

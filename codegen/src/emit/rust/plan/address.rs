@@ -1,0 +1,232 @@
+//! Addresses, addressing modes, and the targets of requests.
+
+use proc_macro2::{Ident, TokenStream};
+
+use super::doc::{self, Comment};
+use super::identifier::field_place;
+use super::literal::{decimal, hexadecimal};
+use super::naming::{Pool, camel_case, ident, screaming};
+use crate::model::{self, AddressPattern, Doc, ModeId, Protocol, Table};
+
+/// A kind of address.
+pub struct AddressType {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The name in the spec.
+    pub name: String,
+    /// First documented number.
+    pub first: TokenStream,
+    /// Last documented number.
+    pub last: TokenStream,
+    /// Number of raw 0, unless it is 0.
+    pub offset: Option<TokenStream>,
+    /// Whether numbers fall as raw values rise.
+    pub descending: bool,
+    /// Whether a number outside the range is something else.
+    pub strict: bool,
+    /// The number that is sent unless the caller says otherwise.
+    pub send: Option<TokenStream>,
+}
+
+/// An addressing mode.
+pub struct Mode {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The name in the spec.
+    pub name: String,
+    /// The constant of the kind of address that the caller chooses.
+    pub target: Option<Ident>,
+    /// What requests show, and replies of one, of each and of the coordinator.
+    pub patterns: [Option<Pattern>; 4],
+}
+
+/// Constants and addresses that an identifier must show.
+pub struct Pattern {
+    /// Places of fields, and their values.
+    pub constants: Vec<(Ident, TokenStream)>,
+    /// Fields that hold addresses.
+    pub addresses: Vec<Address>,
+}
+
+/// A field that holds an address.
+pub struct Address {
+    /// Place of the field.
+    pub place: Ident,
+    /// Constant of the kind of address.
+    pub kind: Ident,
+    /// First and last raw value of the ranges that belong to somebody else.
+    pub excluded: Vec<(TokenStream, TokenStream)>,
+}
+
+/// Whom requests address.
+pub struct Targets {
+    /// The variants, one for each mode that has requests.
+    pub variants: Vec<Target>,
+    /// The kind of address that requests are sent from.
+    pub sender: Option<Sender>,
+}
+
+/// A target.
+pub struct Target {
+    /// Its variant.
+    pub variant: Ident,
+    /// Comment of the variant.
+    pub comment: Comment,
+    /// The mode.
+    pub mode: ModeId,
+    /// Type of its number, if it has one.
+    pub number: Option<Number>,
+}
+
+/// The kind of address that requests are sent from.
+pub struct Sender {
+    /// The argument.
+    pub argument: Ident,
+    /// Type of its number.
+    pub number: Number,
+    /// Comment of the method.
+    pub comment: Comment,
+}
+
+/// The type of an address number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Number {
+    /// Eight bits.
+    U8,
+    /// Sixteen bits.
+    U16,
+    /// Any number.
+    I32,
+}
+
+impl Number {
+    /// All types.
+    pub const ALL: [Self; 3] = [Self::U8, Self::U16, Self::I32];
+
+    fn of(address: &model::AddressType) -> Self {
+        match (address.first, address.last) {
+            (0.., ..=0xFF) => Self::U8,
+            (0.., ..=0xFFFF) => Self::U16,
+            _ => Self::I32,
+        }
+    }
+}
+
+impl AddressType {
+    /// Plans a kind of address.
+    pub fn new(protocol: &Protocol, address: &model::AddressType) -> Self {
+        let title = doc::title(&address.doc, &address.name);
+        let sentence = doc::sentence_of(&format!("{title}: {}", range(address)));
+        Self {
+            constant: address_name(&address.name),
+            comment: Comment::item(protocol, &address.doc, &sentence, None),
+            name: address.name.clone(),
+            first: number(address.first),
+            last: number(address.last),
+            offset: (address.offset != 0).then(|| number(address.offset)),
+            descending: address.sign < 0,
+            strict: address.strict,
+            send: address.send.map(number),
+        }
+    }
+}
+
+/// Writes the documented numbers for people.
+fn range(address: &model::AddressType) -> String {
+    format!("`0x{:02X}..=0x{:02X}`", address.first, address.last)
+}
+
+/// Writes an address number: hexadecimal as in documents, decimal if it is negative.
+fn number(number: i64) -> TokenStream {
+    u32::try_from(number).map_or_else(|_| decimal(number), |number| hexadecimal(number, 8))
+}
+
+/// Names the constant of an address type.
+pub fn address_name(name: &str) -> Ident {
+    ident(&format!("{}_ADDRESS", name.to_ascii_uppercase()))
+}
+
+impl Mode {
+    /// Plans a mode.
+    pub fn new(protocol: &Protocol, mode: &model::Mode) -> Self {
+        let sentence = doc::sentence_of(&doc::title(&mode.doc, &mode.name));
+        let patterns = [&mode.request, &mode.one, &mode.each, &mode.coordinator];
+        Self {
+            constant: ident(&format!("{}_MODE", mode.name.to_ascii_uppercase())),
+            comment: Comment::item(protocol, &mode.doc, &sentence, None),
+            name: mode.name.clone(),
+            target: mode.target.map(|id| address_name(&protocol[id].name)),
+            patterns: patterns.map(|known| Some(Pattern::new(protocol, known.as_ref()?))),
+        }
+    }
+}
+
+impl Pattern {
+    fn new(protocol: &Protocol, pattern: &AddressPattern) -> Self {
+        let fields = protocol.identifier.fields.iter().filter(|field| pattern.mask & field.mask() != 0);
+        let constants =
+            fields.map(|field| (screaming(&field.name), hexadecimal(field.get(pattern.value), field.width)));
+        let addresses = pattern.addresses.iter().map(|known| Address::new(protocol, known));
+        Self { constants: constants.collect(), addresses: addresses.collect() }
+    }
+}
+
+impl Address {
+    fn new(protocol: &Protocol, address: &model::Address) -> Self {
+        let (place, width) = field_place(protocol, address.field);
+        let kind = &protocol[address.address_type];
+        let excluded = address.excluded.iter().filter(|_| !kind.strict);
+        let excluded = excluded.map(|(first, last)| (hexadecimal(*first, width), hexadecimal(*last, width)));
+        Self { place, kind: address_name(&kind.name), excluded: excluded.collect() }
+    }
+}
+
+impl Targets {
+    /// Plans the targets; `None` if nobody sends requests.
+    pub fn new(protocol: &Protocol) -> Option<Self> {
+        let names = target_names(protocol);
+        let modes = protocol.modes.entries().filter(|(_, mode)| mode.request.is_some());
+        let variants: Vec<_> = modes.map(|(id, mode)| Target::new(protocol, &names[id], id, mode)).collect();
+        (!variants.is_empty()).then(|| Self { variants, sender: sender(protocol).map(Sender::new) })
+    }
+}
+
+fn target_names(protocol: &Protocol) -> Table<ModeId, Ident> {
+    let mut variants = Pool::default();
+    protocol.modes.map(|mode| variants.take(camel_case(protocol.target_name(mode)), "Mode"))
+}
+
+impl Target {
+    fn new(protocol: &Protocol, name: &Ident, id: ModeId, mode: &model::Mode) -> Self {
+        let address = mode.target.map(|address| &protocol[address]);
+        let numbers = address.map_or_else(String::new, |address| format!(": {}", range(address)));
+        let sentence = doc::sentence_of(&format!("{}{numbers}", doc::title(&mode.doc, &mode.name)));
+        let errata_elsewhere = Doc { errata: Vec::new(), ..mode.doc.clone() };
+        Self {
+            variant: name.clone(),
+            comment: Comment::item(protocol, &errata_elsewhere, &sentence, None),
+            mode: id,
+            number: address.map(Number::of),
+        }
+    }
+}
+
+/// Finds the kind of address that a request is sent from.
+fn sender(protocol: &Protocol) -> Option<&model::AddressType> {
+    let requests = protocol.modes.iter().filter_map(|mode| Some((mode, mode.request.as_ref()?)));
+    let mut senders = requests.flat_map(|(mode, request)| {
+        request.addresses.iter().filter(|address| Some(address.address_type) != mode.target)
+    });
+    senders.next().map(|address| &protocol[address.address_type])
+}
+
+impl Sender {
+    fn new(sender: &model::AddressType) -> Self {
+        let text = format!("Returns the route from another `{}` than the usual one: {}.", sender.name, range(sender));
+        Self { argument: ident(&sender.name), number: Number::of(sender), comment: Comment::line(text) }
+    }
+}

@@ -1,0 +1,204 @@
+//! What each encoding is in Rust: its type, and how values are read and written.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::literal::{decimal, ends, physical, physical_type};
+use crate::emit::Float;
+use crate::model::{Doc, Encoding, EnumerationId, PartId, Piece, Protocol, Range, Signal, StatusWordId, Table};
+use crate::number::Rational;
+use crate::syntax::tree::Path;
+
+/// The types that words have of their own.
+pub struct Words<'a> {
+    /// Named values.
+    pub enumerations: &'a Table<EnumerationId, Ident>,
+    /// Status words.
+    pub statuses: &'a Table<StatusWordId, Ident>,
+    /// The packed value of a signal.
+    pub packed: Option<&'a Ident>,
+}
+
+/// What a signal's encoding is in Rust.
+pub struct Coding {
+    /// Type of the raw value.
+    pub raw: TokenStream,
+    /// Whether the value is calculated from the raw one.
+    pub is_scaled: bool,
+    /// Whether the value can be an infinity or no number.
+    pub is_float: bool,
+    /// Numerator and denominator of the step, unless it is 1.
+    pub scale: Option<[TokenStream; 2]>,
+    /// Numerator and denominator of the value of raw 0, unless it is 0.
+    pub offset: Option<[TokenStream; 2]>,
+    /// How limits are compared.
+    pub limits: Limits,
+    /// What the comment says of both.
+    pub step: Option<String>,
+    /// The type of the spec that is a type in Rust too.
+    pub documented: Option<Path>,
+}
+
+impl Coding {
+    /// Returns what a signal is in Rust.
+    pub fn new(protocol: &Protocol, words: &Words, signal: &Signal) -> Self {
+        let width = signal.place.width();
+        match &signal.encoding {
+            Encoding::Number { signed, scale, offset } => Self {
+                is_scaled: !signal.encoding.is_unscaled(),
+                scale: (*scale != Rational::ONE).then(|| fraction(*scale)),
+                offset: (*offset != Rational::ZERO).then(|| fraction(*offset)),
+                limits: if whole(signal).is_some() { Limits::Raw } else { Limits::Physical },
+                step: step(signal, *scale, *offset),
+                ..Self::raw(integer(width, *signed))
+            },
+            Encoding::Float => Self {
+                is_float: true,
+                limits: if signal.ranges().next().is_some() { Limits::Double } else { Limits::Raw },
+                ..Self::raw(quote!(f32))
+            },
+            Encoding::Named(known) => Self::named(&words.enumerations[*known], &protocol[*known].doc),
+            Encoding::Status(known) => Self::named(&words.statuses[*known], &protocol[*known].doc),
+            Encoding::Text => Self::raw(text(width)),
+            Encoding::Packed { .. } => {
+                let packed = words.packed;
+                Self::raw(quote!(#packed))
+            }
+        }
+    }
+
+    /// Returns what is read and written as it is.
+    fn raw(raw: TokenStream) -> Self {
+        Self {
+            raw,
+            is_scaled: false,
+            is_float: false,
+            scale: None,
+            offset: None,
+            limits: Limits::Raw,
+            step: None,
+            documented: None,
+        }
+    }
+
+    /// Returns what has a type of its own.
+    fn named(name: &Ident, doc: &Doc) -> Self {
+        Self { documented: Some(doc.path.clone()), ..Self::raw(quote!(#name)) }
+    }
+
+    /// Returns the type of the value.
+    pub fn value(&self, float: Float) -> TokenStream {
+        if self.is_scaled { physical_type(float) } else { self.raw.clone() }
+    }
+
+    /// Returns the methods that read and write the value.
+    pub fn methods(&self) -> [Ident; 2] {
+        let names = if self.is_scaled { ["decode", "encode"] } else { ["get", "put"] };
+        names.map(|name| format_ident!("{name}"))
+    }
+
+    /// Returns the type in which limits are compared, if it is not that of the raw value.
+    pub fn physical(&self, float: Float) -> Option<TokenStream> {
+        match (self.limits, float) {
+            (Limits::Raw, _) | (Limits::Double, Float::F32) => None,
+            (Limits::Physical, _) | (Limits::Double, Float::F64) => Some(physical_type(float)),
+        }
+    }
+
+    /// Writes the ends of a range as they are compared.
+    pub fn ends(&self, range: Range, float: Float) -> [TokenStream; 2] {
+        ends(range, self.limits == Limits::Raw, float)
+    }
+
+    /// Tests whether equality of values is exact.
+    pub fn is_exact(&self) -> bool {
+        !self.is_float && !self.is_scaled
+    }
+
+    /// Writes the value that a raw value of the signal stands for.
+    pub fn value_of(&self, signal: &Signal, raw: i128, float: Float) -> TokenStream {
+        if self.is_scaled {
+            physical(signal.encoding.value_of(raw).unwrap_or(Rational::ZERO), float)
+        } else {
+            decimal(raw)
+        }
+    }
+}
+
+/// How the limits of a signal are compared with its values.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Limits {
+    /// As raw values.
+    Raw,
+    /// As physical values.
+    Physical,
+    /// In double precision if that is the type of scaled values, else as raw values.
+    Double,
+}
+
+/// Returns the type of a number that is a raw integer, and its limits too.
+pub fn whole(signal: &Signal) -> Option<TokenStream> {
+    match signal.encoding {
+        Encoding::Number { signed, .. } => {
+            let is_whole = signal.encoding.is_unscaled() && signal.has_whole_limits();
+            is_whole.then(|| integer(signal.place.width(), signed))
+        }
+        Encoding::Float | Encoding::Named(_) | Encoding::Status(_) | Encoding::Text | Encoding::Packed { .. } => None,
+    }
+}
+
+fn fraction(number: Rational) -> [TokenStream; 2] {
+    [number.numerator(), number.denominator()].map(decimal)
+}
+
+fn step(signal: &Signal, scale: Rational, offset: Rational) -> Option<String> {
+    let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
+    let step = (scale != Rational::ONE).then(|| format!("steps of {scale}{unit}"));
+    let offset = (offset != Rational::ZERO).then(|| format!("raw 0 is {offset}{unit}"));
+    let facts: Vec<_> = step.into_iter().chain(offset).collect();
+    (!facts.is_empty()).then(|| facts.join(", "))
+}
+
+/// Returns the smallest integer type of so many bits.
+pub fn integer(width: u8, signed: bool) -> TokenStream {
+    let size = width.next_power_of_two().max(8);
+    let name = if signed { format_ident!("i{size}") } else { format_ident!("u{size}") };
+    quote!(#name)
+}
+
+/// Returns the type of a text of so many bits.
+fn text(width: u8) -> TokenStream {
+    let bytes = Literal::u8_unsuffixed(width / 8);
+    quote!(Text<#bytes>)
+}
+
+/// Returns what a packed value consists of; `None` of what is one value.
+pub fn parts(encoding: &Encoding) -> Option<(&[Piece], &Table<PartId, Signal>)> {
+    match encoding {
+        Encoding::Packed { pieces, parts } => Some((pieces, parts)),
+        Encoding::Number { .. } | Encoding::Float | Encoding::Named(_) | Encoding::Status(_) | Encoding::Text => None,
+    }
+}
+
+/// What a part of a packed value is in Rust.
+pub enum Part {
+    /// A number of this type.
+    Number(TokenStream),
+    /// A text of this type.
+    Text(TokenStream),
+}
+
+impl Part {
+    /// Returns what a part is in Rust.
+    pub fn new(part: &Signal) -> Self {
+        let width = part.place.width();
+        match part.encoding {
+            Encoding::Text => Self::Text(text(width)),
+            Encoding::Number { .. }
+            | Encoding::Float
+            | Encoding::Named(_)
+            | Encoding::Status(_)
+            | Encoding::Packed { .. } => Self::Number(integer(width, false)),
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! How messages travel: each access once, and what each message adds to it.
+
+use proc_macro2::{Ident, TokenStream};
+
+use super::doc::{self, Comment};
+use super::literal::decimal;
+use super::models::Models;
+use super::naming::ident;
+use super::selector::{Filter, Selectors};
+use crate::model::{
+    AccessId, Answers, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
+};
+
+/// What messages share of each access, and which of it each message has.
+pub struct Accesses {
+    /// What they share.
+    pub shared: Vec<Access>,
+    /// The constant of what each message has, by its exchanges.
+    constants: Table<MessageId, Table<ExchangeId, Ident>>,
+}
+
+/// An access as messages share it.
+pub struct Access {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The name in the spec.
+    pub name: String,
+    /// Who answers, by addressing mode.
+    pub answers: Vec<Option<Who>>,
+    /// Whether requests carry values.
+    pub has_values: bool,
+    /// The set of which messages are members.
+    pub member_of: Option<String>,
+    /// The method that adds a kind of frame, and what such frames show.
+    pub frames: Vec<(Ident, Filter)>,
+}
+
+/// How a message travels by one of its accesses.
+pub struct Exchange {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The constant of what it shares with others.
+    pub shared: Ident,
+    /// The message's name in the spec.
+    pub message: String,
+    /// What its frames show.
+    pub filter: Filter,
+    /// Who answers, if not as the access says.
+    pub answers: Option<Vec<Option<Who>>>,
+    /// Data bytes of its frames, if not eight.
+    pub length: Option<TokenStream>,
+    /// Variants of the only device models that have it; empty if all have.
+    pub models: Vec<Ident>,
+    /// What the frame shows that refuses its request.
+    pub refusal: Option<Filter>,
+}
+
+/// A way to use an access, which messages share.
+struct Way {
+    constant: Ident,
+    access: AccessId,
+    /// The set of which the messages are members.
+    set: Option<MessageId>,
+    frames: Vec<Shown>,
+}
+
+/// What one kind of frame shows, whatever the message.
+#[derive(PartialEq)]
+struct Shown {
+    kind: Kind,
+    has_values: bool,
+    selectors: Vec<SelectorId>,
+    constants: Vec<Constant>,
+}
+
+impl Accesses {
+    /// Plans what messages share.
+    pub fn new(protocol: &Protocol, selectors: &Selectors) -> Self {
+        let ways = ways(protocol);
+        let constant = |message: &Message, id: ExchangeId| {
+            let (known, frames) = (&message[id], frames(protocol, message, id));
+            let is_its = |way: &&Way| (way.access, way.set) == (known.access, known.set) && way.frames == frames;
+            ways.iter().find(is_its).map(|way| way.constant.clone())
+        };
+        let of_message = |message: &Message| message.exchanges.ids().filter_map(|id| constant(message, id)).collect();
+        let constants = protocol.messages.map(of_message);
+        let shared = ways.iter().map(|way| Access::new(protocol, selectors, &ways, way)).collect();
+        Self { shared, constants }
+    }
+
+    /// Returns the constant of what a message shares with others.
+    pub fn constant(&self, message: MessageId, exchange: ExchangeId) -> &Ident {
+        &self.constants[message][exchange]
+    }
+}
+
+/// Returns the ways to use each access; several are told apart by number.
+fn ways(protocol: &Protocol) -> Vec<Way> {
+    let mut known: Vec<Way> = Vec::new();
+    for (access, of) in protocol.accesses.entries() {
+        for (message, id, set) in protocol.messages.iter().flat_map(|message| exchanges(message, access)) {
+            let frames = frames(protocol, message, id);
+            let same: Vec<_> = known.iter().filter(|way| way.access == access && way.set == set).collect();
+            if same.iter().all(|way| way.frames != frames) {
+                let suffix = if same.is_empty() { String::new() } else { format!("_{}", same.len() + 1) };
+                let name = exchange_name(protocol, &of.name, set).to_ascii_uppercase();
+                known.push(Way { constant: ident(&format!("{name}_ACCESS{suffix}")), access, set, frames });
+            }
+        }
+    }
+    known
+}
+
+/// Returns how a message travels by an access, alone and as a member of sets.
+fn exchanges(message: &Message, access: AccessId) -> impl Iterator<Item = (&Message, ExchangeId, Option<MessageId>)> {
+    let known = message.exchanges.entries().filter(move |(_, exchange)| exchange.access == access);
+    known.map(move |(id, exchange)| (message, id, exchange.set))
+}
+
+fn frames(protocol: &Protocol, message: &Message, exchange: ExchangeId) -> Vec<Shown> {
+    let frames = protocol.frames_of(message).filter(|frame| frame.exchange == exchange);
+    let frames = frames.map(|frame| Shown::new(message, frame));
+    frames.chain(Shown::whole(message)).collect()
+}
+
+impl Shown {
+    fn new(message: &Message, frame: &FrameLayout) -> Self {
+        Self {
+            kind: frame.kind,
+            has_values: frame.kind == Kind::Request && !frame.signals.is_empty(),
+            selectors: frame.selectors.clone(),
+            constants: frame.constants.iter().copied().filter(|known| !message.constants.contains(known)).collect(),
+        }
+    }
+
+    /// Returns what every reply of a set shows, if the message is one.
+    fn whole(message: &Message) -> Option<Self> {
+        let constants = message.set.as_ref()?.replies.clone();
+        let payload = constants.iter().filter(|constant| constant.in_payload().is_some());
+        let selectors = payload.map(|constant| constant.selector).collect();
+        let constants = constants.into_iter().filter(|known| !message.constants.contains(known)).collect();
+        Some(Self { kind: Kind::Reply, has_values: false, selectors, constants })
+    }
+}
+
+impl Access {
+    fn new(protocol: &Protocol, selectors: &Selectors, ways: &[Way], way: &Way) -> Self {
+        let known = &protocol[way.access];
+        let is_one_of_several = ways.iter().filter(|other| other.access == way.access).count() > 1;
+        let shows = is_one_of_several.then(|| shows(protocol, &way.frames));
+        let sentence = format!("{}{}", doc::title(&known.doc, &known.name), membership(protocol, way.set));
+        let paragraphs = doc::paragraphs(protocol, &known.doc, &doc::sentence_of(&sentence), None);
+        let paragraphs = paragraphs.into_iter().chain(shows).chain([modes(protocol, &known.answers)]);
+        let filter = |frame: &Shown| Filter::new(selectors, &frame.selectors, &frame.constants);
+        Self {
+            constant: way.constant.clone(),
+            comment: Comment::new(paragraphs.filter(|text| !text.is_empty())),
+            name: known.name.clone(),
+            answers: known.answers.to_vec(),
+            has_values: way.frames.iter().any(|frame| frame.has_values),
+            member_of: way.set.map(|set| protocol[set].name.clone()),
+            frames: way.frames.iter().map(|frame| (ident(frame.kind.name()), filter(frame))).collect(),
+        }
+    }
+}
+
+/// Says by which constants one way to use an access differs from the others.
+fn shows(protocol: &Protocol, frames: &[Shown]) -> String {
+    let facts = frames.iter().flat_map(|frame| {
+        let facts = frame.constants.iter().map(|Constant { selector, value, .. }| {
+            format!("In a {}, `{}` is `{value:#X}`.", frame.kind.name(), protocol[*selector].name)
+        });
+        facts.collect::<Vec<_>>()
+    });
+    facts.collect::<Vec<_>>().join(" ")
+}
+
+/// Says in which modes a request can be sent, and who answers.
+fn modes(protocol: &Protocol, answers: &Answers) -> String {
+    let modes = protocol.modes.iter().zip(answers).filter_map(|(mode, who)| {
+        let who = match (*who)? {
+            Who::One => "the module answers",
+            Who::Each => "each module answers",
+            Who::Coordinator => "one answers for all",
+            Who::Nobody => "nobody answers",
+        };
+        Some(format!("`{}`: {who}.", mode.name))
+    });
+    modes.collect::<Vec<_>>().join(" ")
+}
+
+/// Says who answers requests by an exchange, if not as its access says.
+pub fn own_modes(protocol: &Protocol, message: &Message, id: ExchangeId) -> Option<String> {
+    let own = &message[id];
+    (own.answers != protocol[own.access].answers).then(|| modes(protocol, &own.answers))
+}
+
+/// Names the exchange or the method of a member of a set.
+pub fn exchange_name(protocol: &Protocol, access: &str, set: Option<MessageId>) -> String {
+    set.map_or_else(|| access.to_owned(), |set| format!("{access}_{}", protocol[set].name))
+}
+
+/// Says as a member of which set a message travels.
+fn membership(protocol: &Protocol, set: Option<MessageId>) -> String {
+    set.map_or_else(String::new, |set| format!(" in the set `{}`", protocol[set].name))
+}
+
+impl Exchange {
+    /// Plans how a message travels; `constant` and `shared` are those of the exchange.
+    pub fn new(
+        protocol: &Protocol,
+        (selectors, models): (&Selectors, &Models),
+        (constant, shared): (&Ident, &Ident),
+        message: &Message,
+        id: ExchangeId,
+    ) -> Self {
+        let exchange = &message[id];
+        let known = &protocol[exchange.access];
+        let (set, period) = (membership(protocol, exchange.set), period(protocol, message, exchange.access));
+        let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
+        Self {
+            constant: constant.clone(),
+            comment: Comment::line(format!("How it travels by `{}`{set}.{period}", known.name)),
+            shared: shared.clone(),
+            message: message.name.clone(),
+            filter: Filter::new(selectors, &[], &message.constants),
+            answers: (exchange.answers != known.answers).then(|| exchange.answers.to_vec()),
+            length: (message.length != 8).then(|| decimal(message.length)),
+            models: message.models.iter().map(|model| models.variant(*model).clone()).collect(),
+            refusal: refusal.map(|refusal| Filter::new(selectors, &refusal.selectors, &refusal.constants)),
+        }
+    }
+}
+
+/// Says how often a report comes.
+fn period(protocol: &Protocol, message: &Message, access: AccessId) -> String {
+    let every = message.every.or(protocol[access].every);
+    let timing = every.map(|id| &protocol[id]);
+    timing.map_or_else(String::new, |timing| {
+        let (first, last, unit) = (timing.range.minimum, timing.range.maximum, timing.unit.symbol);
+        if first == last {
+            format!(" It comes every {first} {unit}.")
+        } else {
+            format!(" It comes every {first} to {last} {unit}.")
+        }
+    })
+}

@@ -1,0 +1,182 @@
+//! The identifier: its fields, what every frame shows in it, and how it shows the direction.
+
+use proc_macro2::{Ident, TokenStream};
+
+use super::doc::{self, Comment};
+use super::encoding::integer;
+use super::literal::{decimal, hexadecimal};
+use super::naming::{ident, screaming};
+use super::types::Types;
+use crate::model::{self, Direction, FieldId, FieldTest, Foreign, Protocol};
+
+/// The identifier.
+pub struct Identifier {
+    /// Comment of its struct.
+    pub comment: Comment,
+    /// Its fields from the most to the least significant bit.
+    pub fields: Vec<Field>,
+    /// The fixed bits that are no field and are 1.
+    pub ones: Option<TokenStream>,
+    /// How it shows that it is somebody else's, if it can.
+    pub foreign: Option<Test>,
+    /// How it shows that a frame goes to a module.
+    pub to_module: Test,
+    /// How it shows that a frame goes to the controller.
+    pub to_controller: Test,
+}
+
+/// A field of the identifier.
+pub struct Field {
+    /// Comment of the member.
+    pub comment: Comment,
+    /// Member of the struct.
+    pub member: Ident,
+    /// Type of the member.
+    pub kind: TokenStream,
+    /// Comment of the place.
+    pub place_comment: Comment,
+    /// Constant of the place.
+    pub place: Ident,
+    /// Most and least significant bit.
+    pub bits: [TokenStream; 2],
+}
+
+/// What every frame shows.
+pub struct Base {
+    /// 29 bits rather than 11.
+    pub extended: bool,
+    /// Mask and value of the fixed bits that are no field.
+    pub bits: Option<(TokenStream, TokenStream)>,
+    /// Places of the constant fields, and their values.
+    pub constants: Vec<(Ident, TokenStream)>,
+    /// Places of the other fields that are sent with a value of their own.
+    pub sent: Vec<(Ident, TokenStream)>,
+    /// Places of the fields that tell an error reply, and their values in others.
+    pub normal: Vec<(Ident, TokenStream)>,
+}
+
+/// A test of an identifier: all tests of one of these lists hold.
+#[derive(Default)]
+pub struct Test {
+    /// The lists.
+    pub any: Vec<Vec<Comparison>>,
+}
+
+impl Test {
+    /// Says whether the outcome depends on the identifier.
+    pub fn reads(&self) -> bool {
+        self.any.iter().any(|tests| !tests.is_empty())
+    }
+}
+
+/// A test of one value.
+pub struct Comparison {
+    /// Place of the field; `None` for the identifier as a whole.
+    pub place: Option<Ident>,
+    /// Whether the value lies in one of the ranges, rather than in none.
+    pub inside: bool,
+    /// First and last value of each.
+    pub ranges: Vec<Range>,
+}
+
+/// A range of values.
+pub enum Range {
+    /// One value.
+    One(TokenStream),
+    /// First and last value.
+    Span(TokenStream, TokenStream),
+}
+
+impl Identifier {
+    /// Plans the identifier.
+    pub fn new(protocol: &Protocol, types: &Types) -> Self {
+        let model::Identifier { extended, fields, .. } = &protocol.identifier;
+        let (_, ones) = unnamed(&protocol.identifier);
+        let foreign: Vec<_> = protocol.foreign.iter().map(|known| foreign(protocol, known)).collect();
+        Self {
+            comment: Comment::line(format!("The {}-bit identifier of a frame.", if *extended { 29 } else { 11 })),
+            fields: fields.iter().map(|field| Field::new(protocol, types, field)).collect(),
+            ones: (ones != 0).then(|| hexadecimal(ones, 32)),
+            foreign: (!foreign.is_empty()).then_some(Test { any: foreign }),
+            to_module: direction(protocol, &protocol.recognition.to_module),
+            to_controller: direction(protocol, &protocol.recognition.to_controller),
+        }
+    }
+}
+
+impl Field {
+    fn new(protocol: &Protocol, types: &Types, field: &model::IdentifierField) -> Self {
+        let sentence = doc::sentence_of(&format!("{}: {}", doc::title(&field.doc, &field.name), bits(field)));
+        Self {
+            comment: Comment::item(protocol, &field.doc, &sentence, None),
+            member: ident(&field.name),
+            kind: field.enumeration.map_or_else(|| integer(field.width, false), |id| types.enumeration(id)),
+            place_comment: Comment::line(format!("Place of `{}`.", field.name)),
+            place: screaming(&field.name),
+            bits: [field.shift + field.width - 1, field.shift].map(decimal),
+        }
+    }
+}
+
+fn bits(field: &model::IdentifierField) -> String {
+    match (field.shift, field.width) {
+        (shift, 1) => format!("bit {shift}"),
+        (shift, width) => format!("bits {}..{shift}", shift + width - 1),
+    }
+}
+
+impl Base {
+    /// Plans what every frame shows.
+    pub fn new(identifier: &model::Identifier) -> Self {
+        let (mask, value) = unnamed(identifier);
+        let fields = |value: &dyn Fn(&model::IdentifierField) -> Option<u32>| -> Vec<_> {
+            let shown = identifier.fields.iter().filter_map(|field| Some((field, value(field)?)));
+            shown.map(|(field, value)| (screaming(&field.name), hexadecimal(value, field.width))).collect()
+        };
+        Self {
+            extended: identifier.extended,
+            bits: (mask != 0).then(|| (hexadecimal(mask, 32), hexadecimal(value, 32))),
+            constants: fields(&|field| field.constant),
+            sent: fields(&|field| (field.constant.is_none() && field.sent() != 0).then(|| field.sent())),
+            normal: fields(&|field| field.normal),
+        }
+    }
+}
+
+/// Returns mask and value of the fixed bits that are no field.
+fn unnamed(identifier: &model::Identifier) -> (u32, u32) {
+    let constants = identifier.fields.iter().filter(|field| field.constant.is_some());
+    let mask = constants.fold(identifier.mask, |mask, field| mask & !field.mask());
+    (mask, identifier.value & mask)
+}
+
+fn foreign(protocol: &Protocol, foreign: &Foreign) -> Vec<Comparison> {
+    let tests = foreign.ranges.iter().map(|(field, first, last)| {
+        let width = field.map_or(29, |field| protocol[field].width);
+        let ranges = vec![range((*first, *last), width)];
+        Comparison { place: field.map(|field| field_place(protocol, field).0), inside: true, ranges }
+    });
+    tests.collect()
+}
+
+fn direction(protocol: &Protocol, direction: &Direction) -> Test {
+    let lists = direction.any.iter().map(|tests| tests.iter().map(|test| field_test(protocol, test)).collect());
+    Test { any: lists.collect() }
+}
+
+fn field_test(protocol: &Protocol, test: &FieldTest) -> Comparison {
+    let (place, width) = field_place(protocol, test.field);
+    let ranges = test.ranges.iter().map(|ends| range(*ends, width)).collect();
+    Comparison { place: Some(place), inside: test.inside, ranges }
+}
+
+fn range((first, last): (u32, u32), width: u8) -> Range {
+    let (start, end) = (hexadecimal(first, width), hexadecimal(last, width));
+    if first == last { Range::One(start) } else { Range::Span(start, end) }
+}
+
+/// Returns the constant of a field's place, and the field's width.
+pub fn field_place(protocol: &Protocol, field: FieldId) -> (Ident, u8) {
+    let field = &protocol[field];
+    (screaming(&field.name), field.width)
+}

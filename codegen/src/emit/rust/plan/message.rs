@@ -1,0 +1,235 @@
+//! Messages: their structs, exchanges and requests.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::doc::{self, Comment};
+use super::exchange::{Accesses, Exchange, exchange_name, own_modes};
+use super::literal;
+use super::models::depends_on_model;
+use super::naming::Pool;
+use super::selector::Selectors;
+use super::signal::{Context, Signal};
+use super::types;
+use crate::model::{self, ExchangeId, FrameLayout, Kind, MessageId, SignalId, Table};
+
+/// A message.
+pub struct Message {
+    /// The struct of its own.
+    pub home: Ident,
+    /// First paragraphs of the comment of its structs.
+    pub paragraphs: Vec<String>,
+    /// What it is called in the list of all messages.
+    pub title: String,
+    /// The selectors that choose it, and their values.
+    pub constants: Vec<(String, TokenStream)>,
+    /// Its signals.
+    pub signals: Table<SignalId, Signal>,
+    /// How it travels.
+    pub exchanges: Table<ExchangeId, Exchange>,
+    /// The methods that build its requests, by exchange.
+    pub methods: Table<ExchangeId, Ident>,
+    /// Its structs.
+    pub structs: Vec<Struct>,
+}
+
+/// A struct of a message.
+pub struct Struct {
+    /// Its name.
+    pub name: Ident,
+    /// Whether it is the message's own, which has the constants.
+    pub is_home: bool,
+    /// The signals whose values it has.
+    pub signals: Vec<SignalId>,
+    /// Whether equality is exact.
+    pub is_exact: bool,
+    /// The bits that the document reserves, if it has signals.
+    pub reserved: Option<TokenStream>,
+    /// The methods that build requests.
+    pub requests: Vec<Request>,
+    /// What it becomes within the limits of a device model.
+    pub within: Option<Within>,
+}
+
+/// A method that builds a request.
+#[derive(Clone)]
+pub struct Request {
+    /// Its name.
+    pub method: Ident,
+    /// Comment of the method.
+    pub comment: Comment,
+    /// The path of the exchange.
+    pub exchange: TokenStream,
+    /// Type of what replies carry.
+    pub reply: TokenStream,
+    /// Whether the request carries the values of the struct.
+    pub carries: bool,
+}
+
+/// Values within the limits of a device model.
+pub struct Within {
+    /// The path of the exchange by which they are tested.
+    pub exchange: TokenStream,
+    /// The methods that build requests.
+    pub requests: Vec<Request>,
+}
+
+/// What messages are planned from.
+pub struct Planner<'a> {
+    /// Of what signals are planned.
+    pub context: &'a Context<'a>,
+    /// Selectors.
+    pub selectors: &'a Selectors,
+    /// What messages share of each access.
+    pub accesses: &'a Accesses,
+}
+
+impl Planner<'_> {
+    /// Plans a message.
+    pub fn message(&self, id: MessageId) -> Message {
+        let Context { protocol, types, .. } = *self.context;
+        let (known, home, mut members) = (&protocol[id], types.home(id), Pool::of_members());
+        let signals = self.context.signals(id, &mut members);
+        let names = known.exchanges.map(|own| exchange_name(protocol, &protocol[own.access].name, own.set));
+        let constants = names.map(|name| members.take(name.to_ascii_uppercase(), "_EXCHANGE"));
+        let methods = names.map(|name| members.take(name.clone(), "_request"));
+        let ways = Ways { constants: &constants, methods: &methods };
+        let structs = types.structs[id].iter().map(|own| self.structure(id, &signals, &ways, own)).collect();
+        let sentence = doc::sentence_of(&doc::title(&known.doc, &known.name));
+        Message {
+            home: home.clone(),
+            paragraphs: doc::paragraphs(protocol, &known.doc, &sentence, None),
+            title: known.doc.title.clone().unwrap_or_else(|| known.name.replace('_', " ")),
+            constants: self.constants(known),
+            exchanges: known.exchanges.ids().map(|exchange| self.exchange(id, exchange, &constants)).collect(),
+            signals,
+            structs,
+            methods,
+        }
+    }
+
+    fn constants(&self, message: &model::Message) -> Vec<(String, TokenStream)> {
+        let constants = message.constants.iter();
+        let name = |constant: &model::Constant| self.context.protocol[constant.selector].name.clone();
+        constants.map(|known| (name(known), self.selectors[known.selector].value(known.value))).collect()
+    }
+
+    fn exchange(&self, id: MessageId, exchange: ExchangeId, constants: &Table<ExchangeId, Ident>) -> Exchange {
+        let Context { protocol, models, .. } = *self.context;
+        let names = (&constants[exchange], self.accesses.constant(id, exchange));
+        Exchange::new(protocol, (self.selectors, models), names, &protocol[id], exchange)
+    }
+
+    fn structure(&self, id: MessageId, signals: &Table<SignalId, Signal>, ways: &Ways, own: &types::Struct) -> Struct {
+        let Context { protocol, types, .. } = *self.context;
+        let home = types.home(id);
+        let host = Host { id, name: &own.name, is_home: own.name == *home };
+        let hosted: Vec<_> = self.hosted(&host).collect();
+        let dependent: Vec<_> = hosted.iter().filter(|frame| depends_on_model(protocol, frame)).copied().collect();
+        let frame = protocol.frames_of(&protocol[id]).find(|frame| frame.signals == own.signals);
+        let frame = frame.filter(|_| !own.signals.is_empty());
+        Struct {
+            name: own.name.clone(),
+            is_home: host.is_home,
+            is_exact: own.signals.iter().all(|signal| signals[*signal].coding.is_exact()),
+            signals: own.signals.clone(),
+            reserved: frame.map(reserved),
+            requests: hosted.iter().map(|frame| self.request(&host, ways, frame)).collect(),
+            within: dependent.first().map(|first| Within {
+                exchange: self.exchange_path(&host, ways, first),
+                requests: dependent.iter().map(|frame| self.request_of_model(&host, ways, frame)).collect(),
+            }),
+        }
+    }
+
+    /// Returns the requests whose methods a struct has: those that carry it, and of a message's own struct those that
+    /// carry nothing.
+    fn hosted<'a>(&'a self, host: &'a Host) -> impl Iterator<Item = &'a FrameLayout> {
+        let Context { protocol, types, .. } = *self.context;
+        let frames = protocol[host.id].frames.iter().filter(|id| {
+            let frame = &protocol[**id];
+            let carried = types.frames[**id].carried.as_ref();
+            frame.kind == Kind::Request
+                && frame.set.is_none()
+                && carried.map_or(host.is_home, |carried| carried == host.name)
+        });
+        frames.map(|id| &protocol[*id])
+    }
+
+    fn request(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
+        let carries = !frame.signals.is_empty();
+        let (values, refused) =
+            if carries { (" with these values", "values outside their limits, ") } else { ("", "") };
+        let reply = match self.reply(frame) {
+            None => quote!(()),
+            Some(name) if name == host.name => quote!(Self),
+            Some(name) => quote!(#name),
+        };
+        Request {
+            method: ways.methods[frame.exchange].clone(),
+            comment: Comment::new(self.request_comment(frame, values, refused)),
+            exchange: self.exchange_path(host, ways, frame),
+            reply,
+            carries,
+        }
+    }
+
+    /// Plans the method that builds a request to a device model.
+    fn request_of_model(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
+        let home = self.context.types.home(host.id);
+        let exchange = &ways.constants[frame.exchange];
+        let reply = self.reply(frame).map_or_else(|| quote!(()), |name| quote!(#name));
+        Request {
+            comment: Comment::new(self.request_comment(frame, " with these values", "")),
+            exchange: quote!(#home::#exchange),
+            reply,
+            ..self.request(host, ways, frame)
+        }
+    }
+
+    /// Describes a method; what holds for all messages stands at the access.
+    fn request_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> Vec<String> {
+        let protocol = self.context.protocol;
+        let shared = self.accesses.constant(frame.message, frame.exchange);
+        let first = format!("Builds the request [`{}`]({shared}){values}.", protocol[frame.access].name);
+        let modes = own_modes(protocol, &protocol[frame.message], frame.exchange);
+        let errors = format!("Refuses {refused}other addressing modes, and undocumented addresses.");
+        std::iter::once(first).chain(modes).chain(["# Errors".to_owned(), errors]).collect()
+    }
+
+    /// Returns the struct that the reply carries.
+    fn reply(&self, request: &FrameLayout) -> Option<&Ident> {
+        let Context { protocol, types, .. } = *self.context;
+        let mut frames = protocol[request.message].frames.iter();
+        let reply = frames.find(|id| {
+            let frame = &protocol[**id];
+            frame.exchange == request.exchange && frame.kind == Kind::Reply
+        });
+        types.frames[*reply?].carried.as_ref()
+    }
+
+    /// Returns the path to the exchange by which a kind of frame travels, from the struct that hosts its method.
+    fn exchange_path(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> TokenStream {
+        let (home, exchange) = (self.context.types.home(host.id), &ways.constants[frame.exchange]);
+        if host.is_home { quote!(Self::#exchange) } else { quote!(#home::#exchange) }
+    }
+}
+
+/// The names of a message's exchanges, and of the methods that build their requests.
+struct Ways<'a> {
+    constants: &'a Table<ExchangeId, Ident>,
+    methods: &'a Table<ExchangeId, Ident>,
+}
+
+/// A struct that has methods.
+struct Host<'a> {
+    id: MessageId,
+    name: &'a Ident,
+    is_home: bool,
+}
+
+/// Writes the bits of the data that neither signals nor selectors cover.
+fn reserved(frame: &FrameLayout) -> TokenStream {
+    let present = u64::MAX.checked_shl(64 - 8 * u32::from(frame.length)).unwrap_or(0);
+    literal::data((!frame.covered & present).to_be_bytes())
+}

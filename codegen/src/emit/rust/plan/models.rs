@@ -1,0 +1,137 @@
+//! Device models, and the limits that depend on them.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::format_ident;
+
+use super::doc::{self, Comment};
+use super::encoding::whole;
+use super::literal::{ends, physical_type};
+use super::naming::{Pool, model_variant};
+use crate::emit::Float;
+use crate::model::{FrameLayout, Kind, ModelId, Protocol, Range, Signal, SignalId, Table};
+use crate::syntax::tree::Step;
+
+/// Device models.
+pub struct Models {
+    /// The models.
+    pub rows: Table<ModelId, Model>,
+    /// Whether the values of some request depend on the model.
+    pub has_within: bool,
+    /// Limits by device model, which signals share.
+    pub limits: Vec<Limits>,
+    sources: Vec<Source>,
+}
+
+/// What limits are made of: the ranges, and the type of those that are integers.
+#[derive(PartialEq)]
+struct Source {
+    ranges: Table<ModelId, Option<Range>>,
+    whole: Option<String>,
+}
+
+impl Source {
+    fn new(protocol: &Protocol, signal: &Signal) -> Self {
+        let ranges = protocol.models.ids().map(|model| signal.range_for(Some(model))).collect();
+        Self { ranges, whole: whole(signal).map(|kind| kind.to_string()) }
+    }
+}
+
+/// A device model.
+pub struct Model {
+    /// Its variant.
+    pub variant: Ident,
+    /// Comment of the variant.
+    pub comment: Comment,
+    /// The vendor's name.
+    pub name: String,
+}
+
+/// Limits by device model.
+pub struct Limits {
+    /// Their constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// Type of a limit.
+    pub kind: TokenStream,
+    /// Variants of the models, and their lowest and highest value.
+    pub rows: Vec<(Ident, Option<[TokenStream; 2]>)>,
+}
+
+impl Models {
+    /// Plans the device models.
+    pub fn new(protocol: &Protocol, float: Float) -> Self {
+        let mut variants = Pool::default();
+        let rows = protocol.models.map(|model| {
+            let title = model.doc.title.as_ref().map_or_else(String::new, |title| format!(": {}", doc::plain(title)));
+            let sentence = doc::sentence_of(&format!("`{}`{title}", model.name));
+            Model {
+                variant: variants.take(model_variant(&model.name), "_"),
+                comment: Comment::item(protocol, &model.doc, &sentence, None),
+                name: model.name.clone(),
+            }
+        });
+        let has_within = protocol.frames.iter().any(|frame| depends_on_model(protocol, frame));
+        let mut models = Self { rows, has_within, limits: Vec::new(), sources: Vec::new() };
+        for signal in protocol.messages.iter().flat_map(|message| &message.signals) {
+            models.add_limits(protocol, signal, float);
+        }
+        models
+    }
+
+    /// Adds the limits of a signal, unless another has the same.
+    fn add_limits(&mut self, protocol: &Protocol, signal: &Signal, float: Float) {
+        if signal.model_ranges.is_empty() || self.limits_of(protocol, signal).is_some() {
+            return;
+        }
+        let source = Source::new(protocol, signal);
+        let limits = self.limits(signal, &source.ranges, float);
+        self.limits.push(limits);
+        self.sources.push(source);
+    }
+
+    fn limits(&self, signal: &Signal, ranges: &Table<ModelId, Option<Range>>, float: Float) -> Limits {
+        let of = type_name(signal).unwrap_or(&signal.name);
+        let mut name = format!("{}_LIMITS", of.to_ascii_uppercase());
+        while self.limits.iter().any(|limits| limits.constant == name) {
+            name.push('_');
+        }
+        let (kind, is_whole) = (whole(signal), whole(signal).is_some());
+        let ends = |range: Range| ends(range, is_whole, float);
+        let rows = ranges.iter().zip(&self.rows).map(|(range, model)| (model.variant.clone(), range.map(ends)));
+        Limits {
+            constant: format_ident!("{name}"),
+            comment: Comment::line(format!("Limits of `{of}` by device model.")),
+            kind: kind.unwrap_or_else(|| physical_type(float)),
+            rows: rows.collect(),
+        }
+    }
+
+    /// Returns the constant of the limits that a signal has by device model.
+    pub fn limits_of(&self, protocol: &Protocol, signal: &Signal) -> Option<&Ident> {
+        let source = Source::new(protocol, signal);
+        let known = self.limits.iter().zip(&self.sources).filter(|_| !signal.model_ranges.is_empty());
+        known.into_iter().find(|(_, known)| **known == source).map(|(limits, _)| &limits.constant)
+    }
+
+    /// Returns the variant of a model.
+    pub fn variant(&self, model: ModelId) -> &Ident {
+        &self.rows[model].variant
+    }
+}
+
+/// Returns the type that a model changes: the last step but one of `models.MODEL.types.TYPE.range`.
+fn type_name(signal: &Signal) -> Option<&str> {
+    let (changed, _) = signal.model_ranges.first()?.path.split()?;
+    match changed.split()? {
+        (_, Step::Key(name)) => Some(name),
+        _ => None,
+    }
+}
+
+/// Tests whether a frame is a request with values that depend on the device model.
+pub fn depends_on_model(protocol: &Protocol, frame: &FrameLayout) -> bool {
+    let has_own_limits = |(_, signal): (SignalId, &Signal)| !signal.model_ranges.is_empty();
+    let depends = !protocol[frame.message].models.is_empty() || protocol.signals_of(frame).any(has_own_limits);
+    frame.kind == Kind::Request && frame.set.is_none() && depends && !frame.signals.is_empty()
+}

@@ -1,0 +1,187 @@
+//! Rust names for the names of a spec; two items never get the same one.
+
+use proc_macro2::{Ident, Span};
+
+use crate::model::Signal;
+
+/// Types that generated code takes from the runtime or the prelude, or that every module has.
+const TAKEN: [&str; 75] = [
+    "Address",
+    "AddressType",
+    "Addressing",
+    "AnySignal",
+    "Bits",
+    "Clone",
+    "Continuation",
+    "Copy",
+    "Data",
+    "Debug",
+    "Decode",
+    "Default",
+    "Destination",
+    "Drop",
+    "Encode",
+    "Entry",
+    "Eq",
+    "Err",
+    "Error",
+    "Exchange",
+    "Failure",
+    "Filter",
+    "Fn",
+    "Frame",
+    "FrameSet",
+    "From",
+    "Hash",
+    "Identifier",
+    "IdentifierFields",
+    "Into",
+    "Iterator",
+    "Kind",
+    "Layout",
+    "Legend",
+    "Message",
+    "Meaning",
+    "Mode",
+    "Model",
+    "None",
+    "Number",
+    "Ok",
+    "Option",
+    "PartialEq",
+    "PackedText",
+    "Pattern",
+    "Payload",
+    "Piece",
+    "Place",
+    "Problem",
+    "Protocol",
+    "Raw",
+    "Reading",
+    "Received",
+    "Recognised",
+    "Replies",
+    "Reply",
+    "Report",
+    "Request",
+    "Result",
+    "Route",
+    "Selector",
+    "Self",
+    "Send",
+    "Severity",
+    "Signal",
+    "Some",
+    "StatusBit",
+    "String",
+    "Sync",
+    "Target",
+    "Task",
+    "Text",
+    "Who",
+    "Within",
+    "Word",
+];
+
+/// Methods and constants that every message has.
+const OF_MESSAGES: [&str; 13] = [
+    "RESERVED",
+    "decode",
+    "encode",
+    "signals",
+    "within",
+    "clone",
+    "eq",
+    "hash",
+    "fmt",
+    "from",
+    "into",
+    "clone_from",
+    "borrow",
+];
+
+/// Gives every name once.
+#[derive(Default)]
+pub struct Pool {
+    taken: Vec<String>,
+}
+
+impl Pool {
+    /// Returns the pool of the types of a module.
+    pub fn of_types() -> Self {
+        Self::without(TAKEN.into_iter().map(str::to_owned))
+    }
+
+    /// Returns the pool of a message's methods and constants.
+    pub fn of_members() -> Self {
+        Self::without(OF_MESSAGES.into_iter().map(str::to_owned))
+    }
+
+    /// Returns a pool in which these names are taken already.
+    pub fn without(taken: impl Iterator<Item = String>) -> Self {
+        Self { taken: taken.collect() }
+    }
+
+    /// Takes a name, with the suffix if it is taken already, and with as many more as it needs.
+    pub fn take(&mut self, name: String, suffix: &str) -> Ident {
+        let mut name = name;
+        while self.taken.contains(&name) {
+            name.push_str(suffix);
+        }
+        self.taken.push(name.clone());
+        ident(&name)
+    }
+}
+
+/// Tests whether a name is a word of the language, so that nothing can be called so.
+pub fn is_word_of_rust(name: &str) -> bool {
+    syn::parse_str::<Ident>(name).is_err()
+}
+
+/// Makes an identifier; a word of the language becomes a raw identifier.
+pub fn ident(name: &str) -> Ident {
+    match syn::parse_str::<Ident>(name) {
+        Ok(ident) => ident,
+        Err(_) if matches!(name, "self" | "super" | "crate" | "Self" | "_") => {
+            Ident::new(&format!("{name}_"), Span::call_site())
+        }
+        Err(_) => Ident::new_raw(name, Span::call_site()),
+    }
+}
+
+/// Converts `set_output` to `SetOutput`.
+pub fn camel_case(name: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
+    };
+    name.split('_').map(capital).collect()
+}
+
+/// Names the variants of an enum, and the one that keeps values without a name.
+pub fn variants<'a>(names: impl Iterator<Item = &'a str>) -> (Vec<Ident>, Ident) {
+    let mut pool = Pool::default();
+    let variants = names.map(|name| pool.take(camel_case(name), "_")).collect();
+    (variants, pool.take("Unknown".to_owned(), "Value"))
+}
+
+/// Names the variant of a device model, `SM_750_30A` as `Sm750_30a`: `_` stays between two digits alone.
+pub fn model_variant(name: &str) -> String {
+    let words = name.split('_').filter(|word| !word.is_empty());
+    words.fold(String::new(), |known, word| {
+        let word = camel_case(&word.to_ascii_lowercase());
+        let digits = known.ends_with(|last: char| last.is_ascii_digit())
+            && word.starts_with(|first: char| first.is_ascii_digit());
+        format!("{known}{}{word}", if digits { "_" } else { "" })
+    })
+}
+
+/// Converts `set_output` to `SET_OUTPUT`.
+pub fn screaming(name: &str) -> Ident {
+    ident(&name.to_ascii_uppercase())
+}
+
+/// Names the member of a signal: with the unit behind it, if there is one.
+pub fn member(signal: &Signal) -> String {
+    signal.unit.map_or_else(|| signal.name.clone(), |unit| format!("{}_{}", signal.name, unit.suffix))
+}

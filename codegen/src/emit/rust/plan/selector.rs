@@ -1,0 +1,126 @@
+//! Selectors, and the filters that are made of their constants.
+
+use proc_macro2::{Ident, TokenStream};
+
+use super::doc::{self, Comment};
+use super::literal::hexadecimal;
+use super::naming::{ident, screaming};
+use super::place::Written;
+use crate::model::{Constant, FieldId, Protocol, SelectorId, SelectorPlace, Table};
+
+/// What is read to tell frames apart.
+#[derive(Clone)]
+pub enum Source {
+    /// A field of the identifier, by the constant of its place.
+    Identifier(Ident),
+    /// Bits of the data, by the constant of the selector.
+    Data(Ident),
+}
+
+/// A selector as frames are told apart by it.
+pub struct Selector {
+    /// What is read.
+    pub source: Source,
+    /// Where it stands among others: fields of the identifier come first.
+    pub rank: (Option<SelectorId>, Option<FieldId>),
+    width: u8,
+}
+
+impl Selector {
+    /// Writes a value of the selector.
+    pub fn value(&self, value: u64) -> TokenStream {
+        hexadecimal(value, self.width)
+    }
+
+    fn new(protocol: &Protocol, id: SelectorId) -> Self {
+        match protocol[id].place {
+            SelectorPlace::Identifier(field) => {
+                let (rank, known) = ((None, Some(field)), &protocol[field]);
+                Self { source: Source::Identifier(screaming(&known.name)), rank, width: known.width }
+            }
+            SelectorPlace::Payload(place) => {
+                let rank = (Some(id), None);
+                Self { source: Source::Data(constant_name(protocol, id)), rank, width: place.width() }
+            }
+        }
+    }
+}
+
+/// Every selector.
+pub type Selectors = Table<SelectorId, Selector>;
+
+/// Returns every selector.
+pub fn selectors(protocol: &Protocol) -> Selectors {
+    protocol.selectors.ids().map(|id| Selector::new(protocol, id)).collect()
+}
+
+/// Names a payload selector's constant; two places under one name are told apart by number.
+fn constant_name(protocol: &Protocol, id: SelectorId) -> Ident {
+    let name = &protocol[id].name;
+    let earlier = protocol.selectors.entries().take_while(|(other, _)| *other < id);
+    let earlier = earlier.filter(|(_, known)| known.name == *name).count();
+    let suffix = if earlier == 0 { String::new() } else { format!("_{}", earlier + 1) };
+    ident(&format!("{}_SELECTOR{suffix}", name.to_ascii_uppercase()))
+}
+
+/// The constant of a selector in the data.
+pub struct InData {
+    /// Its name.
+    pub constant: Ident,
+    /// Its comment.
+    pub comment: Comment,
+    /// The name in the spec.
+    pub name: String,
+    /// Where it stands.
+    pub place: Written,
+    /// The value of a reply that is no error reply.
+    pub normal: Option<TokenStream>,
+}
+
+/// Returns the selectors in the data that some frame has.
+pub fn in_data(protocol: &Protocol, selectors: &Selectors) -> Vec<InData> {
+    let is_used = |id: &SelectorId| protocol.frames.iter().any(|frame| frame.selectors.contains(id));
+    let used = protocol.selectors.ids().filter(is_used);
+    used.filter_map(|id| InData::new(protocol, &selectors[id], id)).collect()
+}
+
+impl InData {
+    fn new(protocol: &Protocol, selector: &Selector, id: SelectorId) -> Option<Self> {
+        let known = &protocol[id];
+        let (SelectorPlace::Payload(place), Source::Data(constant)) = (known.place, &selector.source) else {
+            return None;
+        };
+        let place = Written::new(place);
+        let sentence = doc::sentence_of(&format!("{}: {}", doc::title(&known.doc, &known.name), place.text()));
+        Some(Self {
+            constant: constant.clone(),
+            comment: Comment::item(protocol, &known.doc, &sentence, None),
+            name: known.name.clone(),
+            place,
+            normal: known.normal.map(|normal| selector.value(normal)),
+        })
+    }
+}
+
+/// What some frames show beside what all do.
+pub struct Filter {
+    /// The constants of the selectors that they have in the data.
+    pub selectors: Vec<Ident>,
+    /// What they show, and its value.
+    pub constants: Vec<(Source, TokenStream)>,
+}
+
+impl Filter {
+    /// Makes a filter of payload selectors and constants.
+    pub fn new(known: &Selectors, selectors: &[SelectorId], constants: &[Constant]) -> Self {
+        let in_data = selectors.iter().filter_map(|id| match &known[*id].source {
+            Source::Data(constant) => Some(constant.clone()),
+            Source::Identifier(_) => None,
+        });
+        let constants = constants.iter().map(|constant| {
+            let selector = &known[constant.selector];
+            (selector.source.clone(), selector.value(constant.value))
+        });
+        Self { selectors: in_data.collect(), constants: constants.collect() }
+    }
+}

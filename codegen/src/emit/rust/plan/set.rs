@@ -1,0 +1,151 @@
+//! Sets of frames: their members, and what an assembler needs.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::address::address_name;
+use super::doc::{self, Comment};
+use super::exchange::own_modes;
+use super::message::Message;
+use super::naming::ident;
+use super::types::{Frame, Types};
+use crate::model::{self, FrameId, Kind, MessageId, Protocol, Table};
+
+/// A set of frames.
+pub struct Set {
+    /// Comment of the struct.
+    pub comment: Comment,
+    /// Whether equality is exact.
+    pub is_exact: bool,
+    /// Its members, in order.
+    pub members: Vec<Member>,
+    /// The method that builds a request for each member, if each has its own.
+    pub requests: Option<Requests>,
+    /// What an assembler needs, if replies show who sends them.
+    pub assembly: Option<Assembly>,
+}
+
+/// A member of a set.
+pub struct Member {
+    /// Member of the struct.
+    pub field: Ident,
+    /// Comment of the member.
+    pub comment: Comment,
+    /// The name in the spec.
+    pub name: String,
+    /// The struct that its reply carries.
+    pub kind: Ident,
+    /// Variant of its reply.
+    pub variant: Ident,
+    /// The path of its exchange.
+    pub exchange: TokenStream,
+}
+
+/// The method that builds a request for each member.
+pub struct Requests {
+    /// Its name.
+    pub method: Ident,
+    /// Comment of the method.
+    pub comment: Comment,
+}
+
+/// What an assembler needs.
+pub struct Assembly {
+    /// Constant of the exchange.
+    pub exchange: Ident,
+    /// Constant of the kind of address that shows who sends a reply.
+    pub node: Ident,
+    /// The pattern of what frames can carry beside the members: none, the only one, or `_`.
+    pub others: Option<TokenStream>,
+}
+
+/// What sets are planned from.
+struct Planner<'a> {
+    protocol: &'a Protocol,
+    types: &'a Types,
+    messages: &'a Table<MessageId, Message>,
+    id: MessageId,
+}
+
+impl Set {
+    /// Plans the set that a message is, if it is one.
+    pub fn new(
+        protocol: &Protocol,
+        types: &Types,
+        messages: &Table<MessageId, Message>,
+        id: MessageId,
+    ) -> Option<Self> {
+        let set = protocol[id].set.as_ref()?;
+        Some(Planner { protocol, types, messages, id }.set(set))
+    }
+}
+
+impl Planner<'_> {
+    fn set(&self, set: &model::Set) -> Set {
+        let of_members = set.members.iter().map(|member| &self.messages[*member]);
+        let members: Vec<_> = set.members.iter().filter_map(|member| self.member(*member)).collect();
+        let assembles = "An [`Assembler`](assembler::Assembler) puts it together of the frames that come.".to_owned();
+        let paragraphs = self.messages[self.id].paragraphs.iter().cloned().chain([assembles]);
+        Set {
+            comment: Comment::new(paragraphs),
+            is_exact: of_members.flat_map(|message| &message.signals).all(|signal| signal.coding.is_exact()),
+            requests: set.kinds.contains(&Kind::Request).then(|| self.requests()).flatten(),
+            assembly: self.assembly(&members),
+            members,
+        }
+    }
+
+    fn member(&self, id: MessageId) -> Option<Member> {
+        let (message, known) = (&self.protocol[id], &self.messages[id]);
+        let is_reply = |frame: &&FrameId| {
+            let frame = &self.protocol[**frame];
+            frame.kind == Kind::Reply && frame.set == Some(self.id)
+        };
+        let reply = *message.frames.iter().find(is_reply)?;
+        let Frame { variant, carried } = &self.types.frames[reply];
+        let (home, exchange) = (&known.home, &known.exchanges[self.protocol[reply].exchange].constant);
+        Some(Member {
+            field: ident(&message.name),
+            comment: Comment::line(doc::sentence_of(&doc::title(&message.doc, &message.name))),
+            name: message.name.clone(),
+            kind: carried.as_ref().unwrap_or(home).clone(),
+            variant: variant.clone(),
+            exchange: quote!(#home::#exchange),
+        })
+    }
+
+    fn requests(&self) -> Option<Requests> {
+        let message = &self.protocol[self.id];
+        let (id, own) = message.exchanges.entries().next()?;
+        let known = &self.messages[self.id];
+        let (access, shared) = (&self.protocol[own.access], &known.exchanges[id].shared);
+        let first = format!(
+            "Builds the requests [`{}`]({shared}), one for each member in the order in which they are sent.",
+            access.name
+        );
+        let modes = own_modes(self.protocol, message, id);
+        let errors = "Refuses other addressing modes, and undocumented addresses.".to_owned();
+        let paragraphs = std::iter::once(first).chain(modes).chain(["# Errors".to_owned(), errors]);
+        Some(Requests { method: known.methods[id].clone(), comment: Comment::new(paragraphs) })
+    }
+
+    fn assembly(&self, members: &[Member]) -> Option<Assembly> {
+        let (exchange, own) = (self.messages[self.id].exchanges.first()?, self.protocol[self.id].exchanges.first()?);
+        let node = &self.protocol[self.protocol.answering(own)?];
+        let (exchange, node) = (exchange.constant.clone(), address_name(&node.name));
+        Some(Assembly { exchange, node, others: self.others(members) })
+    }
+
+    fn others(&self, members: &[Member]) -> Option<TokenStream> {
+        let frames = self.types.frames.iter();
+        let others = frames.filter(|frame| members.iter().all(|member| member.variant != frame.variant));
+        let mut others: Vec<_> = others.map(|Frame { variant, carried }| (variant, carried.is_some())).collect();
+        others.dedup();
+        match others.as_slice() {
+            [] => None,
+            [(variant, true)] => Some(quote!(Message::#variant(_))),
+            [(variant, false)] => Some(quote!(Message::#variant)),
+            _ => Some(quote!(_)),
+        }
+    }
+}

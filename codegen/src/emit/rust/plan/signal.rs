@@ -1,0 +1,174 @@
+//! Signals: their constants, and the members of the structs that carry their values.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::format_ident;
+
+use super::doc::{self, Comment};
+use super::encoding::Coding;
+use super::literal::decimal;
+use super::models::Models;
+use super::naming::{Pool, member};
+use super::place::Written;
+use super::types::Types;
+use crate::emit::Float;
+use crate::model::{self, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
+use crate::syntax::tree::Path;
+
+/// A signal.
+pub struct Signal {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The name in the spec.
+    pub name: String,
+    /// Where it stands.
+    pub place: Written,
+    /// Its unit.
+    pub unit: Option<&'static str>,
+    /// What its encoding is in Rust.
+    pub coding: Coding,
+    /// Type in which limits are compared, if it is not that of the raw value.
+    pub physical: Option<TokenStream>,
+    /// Lowest and highest value where no device model is chosen.
+    pub limits: Option<[TokenStream; 2]>,
+    /// Constant of the limits by device model.
+    pub model_limits: Option<Ident>,
+    /// Raw values that are legal outside the limits.
+    pub specials: Vec<Special>,
+    /// The member of structs.
+    pub member: Member,
+}
+
+/// A raw value that is legal outside the limits.
+pub struct Special {
+    /// The raw value.
+    pub raw: TokenStream,
+    /// The name in the spec.
+    pub name: String,
+    /// Constant of the value that stands for it.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// That value.
+    pub value: TokenStream,
+}
+
+/// The member of structs that carries a signal's value.
+pub struct Member {
+    /// Its name.
+    pub name: Ident,
+    /// Comment of the member.
+    pub comment: Comment,
+    /// Its type.
+    pub kind: TokenStream,
+    /// The signal's method that reads it.
+    pub get: Ident,
+    /// The signal's method that writes it.
+    pub put: Ident,
+}
+
+/// What the signals of a protocol are planned from.
+pub struct Context<'a> {
+    /// The protocol.
+    pub protocol: &'a Protocol,
+    /// Types of the module.
+    pub types: &'a Types,
+    /// Device models.
+    pub models: &'a Models,
+    /// Type of scaled values.
+    pub float: Float,
+}
+
+impl Context<'_> {
+    /// Plans a message's signals, whose constants are among its members.
+    pub fn signals(&self, id: MessageId, members: &mut Pool) -> Table<SignalId, Signal> {
+        let (message, mut fields) = (&self.protocol[id], Pool::default());
+        let signals = message.signals.entries().map(|(signal, known)| {
+            let constant = members.take(known.name.to_ascii_uppercase(), "_SIGNAL");
+            let field = fields.take(member(known), "_");
+            self.signal(
+                message,
+                known,
+                (constant, field),
+                Coding::new(self.protocol, &self.types.words(id, signal), known),
+            )
+        });
+        signals.collect()
+    }
+
+    fn signal(
+        &self,
+        message: &Message,
+        signal: &model::Signal,
+        (constant, field): (Ident, Ident),
+        coding: Coding,
+    ) -> Signal {
+        let range = signal.hull(self.protocol.models_of(message));
+        let special = |special: &NamedValue| Special::new(&constant, signal, &coding, special, self.float);
+        Signal {
+            comment: Comment::line(format!("The signal `{}`.", signal.name)),
+            name: signal.name.clone(),
+            place: Written::new(signal.place),
+            unit: signal.unit.map(|unit| unit.symbol),
+            physical: coding.physical(self.float),
+            limits: range.map(|range| coding.ends(range, self.float)),
+            model_limits: self.models.limits_of(self.protocol, signal).cloned(),
+            specials: signal.specials.iter().map(special).collect(),
+            member: self.member(message, signal, field, &coding, range),
+            constant,
+            coding,
+        }
+    }
+
+    fn member(
+        &self,
+        message: &Message,
+        signal: &model::Signal,
+        name: Ident,
+        coding: &Coding,
+        range: Option<Range>,
+    ) -> Member {
+        let sentence = sentence(signal, coding, range);
+        let paragraphs = doc::paragraphs(self.protocol, &signal.doc, &sentence, Some(&message.doc));
+        let comment = Comment::new(paragraphs.into_iter().chain(type_notes(self.protocol, signal, coding)));
+        let [get, put] = coding.methods();
+        Member { name, comment, kind: coding.value(self.float), get, put }
+    }
+}
+
+impl Special {
+    fn new(signal: &Ident, known: &model::Signal, coding: &Coding, special: &NamedValue, float: Float) -> Self {
+        Self {
+            raw: decimal(special.raw),
+            name: special.name.clone(),
+            constant: format_ident!("{signal}_{}", special.name.to_ascii_uppercase()),
+            comment: Comment::line(format!("The value of `{}` that stands for `{}`.", known.name, special.name)),
+            value: coding.value_of(known, special.raw, float),
+        }
+    }
+}
+
+fn sentence(signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
+    let title = doc::title(&signal.doc, &signal.name);
+    let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
+    let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
+    let facts = [Some(Written::new(signal.place).text()), coding.step.clone(), range, specials(signal)];
+    let facts: Vec<_> = facts.into_iter().flatten().collect();
+    let depends = !signal.model_ranges.is_empty();
+    let model = if depends { " The limits depend on the device model." } else { "" };
+    format!("{}{model}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
+}
+
+fn specials(signal: &model::Signal) -> Option<String> {
+    let specials = signal.specials.iter().map(|special| format!("raw {} is `{}`", special.raw, special.name));
+    (!signal.specials.is_empty()).then(|| specials.collect::<Vec<_>>().join(", "))
+}
+
+/// Returns the notes of a signal's types, except of one that is a type in Rust too.
+fn type_notes(protocol: &Protocol, signal: &model::Signal, coding: &Coding) -> impl Iterator<Item = String> {
+    let paths = signal.types.iter().map(|name| Path::default().key("types").key(name));
+    let others = paths.filter(|path| coding.documented.as_ref() != Some(path));
+    let docs = others.filter_map(|path| protocol.types.iter().find(|doc| doc.path == path));
+    docs.filter_map(|doc| Some(doc::sentence_of(&doc::plain(doc.note.as_ref()?))))
+}

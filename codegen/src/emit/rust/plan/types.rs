@@ -1,0 +1,120 @@
+//! The types of a module, each with a name of its own, and what each frame carries.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::encoding::{Words, parts};
+use super::naming::{Pool, camel_case};
+use crate::model::{
+    EnumerationId, FrameId, FrameLayout, Kind, Message, MessageId, Protocol, Signal, SignalId, StatusWordId, Table,
+};
+
+/// The types of a module.
+pub struct Types {
+    /// Named values.
+    pub enumerations: Table<EnumerationId, Ident>,
+    /// Status words.
+    pub status_words: Table<StatusWordId, Ident>,
+    /// Packed values of messages.
+    pub packed: Table<MessageId, Table<SignalId, Option<Ident>>>,
+    /// Structs of messages: one for each set of signals that some frame carries; the first one is the message's own.
+    pub structs: Table<MessageId, Vec<Struct>>,
+    /// What frames are in the enum of all messages.
+    pub frames: Table<FrameId, Frame>,
+}
+
+/// A struct and the signals it has.
+pub struct Struct {
+    /// Its name.
+    pub name: Ident,
+    /// The signals.
+    pub signals: Vec<SignalId>,
+}
+
+/// What a kind of frame is in the enum of all messages.
+pub struct Frame {
+    /// Its variant.
+    pub variant: Ident,
+    /// The struct that it carries.
+    pub carried: Option<Ident>,
+}
+
+impl Types {
+    /// Names the types.
+    pub fn new(protocol: &Protocol) -> Self {
+        let mut pool = Pool::of_types();
+        let structs = protocol.messages.map(|message| structs(protocol, message, &mut pool));
+        let mut named = |name: &str, suffix| pool.take(camel_case(name), suffix);
+        let enumerations = protocol.enumerations.map(|known| named(&known.name, "Value"));
+        let status_words = protocol.status_words.map(|word| named(&word.name, "Word"));
+        let packed = protocol.messages.map(|message| message.signals.map(|signal| packed(message, signal, &mut pool)));
+        let taken = structs.iter().flatten().map(|known: &Struct| known.name.to_string());
+        let mut variants = Pool::without(taken);
+        let frames = protocol.frames.map(|frame| Frame::new(protocol, &structs, frame, &mut variants));
+        Self { enumerations, status_words, packed, structs, frames }
+    }
+
+    /// Returns the struct of a message's own.
+    pub fn home(&self, message: MessageId) -> &Ident {
+        &self.structs[message][0].name
+    }
+
+    /// Returns the types of words as a signal has them.
+    pub fn words(&self, message: MessageId, signal: SignalId) -> Words<'_> {
+        let packed = self.packed[message][signal].as_ref();
+        Words { enumerations: &self.enumerations, statuses: &self.status_words, packed }
+    }
+
+    /// Returns the type of named values.
+    pub fn enumeration(&self, id: EnumerationId) -> TokenStream {
+        let name = &self.enumerations[id];
+        quote!(#name)
+    }
+}
+
+/// Names a struct for each set of signals, the largest first; a message without signals has an empty struct.
+fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Struct> {
+    let mut sets: Vec<&FrameLayout> = Vec::new();
+    for frame in protocol.frames_of(message) {
+        if !frame.signals.is_empty() && !sets.iter().any(|known| known.signals == frame.signals) {
+            sets.push(frame);
+        }
+    }
+    sets.sort_by_key(|frame| std::cmp::Reverse(frame.signals.len()));
+    let first = sets.first().map(|frame| frame.signals.clone()).unwrap_or_default();
+    let own = Struct { name: types.take(camel_case(&message.name), "Message"), signals: first };
+    let others = sets.iter().skip(1).map(|frame| {
+        let name = format!("{}{}", camel_case(&message.name), camel_case(frame.kind.name()));
+        Struct { name: types.take(name, "Message"), signals: frame.signals.clone() }
+    });
+    std::iter::once(own).chain(others).collect()
+}
+
+fn packed(message: &Message, signal: &Signal, types: &mut Pool) -> Option<Ident> {
+    let name = if signal.name == "value" { message.name.clone() } else { format!("{}_{}", message.name, signal.name) };
+    parts(&signal.encoding).map(|_| types.take(camel_case(&name), "Value"))
+}
+
+impl Frame {
+    /// Names a variant after the struct it carries, else after the frame.
+    fn new(
+        protocol: &Protocol,
+        structs: &Table<MessageId, Vec<Struct>>,
+        frame: &FrameLayout,
+        variants: &mut Pool,
+    ) -> Self {
+        let own = structs[frame.message].iter().filter(|known| !known.signals.is_empty());
+        let carried = own.into_iter().find(|known| known.signals == frame.signals).map(|known| known.name.clone());
+        let variant = carried.clone().unwrap_or_else(|| variants.take(empty_variant(protocol, frame), "Frame"));
+        Self { variant, carried }
+    }
+}
+
+fn empty_variant(protocol: &Protocol, frame: &FrameLayout) -> String {
+    let access = camel_case(&protocol[frame.access].name);
+    let message = camel_case(&protocol[frame.message].name);
+    match frame.kind {
+        Kind::Request => format!("{access}{message}"),
+        kind @ (Kind::Reply | Kind::Report) => format!("{message}{access}{}", camel_case(kind.name())),
+    }
+}

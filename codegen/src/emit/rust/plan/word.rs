@@ -1,0 +1,258 @@
+//! Named values, status words and packed values.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+
+use super::doc::{self, Comment};
+use super::encoding::{Part, integer, parts};
+use super::literal::{decimal, hexadecimal};
+use super::naming::{ident, screaming, variants};
+use super::place::Written;
+use super::types::Types;
+use crate::model::{self, Message, PartId, Protocol, Severity, Signal, Table};
+
+/// Named values.
+pub struct Enumeration {
+    /// The type.
+    pub name: Ident,
+    /// Comment of the type.
+    pub comment: Comment,
+    /// Type of the raw value.
+    pub raw: TokenStream,
+    /// The values that have names.
+    pub values: Vec<Value>,
+    /// Variant of the others.
+    pub unknown: Ident,
+}
+
+/// A value with a name.
+pub struct Value {
+    /// Its variant.
+    pub variant: Ident,
+    /// Comment of the variant.
+    pub comment: Comment,
+    /// The raw value.
+    pub raw: TokenStream,
+    /// The name in the spec.
+    pub name: String,
+}
+
+impl Enumeration {
+    /// Plans all named values.
+    pub fn all(protocol: &Protocol, types: &Types) -> Vec<Self> {
+        let known = protocol.enumerations.iter().zip(&types.enumerations);
+        known.map(|(known, name)| Self::new(protocol, name, known)).collect()
+    }
+
+    fn new(protocol: &Protocol, name: &Ident, known: &model::Enumeration) -> Self {
+        let sentence = doc::sentence_of(&doc::title(&known.doc, &known.name));
+        let (variants, unknown) = variants(known.values.iter().map(|value| value.name.as_str()));
+        let values = known.values.iter().zip(variants).map(|(value, variant)| Value {
+            variant,
+            comment: Comment::line(format!("{}: `{}`.", value.raw, value.name)),
+            raw: decimal(value.raw),
+            name: value.name.clone(),
+        });
+        Self {
+            name: name.clone(),
+            comment: Comment::item(protocol, &known.doc, &sentence, None),
+            raw: integer(known.width, false),
+            values: values.collect(),
+            unknown,
+        }
+    }
+}
+
+/// A status word.
+pub struct StatusWord {
+    /// The type.
+    pub name: Ident,
+    /// Comment of the type.
+    pub comment: Comment,
+    /// Type of the raw value.
+    pub raw: TokenStream,
+    /// The bits that have names.
+    pub bits: Vec<StatusBit>,
+}
+
+/// A bit of a status word.
+pub struct StatusBit {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The word in which it alone is set.
+    pub mask: TokenStream,
+    /// The function that makes its row of the legend.
+    pub constructor: Ident,
+    /// Its number.
+    pub number: Literal,
+    /// The name in the spec.
+    pub name: String,
+    /// What it is called.
+    pub title: String,
+}
+
+impl StatusWord {
+    /// Plans all status words.
+    pub fn all(protocol: &Protocol, types: &Types) -> Vec<Self> {
+        let known = protocol.status_words.iter().zip(&types.status_words);
+        known.map(|(known, name)| Self::new(protocol, name, known)).collect()
+    }
+
+    fn new(protocol: &Protocol, name: &Ident, word: &model::StatusWord) -> Self {
+        let sentence = doc::sentence_of(&doc::title(&word.doc, &word.name));
+        Self {
+            name: name.clone(),
+            comment: Comment::item(protocol, &word.doc, &sentence, None),
+            raw: integer(word.width, false),
+            bits: word.bits.iter().map(|bit| StatusBit::new(protocol, word, bit)).collect(),
+        }
+    }
+}
+
+impl StatusBit {
+    fn new(protocol: &Protocol, word: &model::StatusWord, bit: &model::StatusBit) -> Self {
+        Self {
+            constant: screaming(&bit.name),
+            comment: Comment::item(protocol, &bit.doc, &bit_sentence(bit), Some(&word.doc)),
+            mask: hexadecimal(1_u64 << bit.bit, word.width.next_power_of_two().max(8)),
+            constructor: ident(bit.severity.map_or("new", severity_name)),
+            number: Literal::u8_unsuffixed(bit.bit),
+            name: bit.name.clone(),
+            title: bit.doc.title.clone().unwrap_or_else(|| bit.name.replace('_', " ")),
+        }
+    }
+}
+
+fn bit_sentence(bit: &model::StatusBit) -> String {
+    let severity = bit.severity.map_or_else(String::new, |severity| format!(", {}", severity_name(severity)));
+    let title = doc::title(&bit.doc, &bit.name);
+    let remarks =
+        [("Set when", &bit.set_when), ("Cleared when", &bit.clear_when), ("Effect:", &bit.effect), ("LED:", &bit.led)];
+    let remarks =
+        remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", doc::plain(remark.as_ref()?))));
+    let sentences = std::iter::once(format!("{title}: bit {}{severity}", bit.bit)).chain(remarks);
+    sentences.map(|text| doc::sentence_of(&text)).collect::<Vec<_>>().join(" ")
+}
+
+fn severity_name(severity: Severity) -> &'static str {
+    match severity {
+        Severity::State => "state",
+        Severity::Alarm => "alarm",
+        Severity::Fault => "fault",
+    }
+}
+
+/// A packed value.
+pub struct Packed {
+    /// The type.
+    pub name: Ident,
+    /// Comment of the type.
+    pub comment: Comment,
+    /// How many bytes it has.
+    pub bytes: Literal,
+    /// Its parts.
+    pub parts: Vec<PackedPart>,
+    /// What its text consists of.
+    pub pieces: Vec<Piece>,
+}
+
+/// A part of a packed value.
+pub struct PackedPart {
+    /// Member of the struct.
+    pub member: Ident,
+    /// Comment of the member.
+    pub comment: Comment,
+    /// Type of the member.
+    pub kind: TokenStream,
+    /// Constant of the place.
+    pub constant: Ident,
+    /// The place, counted from the first byte of the value.
+    pub place: Written,
+}
+
+/// A piece of a packed value's text.
+pub enum Piece {
+    /// A text that stands as it is.
+    Literal(String),
+    /// The text of the part at this place.
+    Text(Ident),
+    /// The number of the part at this place.
+    Number {
+        /// Constant of the place.
+        place: Ident,
+        /// To how many digits it is filled with zeros.
+        digits: Option<Literal>,
+        /// Its lowest and highest value.
+        limits: Option<(TokenStream, TokenStream)>,
+    },
+}
+
+impl Packed {
+    /// Plans all packed values.
+    pub fn all(protocol: &Protocol, types: &Types) -> Vec<Self> {
+        let messages = protocol.messages.iter().zip(&types.packed);
+        let signals = messages.flat_map(|(message, names)| {
+            message.signals.iter().zip(names).map(move |(signal, name)| (message, signal, name))
+        });
+        signals.filter_map(|(message, signal, name)| Self::new(protocol, name.as_ref()?, message, signal)).collect()
+    }
+
+    fn new(protocol: &Protocol, name: &Ident, message: &Message, signal: &Signal) -> Option<Self> {
+        let (pieces, parts) = parts(&signal.encoding)?;
+        let titled = if signal.doc.title.is_some() { &signal.doc } else { &message.doc };
+        let sentence = doc::sentence_of(&doc::title(titled, &signal.name));
+        Some(Self {
+            name: name.clone(),
+            comment: Comment::line(format!("{sentence} Written as `{}`.", format(pieces, parts))),
+            bytes: Literal::u8_unsuffixed(signal.place.width() / 8),
+            parts: parts.iter().map(|part| PackedPart::new(protocol, part, signal)).collect(),
+            pieces: pieces.iter().map(|piece| Piece::new(piece, parts)).collect(),
+        })
+    }
+}
+
+/// Writes the form of the text as in the spec.
+fn format(pieces: &[model::Piece], parts: &Table<PartId, Signal>) -> String {
+    let piece = |piece: &model::Piece| match piece {
+        model::Piece::Literal(literal) => literal.clone(),
+        model::Piece::Part { part, digits: None } => format!("{{{}}}", parts[*part].name),
+        model::Piece::Part { part, digits: Some(digits) } => format!("{{{}:{digits}}}", parts[*part].name),
+    };
+    pieces.iter().map(piece).collect()
+}
+
+impl PackedPart {
+    fn new(protocol: &Protocol, part: &Signal, signal: &Signal) -> Self {
+        let title = doc::title(&part.doc, &part.name);
+        let range = part.range.map_or_else(String::new, |range| format!(", `{}..={}`", range.minimum, range.maximum));
+        let sentence = doc::sentence_of(&format!("{title}: {}{range}", Written::new(part.place).text()));
+        let (Part::Number(kind) | Part::Text(kind)) = Part::new(part);
+        Self {
+            member: ident(&part.name),
+            comment: Comment::item(protocol, &part.doc, &sentence, Some(&signal.doc)),
+            kind,
+            constant: screaming(&part.name),
+            place: Written::new(part.place).counted_from(first_byte(signal)),
+        }
+    }
+}
+
+fn first_byte(signal: &Signal) -> u8 {
+    u8::try_from(u64::from_be_bytes(signal.place.mask()).leading_zeros() / 8).unwrap_or(0)
+}
+
+impl Piece {
+    fn new(piece: &model::Piece, parts: &Table<PartId, Signal>) -> Self {
+        let (part, digits) = match piece {
+            model::Piece::Literal(literal) => return Self::Literal(literal.clone()),
+            model::Piece::Part { part, digits } => (&parts[*part], *digits),
+        };
+        let place = screaming(&part.name);
+        let limits = part.range.map(|range| (decimal(range.minimum.numerator()), decimal(range.maximum.numerator())));
+        match Part::new(part) {
+            Part::Text(_) => Self::Text(place),
+            Part::Number(_) => Self::Number { place, digits: digits.map(Literal::usize_unsuffixed), limits },
+        }
+    }
+}
