@@ -9,14 +9,12 @@ mod exchange;
 mod filter;
 mod identifier;
 mod layout;
-mod lines;
 mod message;
 mod model;
 mod parts;
 mod plan;
 mod protocol;
 mod set;
-mod spacing;
 mod word;
 
 use proc_macro2::TokenStream;
@@ -44,8 +42,8 @@ pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
     let items = items(&Plan::new(protocol, options), derives);
     let optional = derives.imports();
     quote! {
-        pub use canspec_runtime::prelude::*;
         use canspec_runtime::plumbing::prelude::*;
+        pub use canspec_runtime::prelude::*;
         #optional
         #items
     }

@@ -56,14 +56,13 @@ fn address(Address { place, kind, excluded }: &Address) -> TokenStream {
 
 /// Emits whom requests address.
 pub fn targets(Targets { variants, sender }: &Targets, derives: Derives) -> TokenStream {
-    let optional = derives.variants();
+    let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
     let definitions = variants.iter().map(definition);
     let sender = sender.as_ref().map(sent_by);
     let destination = destination(variants);
     quote! {
         /// Whom a request addresses.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #optional
+        #attributes
         pub enum Target { #(#definitions),* }
         #sender
         #destination

@@ -1,7 +1,7 @@
 //! Optional traits: what the options add to items, each behind its switch.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use crate::emit::{Options, Switch};
 
@@ -19,42 +19,40 @@ impl<'a> Derives<'a> {
     /// Emits the imports of the crates, which the runtime passes on.
     pub fn imports(self) -> TokenStream {
         let Options { serde, defmt, arbitrary, .. } = self.options;
-        let serde = gated(
-            serde,
-            &quote!(
-                use canspec_runtime::plumbing::serde;
-            ),
-        );
-        let defmt = gated(
-            defmt,
-            &quote!(
-                use canspec_runtime::plumbing::defmt;
-            ),
-        );
-        let arbitrary = gated(
-            arbitrary,
-            &quote!(
-                use canspec_runtime::plumbing::arbitrary;
-            ),
-        );
-        quote!(#serde #defmt #arbitrary)
+        let crates = [("arbitrary", arbitrary), ("defmt", defmt), ("serde", serde)];
+        let imports = crates.map(|(name, switch)| {
+            let name = format_ident!("{name}");
+            gated(switch, &quote!(use canspec_runtime::plumbing::#name;))
+        });
+        quote!(#(#imports)*)
     }
 
-    /// Emits the attributes of a struct whose fields have the traits.
-    pub fn structure(self) -> TokenStream {
-        self.attributes(&quote!(serde(crate = "canspec_runtime::plumbing::serde")))
+    /// Emits the attributes of a struct that has these traits, and whose fields have the optional ones.
+    pub fn structure(self, traits: &TokenStream) -> TokenStream {
+        self.attributes(traits, &quote!(serde(crate = "canspec_runtime::plumbing::serde")))
     }
 
-    /// Emits the attributes of an enum whose variants go by their names in the spec.
-    pub fn variants(self) -> TokenStream {
-        self.attributes(&quote!(serde(crate = "canspec_runtime::plumbing::serde", rename_all = "snake_case")))
+    /// Emits the attributes of an enum that has these traits, and whose variants go by their names in the spec.
+    pub fn variants(self, traits: &TokenStream) -> TokenStream {
+        self.attributes(traits, &quote!(serde(crate = "canspec_runtime::plumbing::serde", rename_all = "snake_case")))
     }
 
-    fn attributes(self, of_serde: &TokenStream) -> TokenStream {
-        let derive = quote!(derive(serde::Serialize, serde::Deserialize));
-        let serde = attributes(&self.options.serde, &[&derive, of_serde]);
-        let defmt = attributes(&self.options.defmt, &[&quote!(derive(defmt::Format))]);
-        quote!(#serde #defmt)
+    fn attributes(self, traits: &TokenStream, of_serde: &TokenStream) -> TokenStream {
+        let Options { serde, defmt, .. } = self.options;
+        let (of_both, of_defmt) = (quote!(serde::Serialize, serde::Deserialize), quote!(defmt::Format));
+        let always = [(serde, &of_both), (defmt, &of_defmt)].map(|(switch, traits)| match switch {
+            Switch::Always => quote!(, #traits),
+            Switch::Never | Switch::Gated(_) => TokenStream::new(),
+        });
+        let serde = match serde {
+            Switch::Always => quote!(#[#of_serde]),
+            Switch::Never | Switch::Gated(_) => attributes(serde, &[&quote!(derive(#of_both)), of_serde]),
+        };
+        let defmt = match defmt {
+            Switch::Always => TokenStream::new(),
+            Switch::Never | Switch::Gated(_) => attributes(defmt, &[&quote!(derive(#of_defmt))]),
+        };
+        quote!(#[derive(#traits #(#always)*)] #serde #defmt)
     }
 
     /// Emits the attribute of a variant that has another name than in Rust.

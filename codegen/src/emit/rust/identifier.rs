@@ -8,7 +8,8 @@ use super::plan::identifier::{Comparison, Field, Identifier, Range, Test};
 
 /// Emits the struct of the identifier and its fields' places.
 pub fn identifier(identifier: &Identifier, derives: Derives) -> TokenStream {
-    let (comment, optional) = (&identifier.comment, derives.structure());
+    let (comment, attributes) =
+        (&identifier.comment, derives.structure(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash)));
     let members =
         identifier.fields.iter().map(|Field { comment, member, kind, .. }| quote!(#comment pub #member: #kind));
     let places = identifier.fields.iter().map(|Field { place_comment, place, bits: [high, low], .. }| {
@@ -17,8 +18,7 @@ pub fn identifier(identifier: &Identifier, derives: Derives) -> TokenStream {
     let (split, directions) = (splitting(identifier), directions(identifier));
     quote! {
         #comment
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #optional
+        #attributes
         pub struct Identifier { #(#members),* }
         impl Identifier { #(#places)* #split }
         #directions

@@ -25,8 +25,8 @@ fn definition(message: &Message, Struct { name, signals, is_exact, .. }: &Struct
     let members = signals.iter().map(|id| member(&message.signals[*id], derives));
     let eq = is_exact.then(|| quote!(, Eq, Hash));
     let body = if signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
-    let optional = derives.structure();
-    quote!(#comment #[derive(Clone, Copy, Debug, PartialEq #eq)] #optional pub struct #name #body)
+    let attributes = derives.structure(&quote!(Clone, Copy, Debug, PartialEq #eq));
+    quote!(#comment #attributes pub struct #name #body)
 }
 
 fn member(Signal { coding, member: Member { name, comment, kind, .. }, .. }: &Signal, derives: Derives) -> TokenStream {

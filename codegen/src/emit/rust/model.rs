@@ -8,7 +8,7 @@ use super::plan::models::{Limits, Model, Models};
 
 /// Emits the enum of the device models, if there are any, and the tables of their limits.
 pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives) -> Option<TokenStream> {
-    let optional = derives.structure();
+    let attributes = derives.structure(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
     let definitions = rows.iter().map(|Model { variant, comment, name }| {
         let serialized = derives.variant(name);
         quote!(#comment #serialized #variant)
@@ -21,9 +21,8 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
     (!rows.is_empty()).then(|| {
         quote! {
             /// A device model.
-            #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+            #attributes
             #[repr(u8)]
-            #optional
             pub enum Model { #(#definitions),* }
 
             impl Model {

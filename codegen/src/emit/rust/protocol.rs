@@ -68,17 +68,16 @@ fn decode_for() -> TokenStream {
 }
 
 fn definition(plan: &Plan, derives: Derives) -> TokenStream {
-    let optional = derives.variants();
     let mut signals = plan.messages.iter().flat_map(|message| &message.signals);
     let eq = signals.all(|signal| signal.coding.is_exact()).then(|| quote!(, Eq, Hash));
+    let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq #eq));
     let variants = plan.variants.iter().map(|Variant { name, comment, carried }| {
         let carried = carried.iter();
         quote!(#comment #name #((#carried))*)
     });
     quote! {
         /// Every message that a frame can carry.
-        #[derive(Clone, Copy, Debug, PartialEq #eq)]
-        #optional
+        #attributes
         pub enum Message { #(#variants),* }
     }
 }

@@ -18,10 +18,10 @@ pub fn set(message: &Message, set: &Set, derives: Derives) -> TokenStream {
 }
 
 fn definition(name: &Ident, Set { comment, is_exact, members, .. }: &Set, derives: Derives) -> TokenStream {
-    let optional = derives.structure();
     let eq = is_exact.then(|| quote!(, Eq, Hash));
+    let attributes = derives.structure(&quote!(Clone, Copy, Debug, Default, PartialEq #eq));
     let members = members.iter().map(|Member { field, comment, kind, .. }| quote!(#comment pub #field: Option<#kind>));
-    quote!(#comment #[derive(Clone, Copy, Debug, Default, PartialEq #eq)] #optional pub struct #name { #(#members),* })
+    quote!(#comment #attributes pub struct #name { #(#members),* })
 }
 
 fn implementation(message: &Message, set: &Set) -> TokenStream {

@@ -20,10 +20,16 @@ fn begins_group(lines: &[&str], index: usize) -> bool {
     let is_code = !before.trim_start().starts_with("//");
     let ends = is_code && before.ends_with([';', '}']) && !line.trim_start().starts_with('}');
     match indent(line) {
-        0 => ends && !line.starts_with("use canspec"),
+        0 => ends && (import(before).is_none() || import(before) != import(line)),
         4 => ends && (is_function(&lines[index..]) || before == "    }"),
         _ => false,
     }
+}
+
+/// Returns whether a line imports all that a module has, if it is an import.
+fn import(line: &str) -> Option<bool> {
+    let is_import = ["use ", "pub use "].iter().any(|start| line.starts_with(start));
+    is_import.then(|| line.ends_with("*;"))
 }
 
 fn indent(line: &str) -> usize {
@@ -45,11 +51,11 @@ mod tests {
 
     #[test]
     fn items_and_functions_are_set_off_but_constants_and_fields_are_not() {
-        let dense = "pub use canspec_runtime::Layout;\nuse canspec_runtime::Data;\n\
+        let dense = "pub use a::prelude::*;\nuse a::*;\nuse a::b;\nuse a::c;\n\
             /// Ends with a brace }\npub struct A {\n    pub one: u8,\n    /// Two;\n    pub two: u8,\n}\nimpl A {\n    \
             const ONE: u8 = 1;\n    const TWO: u8 = B\n        .two();\n    /// Three.\n    #[must_use]\n    pub fn three() {\n        \
             four();\n    }\n    fn five() {}\n}\n";
-        let open = "pub use canspec_runtime::Layout;\nuse canspec_runtime::Data;\n\n\
+        let open = "pub use a::prelude::*;\nuse a::*;\n\nuse a::b;\nuse a::c;\n\n\
             /// Ends with a brace }\npub struct A {\n    pub one: u8,\n    /// Two;\n    pub two: u8,\n}\n\nimpl A {\n    \
             const ONE: u8 = 1;\n    const TWO: u8 = B\n        .two();\n\n    /// Three.\n    #[must_use]\n    pub fn three() {\n        \
             four();\n    }\n\n    fn five() {}\n}\n";

@@ -1,0 +1,72 @@
+//! Where code is laid out, and how much fits there.
+
+/// The longest line.
+pub const LONGEST: usize = 120;
+
+/// How far a block or what is in brackets is indented.
+pub const STEP: usize = 4;
+
+/// The place where an expression begins.
+#[derive(Clone, Copy)]
+pub struct Shape {
+    /// How far the line is indented on which it ends, and those in between at least.
+    pub indent: usize,
+    /// The column in which it begins.
+    pub column: usize,
+    /// How many columns are kept for what follows it.
+    pub after: usize,
+    /// Whether the links of chains must stay on one line.
+    pub keeps_chains: bool,
+}
+
+impl Shape {
+    /// Returns the place of a whole line.
+    pub fn line(indent: usize) -> Self {
+        Self { indent, column: indent, after: 0, keeps_chains: false }
+    }
+
+    /// Returns the place behind some columns.
+    pub fn behind(self, columns: usize) -> Self {
+        Self { column: self.column + columns, ..self }
+    }
+
+    /// Returns the place where some more columns are kept for what follows.
+    pub fn keeping(self, columns: usize) -> Self {
+        Self { after: self.after + columns, ..self }
+    }
+
+    /// Returns the place of a line that is indented further.
+    pub fn nested(self) -> Self {
+        Self { keeps_chains: self.keeps_chains, ..Self::line(self.indent + STEP) }
+    }
+
+    /// Returns how much fits on the first line.
+    pub fn width(self) -> usize {
+        LONGEST.saturating_sub(self.column + self.after)
+    }
+}
+
+/// Returns how many columns a text takes.
+pub fn width(text: &str) -> usize {
+    text.chars().count()
+}
+
+/// Returns the first line of a text.
+pub fn first_line(text: &str) -> &str {
+    text.lines().next().unwrap_or("")
+}
+
+/// Returns the line break before a line that is indented so far.
+pub fn line_break(indent: usize) -> String {
+    format!("\n{}", " ".repeat(indent))
+}
+
+/// Tests whether a text has several lines.
+pub fn is_broken(text: &str) -> bool {
+    text.contains('\n')
+}
+
+/// Counts the line breaks of a text.
+pub fn breaks(text: &str) -> usize {
+    text.matches('\n').count()
+}
