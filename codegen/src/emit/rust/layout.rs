@@ -4,6 +4,7 @@
 
 #![expect(clippy::wildcard_enum_match_arm, reason = "the enums of syn are open; code of other kinds stays on one line")]
 
+mod assignment;
 mod brackets;
 mod chain;
 mod control;
@@ -92,9 +93,10 @@ impl Computed {
         let (before, name) = line.split_once(STAND_IN)?;
         let part = self.parts.get(name.trim_end_matches(';').parse::<usize>().ok()?)?;
         let indent = line.len() - line.trim_start().len();
+        let line = Shape::new(indent, expression::rewrite);
         match part {
-            Part::Value(value) => Some(format!("{};", expression::assigned(before.trim_end(), value, indent, 1)?)),
-            Part::Body(body) => Some(control::statements(&body.stmts, Shape::line(indent))),
+            Part::Value(value) => Some(format!("{};", assignment::assigned(before.trim_end(), value, line, 1)?)),
+            Part::Body(body) => Some(control::statements(&body.stmts, line)),
         }
     }
 }

@@ -4,7 +4,6 @@ use syn::punctuated::Punctuated;
 use syn::{Expr, Token};
 
 use super::control::closure;
-use super::expression::rewrite;
 use super::flat::flat;
 use super::shape::{STEP, Shape, breaks, first_line, is_broken, line_break, width};
 
@@ -21,7 +20,7 @@ pub fn broken(before: &str, brackets: [char; 2], items: &Punctuated<Expr, Token!
         return Some(format!("{before}{open}{items}{close}"));
     }
     let nested = shape.nested().keeping(1);
-    let lines: Vec<_> = items.iter().map(|item| rewrite(item, nested)).collect::<Option<_>>()?;
+    let lines: Vec<_> = items.iter().map(|item| nested.rewrite(item)).collect::<Option<_>>()?;
     let are_short = items.iter().zip(&lines).all(|(item, line)| is_simple(item) && width(line) <= SHORT);
     let (start, end) = (line_break(nested.indent), line_break(shape.indent));
     let lines = if are_short { filled(&lines, nested) } else { lines.join(&format!(",{start}")) };
@@ -40,11 +39,11 @@ fn last_broken(before: &str, items: &[&Expr], inside: Shape, outer: Shape) -> Op
     let keeps_chains = shape.keeps_chains || (!joins && is_chain(last));
     let text = match last {
         Expr::Closure(known) => closure(known, shape),
-        other => rewrite(other, Shape { keeps_chains, ..shape }),
+        other => Shape { keeps_chains, ..shape }.rewrite(other),
     };
     let text = text.filter(|text| width(first_line(text)) <= shape.width())?;
     let fits_alone =
-        || rewrite(last, outer.nested().keeping(1)).is_some_and(|alone| items.len() == 1 && !is_broken(&alone));
+        || outer.nested().keeping(1).rewrite(last).is_some_and(|alone| items.len() == 1 && !is_broken(&alone));
     (breaks(&text) != 1 || !fits_alone()).then(|| others + &text)
 }
 

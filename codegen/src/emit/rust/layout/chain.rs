@@ -3,7 +3,6 @@
 use syn::Expr;
 
 use super::brackets;
-use super::expression::rewrite;
 use super::flat::{flat, member};
 use super::shape::{STEP, Shape, first_line, is_broken, line_break, width};
 
@@ -75,7 +74,7 @@ fn links(expr: &Expr) -> (&Expr, Vec<Link<'_>>) {
 /// line.
 pub fn broken(expr: &Expr, shape: Shape) -> Option<String> {
     let (root, links) = links(expr);
-    let mut root = rewrite(root, shape)?;
+    let mut root = shape.rewrite(root)?;
     let mut links = links.into_iter().peekable();
     let short = STEP.saturating_sub(shape.column - shape.indent);
     while width(&root) <= short && !is_broken(&root) && links.peek().is_some() {

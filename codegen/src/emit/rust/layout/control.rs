@@ -2,7 +2,7 @@
 
 use syn::{Arm, Block, Expr, ExprClosure, ExprIf, ExprMatch, Pat, Stmt};
 
-use super::expression::{assigned, is_better_below, rewrite};
+use super::assignment::{assigned, is_better_below};
 use super::flat::{flat, pattern, patterns, tokens};
 use super::shape::{STEP, Shape, is_broken, line_break, width};
 
@@ -20,11 +20,11 @@ fn statement(known: &Stmt, shape: Shape) -> String {
     let text = match known {
         Stmt::Local(local) => local.init.as_ref().and_then(|init| {
             let before = format!("{}let {} =", " ".repeat(shape.indent), pattern(&local.pat));
-            Some(format!("{};", assigned(&before, &init.expr, shape.indent, 1)?.trim_start()))
+            Some(format!("{};", assigned(&before, &init.expr, shape.line(), 1)?.trim_start()))
         }),
         Stmt::Expr(expr, end) => {
             let end = if end.is_some() { ";" } else { "" };
-            rewrite(expr, shape.keeping(end.len())).or_else(|| flat(expr)).map(|text| text + end)
+            shape.keeping(end.len()).rewrite(expr).or_else(|| flat(expr)).map(|text| text + end)
         }
         Stmt::Item(_) | Stmt::Macro(_) => None,
     };
@@ -39,7 +39,7 @@ pub fn block(block: &Block, shape: Shape) -> String {
 /// Lays out a closure: with its body on the same line, or in a block.
 pub fn closure(closure: &ExprClosure, shape: Shape) -> Option<String> {
     let head = format!("|{}| ", patterns(&closure.inputs));
-    let body = rewrite(&closure.body, shape.behind(width(&head)));
+    let body = shape.behind(width(&head)).rewrite(&closure.body);
     let body = body.filter(|body| !is_broken(body) || stays_open(&closure.body));
     let in_block = || in_block(&closure.body, shape);
     Some(head + &body.or_else(in_block)?)
@@ -57,18 +57,18 @@ fn stays_open(body: &Expr) -> bool {
 }
 
 fn in_block(body: &Expr, shape: Shape) -> Option<String> {
-    let body = rewrite(body, shape.nested())?;
+    let body = shape.nested().rewrite(body)?;
     Some(format!("{{{}{body}{}}}", line_break(shape.indent + STEP), line_break(shape.indent)))
 }
 
 /// Lays out a condition with its blocks.
 pub fn condition(known: &ExprIf, shape: Shape) -> Option<String> {
-    let test = rewrite(&known.cond, Shape { after: 2, ..shape.behind(3) })?;
+    let test = Shape { after: 2, ..shape.behind(3) }.rewrite(&known.cond)?;
     let start = if is_broken(&test) { line_break(shape.indent) } else { " ".to_owned() };
     let then = block(&known.then_branch, shape);
     let otherwise = match &known.else_branch {
         None => String::new(),
-        Some((_, otherwise)) => format!(" else {}", rewrite(otherwise, shape)?),
+        Some((_, otherwise)) => format!(" else {}", shape.rewrite(otherwise)?),
     };
     Some(format!("if {test}{start}{then}{otherwise}"))
 }
@@ -80,7 +80,7 @@ pub fn choice(known: &ExprMatch, shape: Shape) -> Option<String> {
     let start = line_break(nested.indent);
     let arms = arms?.join(&start);
     let room = Shape { after: 0, ..shape.behind(6) };
-    let subject = rewrite(&known.expr, room)?;
+    let subject = room.rewrite(&known.expr)?;
     let is_full = !is_broken(&subject) && width(&subject) + 2 > room.width();
     let (end, open) = (line_break(shape.indent), if is_full { line_break(shape.indent) } else { " ".to_owned() });
     Some(format!("match {subject}{open}{{{start}{arms}{end}}}"))
@@ -95,11 +95,11 @@ fn arm(known: &Arm, shape: Shape) -> Option<String> {
         .lines()
         .next_back()
         .map_or(0, |line| if is_broken(&pattern) { width(line.trim_start()) } else { width(line) });
-    let same = rewrite(&known.body, shape.behind(last + 4).keeping(1));
+    let same = shape.behind(last + 4).keeping(1).rewrite(&known.body);
     if let Some(same) = same.as_ref().filter(|same| !is_broken(same)) {
         return Some(format!("{pattern} => {same},"));
     }
-    let below = rewrite(&known.body, shape.nested());
+    let below = shape.nested().rewrite(&known.body);
     match (same, below) {
         (Some(same), Some(below)) if can_open(&known.body) && !is_better_below(&same, &below) => {
             let end = if matches!(*known.body, Expr::Match(_)) { "" } else { "," };

@@ -1,5 +1,7 @@
 //! Where code is laid out, and how much fits there.
 
+use syn::Expr;
+
 /// The longest line.
 pub const LONGEST: usize = 120;
 
@@ -17,12 +19,24 @@ pub struct Shape {
     pub after: usize,
     /// Whether the links of chains must stay on one line.
     pub keeps_chains: bool,
+    /// Lays out an expression that begins there; `None` if it does not fit.
+    pub rewrite: fn(&Expr, Self) -> Option<String>,
 }
 
 impl Shape {
-    /// Returns the place of a whole line.
-    pub fn line(indent: usize) -> Self {
-        Self { indent, column: indent, after: 0, keeps_chains: false }
+    /// Returns the place of a whole line, where expressions are laid out by a function.
+    pub fn new(indent: usize, rewrite: fn(&Expr, Self) -> Option<String>) -> Self {
+        Self { indent, column: indent, after: 0, keeps_chains: false, rewrite }
+    }
+
+    /// Lays out an expression that begins here; `None` if it does not fit.
+    pub fn rewrite(self, expr: &Expr) -> Option<String> {
+        (self.rewrite)(expr, self)
+    }
+
+    /// Returns the place of the whole line on which this one lies.
+    pub fn line(self) -> Self {
+        Self { column: self.indent, after: 0, keeps_chains: false, ..self }
     }
 
     /// Returns the place behind some columns.
@@ -37,7 +51,8 @@ impl Shape {
 
     /// Returns the place of a line that is indented further.
     pub fn nested(self) -> Self {
-        Self { keeps_chains: self.keeps_chains, ..Self::line(self.indent + STEP) }
+        let indent = self.indent + STEP;
+        Self { indent, column: indent, after: 0, ..self }
     }
 
     /// Returns how much fits on the first line.
