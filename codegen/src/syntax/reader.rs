@@ -10,8 +10,9 @@ use serde_yaml::{Mapping, Value};
 
 use self::complaint::{Complaint, Kind};
 use super::ast::Spec;
+use super::rules::{PLAIN_WORD, UNKNOWN_KEY};
 use super::tree::{Content, Entry, Node, Path, Step};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{At, Diagnostic};
 
 /// Most times that one spec is read.
 const ROUNDS: usize = 200;
@@ -22,10 +23,43 @@ const REPORTED: usize = 100;
 /// Longest time after which a spec that has errors is read once more.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Reads a spec.
+/// Reads a spec, unless something is wrong with it, and adds that to what is known to be wrong.
+pub(super) fn read(tree: &Node, problems: &mut Vec<Diagnostic>) -> Option<Spec> {
+    match attempts(tree) {
+        Ok(spec) if problems.is_empty() => Some(spec),
+        Ok(_) => None,
+        Err(found) => {
+            for item in found {
+                add(item, tree, problems);
+            }
+            None
+        }
+    }
+}
+
+/// Adds what the reader found. Where the gate refused the value of an unknown key as a plain word, the key is the mistake;
+/// where it refused something else, that explains the key.
+fn add(item: Diagnostic, tree: &Node, problems: &mut Vec<Diagnostic>) {
+    let refused = match &item.at {
+        At::Key(path) if *item.rule == UNKNOWN_KEY => tree.get(path),
+        At::File | At::Span(_) | At::Key(_) | At::Value(_) => None,
+    };
+    match refused.filter(|value| value.content == Content::Refused) {
+        None => problems.push(item),
+        Some(value) => {
+            let at = At::Span(value.span.clone());
+            let word = problems.iter().position(|known| *known.rule == PLAIN_WORD && known.at == at);
+            if let Some(word) = word {
+                problems[word] = item;
+            }
+        }
+    }
+}
+
+/// Reads a spec as often as it takes to find every error.
 ///
 /// The reading stops at the first error. To find the others, a copy of the tree is mended at that place and read again.
-pub(super) fn read(tree: &Node) -> Result<Spec, Vec<Diagnostic>> {
+fn attempts(tree: &Node) -> Result<Spec, Vec<Diagnostic>> {
     let started = Instant::now();
     let mut reader = Reader::new(tree);
     for _ in 0..ROUNDS {
