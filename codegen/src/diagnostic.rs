@@ -231,11 +231,11 @@ impl Diagnostics {
         }
     }
 
-    fn place(&self, at: &At) -> Option<Place> {
+    fn place(&self, at: &At) -> Option<Position> {
         let span = self.span(at)?;
         let (line, column) = self.source.line_column(span.start);
         let (end_line, end_column) = self.source.line_column(span.end);
-        Some(Place { line, column, end_line, end_column })
+        Some(Position { line, column, end_line, end_column })
     }
 }
 
@@ -260,7 +260,7 @@ pub struct Located<'a> {
     pub file: &'a str,
     /// Where it is; absent for the file as a whole.
     #[serde(flatten)]
-    pub place: Option<Place>,
+    pub place: Option<Position>,
     /// What to say at that place.
     pub label: Option<&'a str>,
     /// Other places that have to do with it.
@@ -283,7 +283,7 @@ impl fmt::Display for Located<'_> {
 
 /// Lines and columns of a range of text, counted from 1, columns in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Place {
+pub struct Position {
     /// Line of the first character.
     pub line: usize,
     /// Column of the first character.
@@ -299,7 +299,7 @@ pub struct Place {
 pub struct Other<'a> {
     /// Where it is; absent for the file as a whole.
     #[serde(flatten)]
-    pub place: Option<Place>,
+    pub place: Option<Position>,
     /// What to say there.
     pub text: &'a str,
 }

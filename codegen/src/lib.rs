@@ -13,6 +13,7 @@ mod encoding;
 pub mod files;
 pub mod interpret;
 mod lint;
+mod misplaced;
 pub mod model;
 pub mod multiples;
 mod nearest;
@@ -24,7 +25,6 @@ pub mod rules;
 pub mod schema;
 pub mod source;
 mod summary;
-mod suspect;
 pub mod syntax;
 mod words;
 

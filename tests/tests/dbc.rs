@@ -114,7 +114,7 @@ fn text_is_in_characters_that_every_tool_reads_alike() {
 fn a_message_that_looks_like_another_one_is_named_as_missing() {
     let exported = dbc(&feature("model_layouts"), None);
     let lost = "`supply_dc` is missing in `supply_ac_report`, where nothing tells it from `supply_ac`";
-    assert!(exported.limits.iter().any(|limit| limit == lost), "{:?}", exported.limits);
+    assert!(exported.losses.iter().any(|loss| loss == lost), "{:?}", exported.losses);
     assert!(exported.text.contains(lost) && !exported.text.contains("SG_ supply_dc"));
 }
 
@@ -142,9 +142,7 @@ fn an_empty_request_never_wins_over_a_message_with_signals() {
     let request = "`pressure` (request to read) is missing in `pressure_reply`, where nothing tells it from `pressure` (reply to read)";
     let restart = "`restart` is missing in `temperature_report`, which has 8 data bytes";
     assert_eq!(dropped, [(request, true), (restart, true)]);
-    assert!(
-        exported.limits.iter().any(|limit| limit == request) && exported.limits.iter().any(|limit| limit == restart)
-    );
+    assert!(exported.losses.iter().any(|loss| loss == request) && exported.losses.iter().any(|loss| loss == restart));
 
     let of_node = dbc(&protocol, Some(1..=1));
     assert_eq!((messages(&of_node.text).len(), of_node.dropped), (6, vec![]));

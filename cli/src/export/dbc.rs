@@ -81,9 +81,9 @@ fn report(dbc: &emit::Dbc) -> String {
         format!("messages: {messages} of the protocol, {frames} of the DBC"),
         format!("frame-id mask {:#010X}", dbc.mask),
     ];
-    if !dbc.limits.is_empty() {
+    if !dbc.losses.is_empty() {
         lines.push("what the DBC cannot say:".to_owned());
-        lines.extend(dbc.limits.iter().map(|limit| format!("  {limit}")));
+        lines.extend(dbc.losses.iter().map(|loss| format!("  {loss}")));
     }
     lines.join("\n") + "\n"
 }

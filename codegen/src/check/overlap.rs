@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Encoding, FrameLayout, Message, Protocol, SelectorPlace, Signal};
 use crate::rule::rules;
-use crate::suspect::{Claim, suspect};
 
 rules! {
     OVERLAP "overlap" Check ERROR;
@@ -39,7 +39,7 @@ fn check_leaves<'a>(
     for (later, one) in leaves.iter().enumerate() {
         for (earlier, other) in leaves[..later].iter().enumerate() {
             if one.2 & other.2 != 0 && reported.insert((one.0, other.0)) {
-                report(message, [other, one], suspect(&claims, earlier, later) == later, diagnostics);
+                report(message, [other, one], misplaced(&claims, earlier, later) == later, diagnostics);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 mod file;
 mod frames;
-mod limits;
+mod losses;
 mod names;
 mod signals;
 mod text;
@@ -24,7 +24,7 @@ pub struct Dbc {
     /// How many messages of the protocol there are, and how many frames were made of them.
     pub counts: (usize, usize),
     /// What the protocol says and the file cannot, a sentence each without a full stop.
-    pub limits: Vec<String>,
+    pub losses: Vec<String>,
     /// The frames that the file lacks.
     pub dropped: Vec<Dropped>,
 }
@@ -45,9 +45,9 @@ pub fn dbc(protocol: &Protocol, nodes: Option<RangeInclusive<i64>>) -> Dbc {
     let sent = frames::sent(protocol, nodes.as_ref());
     let mask = frames::mask(protocol, &sent);
     let (frames, dropped) = frames::frames(protocol, &sent, mask);
-    let mut limits = limits::limits(protocol, mask);
-    limits.extend(dropped.iter().map(|dropped| dropped.text.clone()));
+    let mut losses = losses::losses(protocol, mask);
+    losses.extend(dropped.iter().map(|dropped| dropped.text.clone()));
     let counts = (protocol.messages.len(), frames.len());
-    let file = File { comment: text::header(protocol, mask, &limits), nodes: text::nodes(nodes), frames };
-    Dbc { text: file.to_string(), mask, counts, limits, dropped }
+    let file = File { comment: text::header(protocol, mask, &losses), nodes: text::nodes(nodes), frames };
+    Dbc { text: file.to_string(), mask, counts, losses, dropped }
 }

@@ -4,9 +4,9 @@ use super::Resolver;
 use super::keys::Role;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
+use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Identifier, IdentifierField, Table};
 use crate::resolve::rules;
-use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{Field, IdentifierEntry, Key};
 use crate::syntax::tree::Path;
 
@@ -120,7 +120,7 @@ impl Resolver<'_> {
         // What is above the identifier ends the bits that the first entry can have been meant for.
         let above = Claim { first: width, last: width };
         let claims: Vec<_> = std::iter::once(above).chain(runs.iter().map(Run::claim)).collect();
-        let wrong = suspect(&claims, earlier + 1, later + 1) - 1;
+        let wrong = misplaced(&claims, earlier + 1, later + 1) - 1;
         let right = if wrong == later { earlier } else { later };
         let (one, other) = (&runs[wrong], &runs[right]);
         let message =

@@ -3,9 +3,9 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, StatusBit, StatusWord, StatusWordId, raw_limits};
 use crate::resolve::rules;
-use crate::suspect::{Claim, suspect};
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
 use crate::words::SEVERITIES;
@@ -306,7 +306,7 @@ impl Resolver<'_> {
         let claims: Vec<_> = bits.iter().map(|bit| Claim { first: bit.bit, last: bit.bit }).collect();
         for (later, bit) in bits.iter().enumerate() {
             let Some(earlier) = bits[..later].iter().position(|known| known.bit == bit.bit) else { continue };
-            let wrong = suspect(&claims, earlier, later);
+            let wrong = misplaced(&claims, earlier, later);
             let right = if wrong == later { earlier } else { later };
             let message = format!("bit {} has two names: `{}` and `{}`", bit.bit, bits[earlier].name, bit.name);
             let at = |index: usize| bits[index].doc.path.key("bit").at_value();

@@ -6,8 +6,8 @@ use can_dbc::{Dbc, Message as Source, MessageId, Signal};
 
 use super::limits::{beside_messages, cycle, is_parameter_group};
 use super::names::{Names, snake_case, type_name};
-use super::places::Place;
-use super::signals::{Meaning, meaning, unit_of};
+use super::places::BitRange;
+use super::signals::{Translated, meaning, unit_of};
 use super::spec::{Field, Message, Spec, one_line};
 use super::variants::{Variant, variants};
 use super::yaml::quoted;
@@ -146,7 +146,7 @@ impl<'a> Importer<'a> {
 
     /// Returns constants and signals without those that are impossible; `None` where a multiplexor is.
     fn fields(&mut self, source: &Source, variant: &Variant, message: &str, length: u8) -> Option<Vec<Field>> {
-        let mut frame = Frame { id: source.id, message, length, taken: Vec::new(), names: Names::default() };
+        let mut frame = Draft { id: source.id, message, length, taken: Vec::new(), names: Names::default() };
         let mut fields = Vec::new();
         for (index, value) in &variant.constants {
             let field = frame.constant(&source.signals[*index], *value);
@@ -164,9 +164,9 @@ impl<'a> Importer<'a> {
         field.map_err(|why| self.limit(format!("signal `{}.{}`: {why}", source.name, source.signals[index].name))).ok()
     }
 
-    fn field<'s>(&mut self, frame: &mut Frame<'s>, source: &Source, signal: &'s Signal) -> Result<Field, String> {
+    fn field<'s>(&mut self, frame: &mut Draft<'s>, source: &Source, signal: &'s Signal) -> Result<Field, String> {
         let place = frame.place(signal)?;
-        let Meaning { mut keys, unit, is_named, decide, lost } = meaning(self.dbc, frame.id, signal)?;
+        let Translated { mut keys, unit, is_named, decide, lost } = meaning(self.dbc, frame.id, signal)?;
         frame.take(place, &signal.name)?;
         for lost in lost {
             self.limit(format!("signal `{}.{}`: {lost}", source.name, signal.name));
@@ -192,7 +192,7 @@ impl<'a> Importer<'a> {
 }
 
 /// What the fields of a message share.
-struct Frame<'a> {
+struct Draft<'a> {
     id: MessageId,
     message: &'a str,
     length: u8,
@@ -201,14 +201,14 @@ struct Frame<'a> {
     names: Names,
 }
 
-impl<'a> Frame<'a> {
-    fn place(&self, signal: &Signal) -> Result<Place, String> {
+impl<'a> Draft<'a> {
+    fn place(&self, signal: &Signal) -> Result<BitRange, String> {
         let outside = || format!("it lies outside of the {} data bytes", self.length);
-        Place::new(signal, self.length).ok_or_else(outside)
+        BitRange::new(signal, self.length).ok_or_else(outside)
     }
 
     /// Takes the bits of a place.
-    fn take(&mut self, place: Place, name: &'a str) -> Result<(), String> {
+    fn take(&mut self, place: BitRange, name: &'a str) -> Result<(), String> {
         if let Some((_, other)) = self.taken.iter().find(|(mask, _)| mask & place.mask() != 0) {
             return Err(format!("it shares bits with `{other}`"));
         }

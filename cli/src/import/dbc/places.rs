@@ -4,7 +4,7 @@ use can_dbc::{ByteOrder, Signal};
 
 /// Where a signal stands in the data bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct BitRange {
     /// The first and the last byte that it touches.
     first: u8,
     last: u8,
@@ -14,7 +14,7 @@ pub struct Place {
     width: u8,
 }
 
-impl Place {
+impl BitRange {
     /// Returns the place of a signal, or `None` outside of so many data bytes.
     pub fn new(signal: &Signal, length: u8) -> Option<Self> {
         let end = 8 * length;
@@ -61,12 +61,12 @@ impl Place {
     }
 
     /// Writes the bits in a word that holds the place.
-    pub fn bits(self, word: Place) -> String {
+    pub fn bits(self, word: BitRange) -> String {
         let low = self.low_in(word);
         if self.width == 1 { low.to_string() } else { format!("{}..{low}", low + self.width - 1) }
     }
 
-    fn low_in(self, word: Place) -> u8 {
+    fn low_in(self, word: BitRange) -> u8 {
         self.low + 8 * if word.low_byte_first { self.first - word.first } else { word.last - self.last }
     }
 
@@ -76,8 +76,8 @@ impl Place {
     }
 
     /// Returns the word of two places with a byte in common, if they have one byte order.
-    fn joined(self, other: Place) -> Option<Place> {
-        let is_single = |place: Place| place.first == place.last;
+    fn joined(self, other: BitRange) -> Option<BitRange> {
+        let is_single = |place: BitRange| place.first == place.last;
         let has_one_order = is_single(self) || is_single(other) || self.low_byte_first == other.low_byte_first;
         let touches = self.first <= other.last && other.first <= self.last;
         let low_byte_first = if is_single(self) { other.low_byte_first } else { self.low_byte_first };
@@ -96,7 +96,7 @@ impl Place {
 
 /// One place, or a word of several ones.
 pub struct Group {
-    pub place: Place,
+    pub place: BitRange,
     pub is_word: bool,
     /// Which of the places it holds, in the order of their bits.
     pub of: Vec<usize>,
@@ -105,7 +105,7 @@ pub struct Group {
 /// Gathers places that are no whole bytes in words, in the order of the bytes.
 ///
 /// A constant has the word of its own bytes in every message, by which it is known to be the same.
-pub fn groups(places: &[(Place, bool)]) -> Vec<Group> {
+pub fn groups(places: &[(BitRange, bool)]) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     let mut order: Vec<usize> = (0..places.len()).collect();
     // Those of several bytes first, so that single bytes take the order of a word; constants last, so that no word grows after them.
@@ -133,7 +133,7 @@ pub fn groups(places: &[(Place, bool)]) -> Vec<Group> {
 }
 
 /// Finds a word that can take another one in, and the word of both.
-fn joinable(groups: &[Group], one: &Group, must_keep_bytes: bool) -> Option<(usize, Place)> {
+fn joinable(groups: &[Group], one: &Group, must_keep_bytes: bool) -> Option<(usize, BitRange)> {
     let words = groups.iter().enumerate().filter(|(_, group)| group.is_word && one.is_word);
     let mut joined = words.filter_map(|(index, group)| Some((index, group.place.joined(one.place)?)));
     joined.find(|(_, word)| !must_keep_bytes || (word.first, word.last) == (one.place.first, one.place.last))
@@ -145,15 +145,15 @@ mod tests {
 
     use super::*;
 
-    fn places(signals: &[&str]) -> Vec<Option<Place>> {
+    fn places(signals: &[&str]) -> Vec<Option<BitRange>> {
         let signals: Vec<_> = signals.iter().map(|place| format!(" SG_ s : {place}+ (1,0) [0|0] \"\" y\n")).collect();
         let dbc = Dbc::try_from(format!("BO_ 1 m: 8 x\n{}", signals.concat()).as_str()).expect("the DBC is right");
-        dbc.messages[0].signals.iter().map(|signal| Place::new(signal, 8)).collect()
+        dbc.messages[0].signals.iter().map(|signal| BitRange::new(signal, 8)).collect()
     }
 
     /// Writes words and what is in them.
     fn shown(signals: &[&str]) -> Vec<String> {
-        let places: Vec<Place> =
+        let places: Vec<BitRange> =
             places(signals).into_iter().map(|place| place.expect("it lies in the frame")).collect();
         let shown = |group: Group| {
             let bits: Vec<_> = group.of.iter().map(|index| places[*index].bits(group.place)).collect();
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn bits_in_a_frame_are_those_of_the_format() {
         let masks: Vec<_> =
-            places(&["0|12@1", "7|12@0", "10|3@0", "63|1@1"]).into_iter().flatten().map(Place::mask).collect();
+            places(&["0|12@1", "7|12@0", "10|3@0", "63|1@1"]).into_iter().flatten().map(BitRange::mask).collect();
         assert_eq!(masks, [0x0FFF, 0xF0FF, 0x0700, 1 << 63]);
     }
 

@@ -12,7 +12,7 @@ use super::yaml::{map, quoted};
 
 /// The keys of a field but for its place, and what is said about it.
 #[derive(Default)]
-pub struct Meaning {
+pub struct Translated {
     pub keys: Vec<(&'static str, String)>,
     pub unit: Option<Unit>,
     /// Its values have names, and it is no number.
@@ -29,7 +29,7 @@ type Range = (Rational, Rational);
 type Named<'a> = (i64, &'a str);
 
 /// Returns what a signal means, or why a spec cannot say it.
-pub fn meaning(dbc: &Dbc, id: MessageId, signal: &Signal) -> Result<Meaning, String> {
+pub fn meaning(dbc: &Dbc, id: MessageId, signal: &Signal) -> Result<Translated, String> {
     let format = dbc.extended_value_type_for_signal(id, &signal.name);
     let named = dbc.value_descriptions_for_signal(id, &signal.name).unwrap_or_default();
     let named: Vec<Named> = named.iter().map(|value| (value.id, value.description.as_str())).collect();
@@ -40,14 +40,14 @@ pub fn meaning(dbc: &Dbc, id: MessageId, signal: &Signal) -> Result<Meaning, Str
     }
 }
 
-fn float(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
+fn float(signal: &Signal, named: &[Named]) -> Result<Translated, String> {
     if signal.size != 32 {
         return Err(format!("it is a float of 32 bits in {}", signal.size));
     }
     if exact(signal.factor) != Some(Rational::ONE) || exact(signal.offset) != Some(Rational::ZERO) {
         return Err("it is a float with a scale or an offset".to_owned());
     }
-    let mut meaning = Meaning { keys: vec![("as", "float".to_owned())], ..Meaning::default() };
+    let mut meaning = Translated { keys: vec![("as", "float".to_owned())], ..Translated::default() };
     let range = stated(signal, &mut meaning);
     if !named.is_empty() {
         meaning.lost.push("it is a float, whose values have no names".to_owned());
@@ -57,7 +57,7 @@ fn float(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
     Ok(meaning)
 }
 
-fn number(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
+fn number(signal: &Signal, named: &[Named]) -> Result<Translated, String> {
     let scale = exact(signal.factor).ok_or_else(|| format!("no spec can write its scale {}", signal.factor))?;
     let offset = exact(signal.offset).ok_or_else(|| format!("no spec can write its offset {}", signal.offset))?;
     let is_scaled = (scale, offset) != (Rational::ONE, Rational::ZERO);
@@ -71,7 +71,7 @@ fn number(signal: &Signal, named: &[Named]) -> Result<Meaning, String> {
     }
     let value = |raw: i128| Rational::integer(raw).times(scale)?.plus(offset);
     let (first, last) = raw_limits(width.clamp(1, 64), signed);
-    let mut meaning = Meaning::default();
+    let mut meaning = Translated::default();
     let named = fitting(named, (first, last), &mut meaning);
     let held = value(first).zip(value(last)).map(|(one, other)| (one.min(other), one.max(other)));
     let stated = stated(signal, &mut meaning);
@@ -97,7 +97,7 @@ fn range_key((minimum, maximum): Range) -> (&'static str, String) {
 }
 
 /// Returns the limits that the DBC states; two zeros state none.
-fn stated(signal: &Signal, meaning: &mut Meaning) -> Option<Range> {
+fn stated(signal: &Signal, meaning: &mut Translated) -> Option<Range> {
     let number = |limit: NumericValue| Rational::parse(&limit.to_string());
     let range = number(signal.min).zip(number(signal.max));
     if range.is_none_or(|(minimum, maximum)| minimum > maximum) {
@@ -108,7 +108,7 @@ fn stated(signal: &Signal, meaning: &mut Meaning) -> Option<Range> {
 }
 
 /// Cuts limits to what the bits hold; limits that exclude nothing are left out.
-fn within(range: Range, held: Range, meaning: &mut Meaning) -> Option<Range> {
+fn within(range: Range, held: Range, meaning: &mut Translated) -> Option<Range> {
     let cut = (range.0.max(held.0), range.1.min(held.1));
     if cut.0 > cut.1 {
         meaning.lost.push(format!("its limits {} to {} lie outside of its bits", range.0, range.1));
@@ -122,7 +122,7 @@ fn beside(
     range: Option<Range>,
     named: &[Named],
     value: impl Fn(i64) -> Option<Rational>,
-    meaning: &mut Meaning,
+    meaning: &mut Translated,
 ) -> Option<Range> {
     let (minimum, maximum) = range?;
     let is_inside = |raw: i64| value(raw).is_some_and(|value| (minimum..=maximum).contains(&value));
@@ -134,7 +134,7 @@ fn beside(
 }
 
 /// Returns the values that the bits hold, each once.
-fn fitting<'a>(named: &[Named<'a>], (first, last): (i128, i128), meaning: &mut Meaning) -> Vec<Named<'a>> {
+fn fitting<'a>(named: &[Named<'a>], (first, last): (i128, i128), meaning: &mut Translated) -> Vec<Named<'a>> {
     let mut kept: Vec<Named> = Vec::new();
     for (raw, name) in named {
         if !(first..=last).contains(&i128::from(*raw)) {
@@ -163,7 +163,7 @@ pub fn unit_of(signal: &Signal) -> Option<&str> {
 }
 
 /// Adds the unit, where the language has it.
-fn unit(signal: &Signal, meaning: &mut Meaning) {
+fn unit(signal: &Signal, meaning: &mut Translated) {
     let Some(symbol) = unit_of(signal) else { return };
     // `C` may as well be coulomb.
     meaning.unit = Unit::find(symbol).or_else(|| respelled(symbol).filter(|_| symbol != "C"));

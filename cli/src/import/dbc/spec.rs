@@ -1,6 +1,6 @@
 //! What a first spec consists of.
 
-use super::places::Place;
+use super::places::BitRange;
 
 /// A spec with reports only.
 pub struct Spec {
@@ -33,7 +33,7 @@ pub struct Message {
 /// A signal or a constant.
 pub struct Field {
     pub name: String,
-    pub place: Place,
+    pub place: BitRange,
     pub is_constant: bool,
     /// Keys and their values, as YAML.
     pub keys: Vec<(&'static str, String)>,

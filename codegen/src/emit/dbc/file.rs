@@ -13,11 +13,11 @@ use crate::number::Rational;
 pub struct File {
     pub comment: String,
     pub nodes: Vec<String>,
-    pub frames: Vec<Frame>,
+    pub frames: Vec<DbcMessage>,
 }
 
 /// A message of the DBC: the frames of one identifier.
-pub struct Frame {
+pub struct DbcMessage {
     pub id: u32,
     pub extended: bool,
     pub name: String,
@@ -78,7 +78,7 @@ impl Display for File {
     }
 }
 
-impl Frame {
+impl DbcMessage {
     /// Returns the identifier, in which bit 31 stands for 29 bits.
     fn number(&self) -> u32 {
         self.id | if self.extended { 1 << 31 } else { 0 }

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use indexmap::IndexMap;
 
 use super::Dropped;
-use super::file::Frame;
+use super::file::DbcMessage;
 use super::text::{self, ascii, remarks};
 use super::tree::{self, Candidate, Tree};
 use crate::model::{Address, AddressPattern, FrameId, FrameLayout, Kind, Message, ModeId, Protocol};
@@ -95,7 +95,7 @@ struct Group<'a> {
 }
 
 /// Returns a frame for each value of the masked bits, and what could not be said.
-pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<Frame>, Vec<Dropped>) {
+pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<DbcMessage>, Vec<Dropped>) {
     let mut groups: IndexMap<u32, Vec<&Sent>> = IndexMap::new();
     for sent in sent {
         groups.entry(sent.id & mask).or_default().push(sent);
@@ -154,13 +154,13 @@ fn how(protocol: &Protocol, layout: &FrameLayout) -> String {
     }
 }
 
-fn frame(protocol: &Protocol, group: Group, name: String) -> Frame {
+fn frame(protocol: &Protocol, group: Group, name: String) -> DbcMessage {
     let sent = &group.sent;
     let module = text::module(common(sent, |sent| sent.node).flatten());
     let controller = text::CONTROLLER.to_owned();
     let is_request = sent[0].layout.kind == Kind::Request;
     let (sender, receivers) = if is_request { (controller, module) } else { (module, controller) };
-    Frame {
+    DbcMessage {
         id: sent[0].id,
         extended: protocol.identifier.extended,
         name,

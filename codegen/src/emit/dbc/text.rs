@@ -33,7 +33,7 @@ pub fn remarks(doc: &Doc) -> String {
 }
 
 /// Returns the comment of the whole file.
-pub fn header(protocol: &Protocol, mask: u32, limits: &[String]) -> String {
+pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
     let document = &protocol.document;
     let printed = [Some(&document.title), Some(&document.version), document.date.as_ref(), document.file.as_ref()];
     let printed: Vec<_> = printed.into_iter().flatten().map(|text| ascii(text)).collect();
@@ -43,9 +43,9 @@ pub fn header(protocol: &Protocol, mask: u32, limits: &[String]) -> String {
         format!("Made by canspec from {}", ascii(&protocol.file)),
         format!("Frame-id mask: {mask:#010X}. Compare only these bits of an identifier; the other ones vary"),
     ];
-    if !limits.is_empty() {
+    if !losses.is_empty() {
         lines.push("What a DBC cannot say:".to_owned());
-        lines.extend(limits.iter().map(|limit| format!("- {limit}")));
+        lines.extend(losses.iter().map(|loss| format!("- {loss}")));
     }
     lines.join("\n")
 }

@@ -8,7 +8,7 @@ use super::doc::{self, Comment};
 use super::exchange::own_modes;
 use super::message::Message;
 use super::naming::ident;
-use super::types::{Frame, Types};
+use super::types::{FrameTypes, Types};
 use crate::model::{self, FrameId, Kind, MessageId, Protocol, Table};
 
 /// A set of frames.
@@ -102,7 +102,7 @@ impl Planner<'_> {
             frame.kind == Kind::Reply && frame.set == Some(self.id)
         };
         let reply = *message.frames.iter().find(is_reply)?;
-        let Frame { variant, carried } = &self.types.frames[reply];
+        let FrameTypes { variant, carried } = &self.types.frames[reply];
         let (home, exchange) = (&known.home, &known.exchanges[self.protocol[reply].exchange].constant);
         Some(Member {
             field: ident(&message.name),
@@ -139,7 +139,7 @@ impl Planner<'_> {
     fn others(&self, members: &[Member]) -> Option<TokenStream> {
         let frames = self.types.frames.iter();
         let others = frames.filter(|frame| members.iter().all(|member| member.variant != frame.variant));
-        let mut others: Vec<_> = others.map(|Frame { variant, carried }| (variant, carried.is_some())).collect();
+        let mut others: Vec<_> = others.map(|FrameTypes { variant, carried }| (variant, carried.is_some())).collect();
         others.dedup();
         match others.as_slice() {
             [] => None,

@@ -20,7 +20,7 @@ pub struct Types {
     /// Structs of messages: one for each set of signals that some frame carries; the first one is the message's own.
     pub structs: Table<MessageId, Vec<Struct>>,
     /// What frames are in the enum of all messages.
-    pub frames: Table<FrameId, Frame>,
+    pub frames: Table<FrameId, FrameTypes>,
 }
 
 /// A struct and the signals it has.
@@ -32,7 +32,7 @@ pub struct Struct {
 }
 
 /// What a kind of frame is in the enum of all messages.
-pub struct Frame {
+pub struct FrameTypes {
     /// Its variant.
     pub variant: Ident,
     /// The struct that it carries.
@@ -50,7 +50,7 @@ impl Types {
         let packed = protocol.messages.map(|message| message.signals.map(|signal| packed(message, signal, &mut pool)));
         let taken = structs.iter().flatten().map(|known: &Struct| known.name.to_string());
         let mut variants = Pool::without(taken);
-        let frames = protocol.frames.map(|frame| Frame::new(protocol, &structs, frame, &mut variants));
+        let frames = protocol.frames.map(|frame| FrameTypes::new(protocol, &structs, frame, &mut variants));
         Self { enumerations, status_words, packed, structs, frames }
     }
 
@@ -95,7 +95,7 @@ fn packed(message: &Message, signal: &Signal, types: &mut Pool) -> Option<Ident>
     parts(&signal.encoding).map(|_| types.take(camel_case(&name), "Value"))
 }
 
-impl Frame {
+impl FrameTypes {
     /// Names a variant after the struct it carries, else after the frame.
     fn new(
         protocol: &Protocol,

@@ -3,7 +3,7 @@
 use proc_macro2::Ident;
 
 use super::doc::{self, Comment};
-use super::types::{Frame, Types};
+use super::types::{FrameTypes, Types};
 use crate::model::{FrameLayout, Protocol};
 
 /// A variant of the enum of all messages.
@@ -19,7 +19,7 @@ pub struct Variant {
 /// Plans the variants, each once.
 pub fn variants(protocol: &Protocol, types: &Types) -> Vec<Variant> {
     let mut variants: Vec<Variant> = Vec::new();
-    for (layout, Frame { variant, carried }) in protocol.frames.iter().zip(&types.frames) {
+    for (layout, FrameTypes { variant, carried }) in protocol.frames.iter().zip(&types.frames) {
         if !variants.iter().any(|known| known.name == *variant) {
             let comment = Comment::line(sentence(protocol, layout, carried.is_some()));
             variants.push(Variant { name: variant.clone(), comment, carried: carried.clone() });

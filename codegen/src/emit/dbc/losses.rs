@@ -5,22 +5,22 @@ use super::text::ascii;
 use crate::model::{Kind, Message, Protocol, Signal};
 
 /// Returns a sentence for each.
-pub fn limits(protocol: &Protocol, mask: u32) -> Vec<String> {
-    let mut limits = Vec::new();
-    limits.extend(identifier(protocol, mask));
-    limits.extend(foreign(protocol));
-    limits.extend(models(protocol));
-    limits.extend(about(protocol, |signal| written(protocol, signal, &signal.name).loss));
-    limits.extend(about(protocol, |signal| {
+pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
+    let mut losses = Vec::new();
+    losses.extend(identifier(protocol, mask));
+    losses.extend(foreign(protocol));
+    losses.extend(models(protocol));
+    losses.extend(about(protocol, |signal| written(protocol, signal, &signal.name).loss));
+    losses.extend(about(protocol, |signal| {
         (!signal.model_ranges.is_empty()).then_some("has limits that depend on the device model")
     }));
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
-        limits.push("which request a reply answers, and who answers it".to_owned());
+        losses.push("which request a reply answers, and who answers it".to_owned());
     }
     if !protocol.procedures.is_empty() || !protocol.timing.is_empty() {
-        limits.push("times and procedures of the document, but for the cycles of reports".to_owned());
+        losses.push("times and procedures of the document, but for the cycles of reports".to_owned());
     }
-    limits
+    losses
 }
 
 /// Names the fields of the identifier with bits outside the mask.

@@ -15,7 +15,7 @@ impl Claim {
     }
 
     /// Whole bytes of which there are 3, 5, 6 or 7, as numbers rarely have.
-    fn is_odd(self) -> bool {
+    fn has_rare_width(self) -> bool {
         self.width().is_multiple_of(8) && !self.width().is_power_of_two()
     }
 
@@ -26,14 +26,14 @@ impl Claim {
 
 /// Returns which of two of the claims, given in the order of the file, is rather wrong: `one` or `other`.
 ///
-/// It is the one with the odd width; or else the one that stands out of order; or else the one that has fewer free bits beside it, which
+/// It is the one with the rare width; or else the one that stands out of order; or else the one that has fewer free bits beside it, which
 /// it may have been meant for; or else the one whose width is no power of two. If nothing tells, it is the later one.
-pub fn suspect(claims: &[Claim], one: usize, other: usize) -> usize {
+pub fn misplaced(claims: &[Claim], one: usize, other: usize) -> usize {
     let (earlier, later) = (one.min(other), one.max(other));
     let free = |index: usize| Neighbours::of(claims, index, None).free(claims);
     let (before, after) = (free(earlier), free(later));
     let evidence: [&dyn Fn(usize, usize) -> bool; 4] = [
-        &|index, _| claims[index].is_odd(),
+        &|index, _| claims[index].has_rare_width(),
         &|index, without| !Neighbours::of(claims, index, Some(without)).enclose(claims[index]),
         &|index, _| free(index) > 0 && (before == 0 || after == 0 || free(index) < before.max(after)),
         &|index, _| !claims[index].width().is_power_of_two(),
@@ -87,48 +87,48 @@ mod tests {
     }
 
     #[test]
-    fn a_bit_that_stands_out_of_order_is_suspected() {
-        assert_eq!(suspect(&bits(&[0, 1, 7, 3, 6, 7, 8]), 2, 5), 2);
-        assert_eq!(suspect(&bits(&[8, 7, 6, 3, 7, 1]), 1, 4), 4);
+    fn a_bit_that_stands_out_of_order_is_misplaced() {
+        assert_eq!(misplaced(&bits(&[0, 1, 7, 3, 6, 7, 8]), 2, 5), 2);
+        assert_eq!(misplaced(&bits(&[8, 7, 6, 3, 7, 1]), 1, 4), 4);
     }
 
     #[test]
-    fn a_bit_beside_a_missing_one_is_suspected() {
-        assert_eq!(suspect(&bits(&[0, 1, 3, 3, 4]), 2, 3), 2);
-        assert_eq!(suspect(&bits(&[0, 1, 2, 2, 4]), 2, 3), 3);
-        assert_eq!(suspect(&bits(&[7, 6, 5, 5, 3]), 2, 3), 3);
-        assert_eq!(suspect(&bits(&[7, 6, 4, 4, 3]), 2, 3), 2);
+    fn a_bit_beside_a_missing_one_is_misplaced() {
+        assert_eq!(misplaced(&bits(&[0, 1, 3, 3, 4]), 2, 3), 2);
+        assert_eq!(misplaced(&bits(&[0, 1, 2, 2, 4]), 2, 3), 3);
+        assert_eq!(misplaced(&bits(&[7, 6, 5, 5, 3]), 2, 3), 3);
+        assert_eq!(misplaced(&bits(&[7, 6, 4, 4, 3]), 2, 3), 2);
     }
 
     #[test]
-    fn a_bit_beside_fewer_free_ones_is_suspected() {
-        assert_eq!(suspect(&bits(&[1, 1, 4]), 0, 1), 0);
-        assert_eq!(suspect(&bits(&[3, 3, 5]), 0, 1), 1);
+    fn a_bit_beside_fewer_free_ones_is_misplaced() {
+        assert_eq!(misplaced(&bits(&[1, 1, 4]), 0, 1), 0);
+        assert_eq!(misplaced(&bits(&[3, 3, 5]), 0, 1), 1);
     }
 
     #[test]
     fn nine_bits_are_suspected_rather_than_eight() {
         let claims = [Claim { first: 7, last: 15 }, Claim { first: 0, last: 7 }];
-        assert_eq!(suspect(&claims, 0, 1), 0);
+        assert_eq!(misplaced(&claims, 0, 1), 0);
     }
 
     #[test]
-    fn a_bit_above_a_free_one_is_suspected_rather_than_the_field_it_hits() {
+    fn a_bit_above_a_free_one_is_misplaced_rather_than_the_field_it_hits() {
         let claims = [(29, 29), (25, 25), (23, 23), (16, 23), (8, 15)].map(|(first, last)| Claim { first, last });
-        assert_eq!(suspect(&claims, 2, 3), 2);
+        assert_eq!(misplaced(&claims, 2, 3), 2);
     }
 
     #[test]
     fn three_bytes_are_suspected_rather_than_two() {
         let claims = [Claim { first: 0, last: 23 }, Claim { first: 16, last: 31 }];
-        assert_eq!(suspect(&claims, 0, 1), 0);
+        assert_eq!(misplaced(&claims, 0, 1), 0);
         let claims = [Claim { first: 0, last: 15 }, Claim { first: 8, last: 31 }];
-        assert_eq!(suspect(&claims, 1, 0), 1);
+        assert_eq!(misplaced(&claims, 1, 0), 1);
     }
 
     #[test]
-    fn without_evidence_the_later_one_is_suspected() {
-        assert_eq!(suspect(&bits(&[0, 0]), 0, 1), 1);
+    fn without_evidence_the_later_one_is_misplaced() {
+        assert_eq!(misplaced(&bits(&[0, 0]), 0, 1), 1);
     }
 
     #[test]
