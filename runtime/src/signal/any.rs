@@ -123,7 +123,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             return self.put(raw, payload);
         }
         let value = number.to_f64();
-        match crate::scale::nearest(value).and_then(whole::<R>) {
+        match crate::scale::nearest(value).and_then(|whole| R::from_meaning(Meaning::Number(Number::Signed(whole)))) {
             Some(raw) => {
                 self.check_fraction(value, raw, payload)?;
                 self.put(raw, payload)
@@ -150,11 +150,4 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             _ => Ok(()),
         }
     }
-}
-
-/// Returns an integer as a raw value, unless it has too many bits for the type.
-fn whole<R: Raw>(integer: i64) -> Option<R> {
-    let bits = integer.cast_unsigned();
-    let raw = R::from_bits(bits);
-    ((R::SIGNED || integer >= 0) && raw.to_bits() == bits).then_some(raw)
 }
