@@ -88,7 +88,7 @@ pub struct Decoded {
 impl Decoded {
     /// Tests whether a module reports an error by this frame, as by refusing a request: its values mean nothing.
     pub fn is_error_reply(&self) -> bool {
-        self.kind != Kind::Request && self.notes.iter().any(|note| note.rule == NoteRule::ErrorCode)
+        !self.kind.is_to_module() && self.notes.iter().any(|note| note.rule == NoteRule::ErrorCode)
     }
 }
 

@@ -207,6 +207,17 @@ pub enum Kind {
     Report,
 }
 
+impl Kind {
+    /// Tests whether such a frame goes towards a module, and so keeps to the limits of what may be sent.
+    #[must_use]
+    pub const fn is_to_module(self) -> bool {
+        match self {
+            Self::Request => true,
+            Self::Reply | Self::Report => false,
+        }
+    }
+}
+
 impl Mode {
     pub(crate) const fn reply(&self, who: Who) -> Option<&Pattern> {
         match who {

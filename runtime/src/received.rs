@@ -121,7 +121,7 @@ impl<P: Protocol> Received<P> {
 
     /// Tests whether the frame shows an error code towards the controller.
     pub fn is_error_reply(&self) -> bool {
-        self.kind != Kind::Request && has_error::<P>(self.data_selectors(), &self.frame)
+        !self.kind.is_to_module() && has_error::<P>(self.data_selectors(), &self.frame)
     }
 
     fn data_selectors(&self) -> &'static [Selector] {
@@ -180,8 +180,7 @@ impl<P: Protocol> Received<P> {
     fn data(&self) -> Result<Data, Error> {
         let signals = self.signals().iter();
         let data = signals.fold(self.frame.bytes(), |data, signal| cleared(data, signal.place()));
-        let is_request = self.kind() == Kind::Request;
-        let new = if is_request { Payload::within_limits } else { Payload::new };
+        let new = if self.kind.is_to_module() { Payload::within_limits } else { Payload::new };
         let mut payload = new(self.exchange().message(), data).for_model(self.model);
         self.content.run(&mut payload)?;
         Ok(*payload.data())
@@ -190,7 +189,7 @@ impl<P: Protocol> Received<P> {
     /// Refuses a request in another addressing mode, to an address that the document does not name, or that the device
     /// model does not have.
     fn check_request(&self, id: u32) -> Result<(), Error> {
-        if self.kind != Kind::Request {
+        if !self.kind.is_to_module() {
             return Ok(());
         }
         self.check_addressing(id)?;

@@ -1,7 +1,7 @@
 #![doc = include_str!("../rules/read_only_range.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Kind, Message, Protocol, SignalId};
+use crate::model::{Message, Protocol, SignalId};
 use crate::rule::rules;
 
 rules! {
@@ -27,5 +27,5 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 fn is_sent(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {
-    protocol.frames_of(message).any(|frame| frame.kind == Kind::Request && frame.signals.contains(&signal))
+    protocol.frames_of(message).any(|frame| frame.kind.is_to_module() && frame.signals.contains(&signal))
 }

@@ -279,7 +279,7 @@ impl<'a> Decoder<'a> {
         let fitting = patterns.filter_map(|(shown, pattern)| {
             let tolerated = self.fits(pattern)?;
             let is_shown =
-                |own: &&Travel| own.mode == shown.mode && (frame.kind == Kind::Request || own.who == shown.who);
+                |own: &&Travel| own.mode == shown.mode && (frame.kind.is_to_module() || own.who == shown.who);
             let own = frame.travels.iter().find(is_shown);
             let fit = match (own.is_some(), tolerated) {
                 (true, false) => Fit::Documented,
@@ -355,7 +355,7 @@ impl<'a> Decoder<'a> {
             let value = u64::from(field.get(self.frame.id));
             Some((&field.name, value, field.normal.filter(|normal| u64::from(*normal) != value)?, field.enumeration))
         });
-        let payload = selectors.iter().filter(|_| frame.kind != Kind::Request).filter_map(|(id, value)| {
+        let payload = selectors.iter().filter(|_| !frame.kind.is_to_module()).filter_map(|(id, value)| {
             let selector = &self.protocol[*id];
             let normal = selector.normal.filter(|normal| normal != value)?;
             Some((&selector.name, *value, u32::try_from(normal).unwrap_or(0), selector.enumeration))

@@ -2,7 +2,7 @@
 
 use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
-use crate::model::{FrameLayout, Kind, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace};
+use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace};
 use crate::nearest;
 
 /// Notes that a request does not get: it is refused.
@@ -210,7 +210,7 @@ fn confirm(
         return Err(refuse(message, &text));
     }
     let forbidden = decoded.notes.iter().find(|note| FORBIDDEN.contains(&note.rule));
-    match forbidden.filter(|_| decoded.kind == Kind::Request) {
+    match forbidden.filter(|_| decoded.kind.is_to_module()) {
         Some(note) => Err(refuse(message, &note.text)),
         None => Ok(()),
     }

@@ -21,7 +21,7 @@ pub enum Limits {
 impl Limits {
     /// Returns what holds in a kind of frame.
     pub fn of(kind: Kind, model: Option<ModelId>) -> Self {
-        if kind == Kind::Request { Self::Range(model) } else { Self::Bits }
+        if kind.is_to_module() { Self::Range(model) } else { Self::Bits }
     }
 
     /// Returns what a signal is allowed.

@@ -30,6 +30,14 @@ impl Kind {
             Self::Report => "report",
         }
     }
+
+    /// Tests whether such a frame goes towards a module, and so keeps to the limits of what may be sent.
+    pub fn is_to_module(self) -> bool {
+        match self {
+            Self::Request => true,
+            Self::Reply | Self::Report => false,
+        }
+    }
 }
 
 /// Who answers a request.

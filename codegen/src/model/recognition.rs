@@ -132,7 +132,7 @@ impl Recognition {
     ) -> Self {
         // A frame has a few ends of its own, and shares some with others.
         let mut planner = Planner { frames, selectors, ends_left: 64 * frames.len() + 1024 };
-        let (requests, replies) = frames.ids().partition(|frame| frames[*frame].kind == Kind::Request);
+        let (requests, replies) = frames.ids().partition(|frame| frames[*frame].kind.is_to_module());
         let (requests, replies) = (planner.course(requests), planner.course(replies));
         Self { to_module, to_controller, requests, replies, is_whole: planner.ends_left > 0 }
     }

@@ -158,8 +158,8 @@ fn frame(protocol: &Protocol, group: Group, name: String) -> DbcMessage {
     let sent = &group.sent;
     let module = text::module(common(sent, |sent| sent.node).flatten());
     let controller = text::CONTROLLER.to_owned();
-    let is_request = sent[0].layout.kind == Kind::Request;
-    let (sender, receivers) = if is_request { (controller, module) } else { (module, controller) };
+    let is_to_module = sent[0].layout.kind.is_to_module();
+    let (sender, receivers) = if is_to_module { (controller, module) } else { (module, controller) };
     DbcMessage {
         id: sent[0].id,
         extended: protocol.identifier.extended,

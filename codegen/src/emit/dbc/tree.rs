@@ -7,7 +7,7 @@ use canspec_runtime::Place;
 use super::file::Signal;
 use super::names::unique;
 use super::signals;
-use crate::model::{FrameId, FrameLayout, Kind, Message, Protocol, SelectorId, SelectorPlace};
+use crate::model::{FrameId, FrameLayout, Message, Protocol, SelectorId, SelectorPlace};
 
 /// One of the frames that share an identifier.
 #[derive(Clone, Copy)]
@@ -160,7 +160,7 @@ impl<'a> Grower<'_, 'a> {
         let space = if branch.label.is_empty() { "" } else { "_" };
         let name = format!("{}{space}{}", branch.label, selector.name);
         let place = place(self.protocol, id).unwrap_or(Place::byte(0));
-        let start = only.or(selector.normal.filter(|_| of.layout.kind != Kind::Request));
+        let start = only.or(selector.normal.filter(|_| !of.layout.kind.is_to_module()));
         Signal { start: start.map(i128::from), ..signals::selector(self.protocol, selector, place, only, name) }
     }
 

@@ -204,11 +204,16 @@ local function pattern_fit(frame, pattern)
   return fit
 end
 
+-- Tests whether such a frame goes towards a module.
+local function is_to_module(layout)
+  return layout.kind == "request"
+end
+
 -- Calls `found` with each mode that the identifier shows, who answers, and how well it fits: 1 is best, from 3 on the
 -- message does not have the mode.
 local function each_mode(frame, layout, found)
   for _, mode in ipairs(protocol.modes) do
-    for _, who in ipairs(layout.kind == "request" and REQUEST or REPLIES) do
+    for _, who in ipairs(is_to_module(layout) and REQUEST or REPLIES) do
       local pattern = mode[who]
       local fit = pattern and pattern_fit(frame, pattern)
       if fit then
@@ -453,7 +458,7 @@ local function error_notes(frame, decoded, note)
     local value = identifier_field(frame, index)
     if field.normal and field.normal ~= value then note("error_code", error_note(field, value)) end
   end
-  if decoded.layout.kind == "request" then return end
+  if is_to_module(decoded.layout) then return end
   for _, known in ipairs(decoded.selectors) do
     local normal = known.selector.normal
     if normal and normal ~= key(known.value) then note("error_code", error_note(known.selector, known.value)) end

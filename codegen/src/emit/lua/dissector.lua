@@ -174,7 +174,7 @@ end
 
 -- Says in place of the values what a frame says that reports an error; nil of any other.
 local function refusal(decoded)
-  if decoded.layout.kind == "request" then return nil end
+  if is_to_module(decoded.layout) then return nil end
   for _, note in ipairs(decoded.notes) do
     if note.rule == "error_code" then return (decoded.layout.kind == "reply" and "refused, " or "in error, ") .. note.text end
   end
