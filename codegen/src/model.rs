@@ -16,7 +16,7 @@ mod signal;
 
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
-pub use encoding::{Encoding, Piece, raw_limits};
+pub use encoding::{Encoding, Linear, Piece, raw_limits};
 pub use example::{Example, Failure, Meaning, Misfit, ValueExample};
 pub use id::{
     AccessId, AddressTypeId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId, ModelId,

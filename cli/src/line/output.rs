@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Frame, Note, Reading, Unrecognised, Value};
-use canspec_codegen::model::{Encoding, FieldId, Message, Protocol, SelectorId, Signal, Table};
+use canspec_codegen::model::{FieldId, Message, Protocol, SelectorId, Signal, Table};
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
@@ -172,7 +172,7 @@ impl<'a> SignalObject<'a> {
 
 /// Returns the names of the set bits of a status word.
 pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> Vec<&'a str> {
-    let Encoding::Status(word) = signal.encoding else { return Vec::new() };
+    let Some(word) = signal.encoding.status_word() else { return Vec::new() };
     let bits = protocol.status_words[word].bits.iter();
     bits.filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str()).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::Float;
-use crate::model::{Encoding, Protocol, Signal};
+use crate::model::{Linear, Protocol, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
 
@@ -82,7 +82,7 @@ fn each_scaled(
 ) {
     for message in &protocol.messages {
         for signal in message.signals.iter().filter(|signal| !signal.encoding.is_unscaled()) {
-            let Encoding::Number { signed, scale, offset } = signal.encoding else { continue };
+            let Some(Linear { signed, scale, offset }) = signal.encoding.linear() else { continue };
             if let Some(why) = fault(signal, signed, scale, offset) {
                 let text = format!("`{}.{}`: {why}", message.name, signal.name);
                 let at = signal.doc.path.key("scale").at_value();

@@ -1,7 +1,7 @@
 #![doc = include_str!("../rules/no_unit.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Encoding, Protocol, Signal};
+use crate::model::{Protocol, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
 
@@ -21,10 +21,10 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 fn has_scale(signal: &Signal) -> bool {
-    matches!(signal.encoding, Encoding::Number { scale, .. } if scale != Rational::ONE)
+    signal.encoding.linear().is_some_and(|linear| linear.scale != Rational::ONE)
 }
 
 fn is_nameless(signal: &Signal) -> bool {
-    let is_scaled = matches!(signal.encoding, Encoding::Number { .. }) && !signal.encoding.is_unscaled();
+    let is_scaled = signal.encoding.linear().is_some() && !signal.encoding.is_unscaled();
     is_scaled && signal.unit.is_none() && signal.doc.title.is_none()
 }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::misplaced::{Claim, misplaced};
-use crate::model::{Doc, Encoding, FrameLayout, Message, Protocol, SelectorPlace, Signal};
+use crate::model::{Doc, FrameLayout, Message, Protocol, SelectorPlace, Signal};
 use crate::rule::rules;
 
 rules! {
@@ -21,8 +21,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             check_leaves(message, &leaves(protocol, frame), &mut reported, diagnostics);
         }
         for signal in &message.signals {
-            let Encoding::Packed { parts, .. } = &signal.encoding else { continue };
-            let parts: Vec<_> = parts.iter().map(leaf).collect();
+            let parts: Vec<_> = signal.encoding.parts().iter().map(leaf).collect();
             check_leaves(message, &parts, &mut HashSet::new(), diagnostics);
         }
     }

@@ -1,7 +1,7 @@
 //! What was decoded, as what encodes it.
 
 use super::{Content, Decoded, Form, Frame, Input, Value};
-use crate::model::{Encoding, Example, FrameLayout, Message, Protocol, Signal};
+use crate::model::{Example, FrameLayout, Message, Protocol, Signal};
 
 impl Frame {
     /// Returns the frame of an example; one printed without data has those bytes alone that choose its message.
@@ -60,7 +60,7 @@ impl Input {
             Value::Number(value) => Self::Number(*value),
             Value::Name(text) | Value::Text(text) => Self::Text(text.clone()),
             Value::Status { set, unknown } => {
-                let Encoding::Status(word) = signal.encoding else { return Self::Raw(bits.into()) };
+                let Some(word) = signal.encoding.status_word() else { return Self::Raw(bits.into()) };
                 let names = protocol[word].bits.iter().filter(|bit| set.contains(&bit.bit));
                 Self::Status { set: names.map(|bit| bit.name.clone()).collect(), unknown: *unknown }
             }

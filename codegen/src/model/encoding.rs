@@ -34,31 +34,86 @@ pub enum Encoding {
     },
 }
 
+/// How a number is made of a raw one: physical = raw * scale + offset.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear {
+    /// Two's complement.
+    pub signed: bool,
+    /// Physical value of one step.
+    pub scale: Rational,
+    /// Physical value of raw 0.
+    pub offset: Rational,
+}
+
+/// What others ask, each an exhaustive match: a new encoding has to answer.
 impl Encoding {
-    /// Returns the exact physical value of a raw number; `None` of what is no number, and on overflow.
-    pub fn value_of(&self, raw: i128) -> Option<Rational> {
-        let Self::Number { scale, offset, .. } = self else { return None };
-        Rational::integer(raw).times(*scale)?.plus(*offset)
+    /// Returns how numbers are made, if that is by a scale.
+    pub fn linear(&self) -> Option<Linear> {
+        match *self {
+            Self::Number { signed, scale, offset } => Some(Linear { signed, scale, offset }),
+            Self::Float | Self::Named(_) | Self::Status(_) | Self::Text | Self::Packed { .. } => None,
+        }
     }
 
-    /// Tests whether raw values are in two's complement.
-    pub fn is_signed(&self) -> bool {
-        matches!(self, Self::Number { signed: true, .. })
+    /// Returns the names of the values.
+    pub fn enumeration(&self) -> Option<EnumerationId> {
+        match self {
+            Self::Named(id) => Some(*id),
+            Self::Number { .. } | Self::Float | Self::Status(_) | Self::Text | Self::Packed { .. } => None,
+        }
+    }
+
+    /// Returns the conditions of a status word.
+    pub fn status_word(&self) -> Option<StatusWordId> {
+        match self {
+            Self::Status(id) => Some(*id),
+            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Text | Self::Packed { .. } => None,
+        }
+    }
+
+    /// Returns what the text of a packed value consists of, and the signals in it.
+    pub fn packed(&self) -> Option<(&[Piece], &Table<PartId, Signal>)> {
+        match self {
+            Self::Packed { pieces, parts } => Some((pieces, parts)),
+            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Text => None,
+        }
+    }
+
+    /// Returns the signals in a packed value; of any other, none.
+    pub fn parts(&self) -> &[Signal] {
+        self.packed().map_or(&[], |(_, parts)| parts)
     }
 
     /// Tests whether values have single precision.
     pub fn is_single(&self) -> bool {
-        matches!(self, Self::Float)
+        match self {
+            Self::Float => true,
+            Self::Number { .. } | Self::Named(_) | Self::Status(_) | Self::Text | Self::Packed { .. } => false,
+        }
     }
 
     /// Tests whether it is ASCII.
     pub fn is_text(&self) -> bool {
-        matches!(self, Self::Text)
+        match self {
+            Self::Text => true,
+            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Packed { .. } => false,
+        }
+    }
+
+    /// Returns the exact physical value of a raw number; `None` of what is no number, and on overflow.
+    pub fn value_of(&self, raw: i128) -> Option<Rational> {
+        let Linear { scale, offset, .. } = self.linear()?;
+        Rational::integer(raw).times(scale)?.plus(offset)
+    }
+
+    /// Tests whether raw values are in two's complement.
+    pub fn is_signed(&self) -> bool {
+        self.linear().is_some_and(|linear| linear.signed)
     }
 
     /// Tests whether the physical value is a raw integer.
     pub fn is_unscaled(&self) -> bool {
-        matches!(self, Self::Number { scale, offset, .. } if *scale == Rational::ONE && *offset == Rational::ZERO)
+        self.linear().is_some_and(|linear| linear.scale == Rational::ONE && linear.offset == Rational::ZERO)
     }
 }
 

@@ -282,7 +282,6 @@ pub struct Quantity {
 impl Signal {
     /// Returns the remarks of the signal and of its parts.
     pub(super) fn docs(&self) -> Vec<&Doc> {
-        let parts = if let Encoding::Packed { parts, .. } = &self.encoding { &**parts } else { &[] };
-        std::iter::once(&self.doc).chain(parts.iter().map(|part| &part.doc)).collect()
+        std::iter::once(&self.doc).chain(self.encoding.parts().iter().map(|part| &part.doc)).collect()
     }
 }

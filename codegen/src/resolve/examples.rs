@@ -8,8 +8,8 @@ use super::signals::first_byte;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Doc, Encoding, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Signal,
-    SignalId, StatusBit, Table, ValueExample,
+    Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Signal, SignalId,
+    StatusBit, Table, ValueExample,
 };
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
@@ -257,7 +257,7 @@ impl Resolver<'_> {
     }
 
     fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
-        let Encoding::Status(index) = signal.encoding else {
+        let Some(index) = signal.encoding.status_word() else {
             let text = format!("`{}` is no status word, so it has no list of bits", signal.name);
             self.error_with_help(&rules::EXAMPLE, path.at_value(), text, "write its value without brackets");
             return None;

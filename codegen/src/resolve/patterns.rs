@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::texts::remarks;
-use crate::model::{Constant, Encoding, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
+use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Key, Pattern};
 use crate::syntax::tree::Path;
@@ -34,7 +34,7 @@ impl Resolver<'_> {
 
     /// Adds a payload selector.
     pub fn add_selector(&mut self, signal: Signal, normal: Option<u64>) -> SelectorId {
-        let enumeration = if let Encoding::Named(id) = signal.encoding { Some(id) } else { None };
+        let enumeration = signal.encoding.enumeration();
         let place = SelectorPlace::Payload(signal.place);
         let known = self.tables.selectors.position(|known| known.name == signal.name && known.place == place);
         known.unwrap_or_else(|| {

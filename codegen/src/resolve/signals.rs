@@ -211,7 +211,7 @@ impl Resolver<'_> {
         let encoding = self.encoding(name, merged, place, &doc, owner)?;
         let signed = encoding.is_signed();
         let values = merged.path(self.diagnostics, Key::Values);
-        let named = matches!(encoding, Encoding::Named(_));
+        let named = encoding.enumeration().is_some();
         let specials = if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
         let unit = field.unit.as_ref();
         let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, Key::Unit), text, field));

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::evidence::{Evidence, Field, collect, missing_bit};
 use super::repair::{self, Repair};
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::model::{Encoding, Protocol, Signal};
+use crate::model::{Protocol, Signal};
 use crate::resolve::rules;
 use crate::syntax::tree::{Path, Step};
 
@@ -85,7 +85,7 @@ impl<'a> Accused<'a> {
     /// What is certain of a field alone.
     fn explained(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let (field, first) = (self.fields.first()?, self.denials().next()?);
-        if let Encoding::Status(word) = field.signal.encoding {
+        if let Some(word) = field.signal.encoding.status_word() {
             let bits = &self.protocol[word].bits;
             return field.moved_bit(first, bits).or_else(|| missing_bit(first, bits));
         }
@@ -147,5 +147,5 @@ impl<'a> Accused<'a> {
 }
 
 fn is_status(signal: &Signal) -> bool {
-    matches!(signal.encoding, Encoding::Status(_))
+    signal.encoding.status_word().is_some()
 }

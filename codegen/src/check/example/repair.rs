@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::ByteOrder;
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
 use crate::encoding::Words;
-use crate::model::{Encoding, Protocol, Signal, Unit};
+use crate::model::{Encoding, Linear, Protocol, Signal, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -121,7 +121,7 @@ fn with_unit(examples: &[(&Signal, &Evidence)], at: Path) -> Option<Repair> {
 /// Takes the scale that the first example has, if it is one that is easily mistaken for the other.
 fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
     let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
-    let Encoding::Number { signed, offset, .. } = signal.encoding else { return None };
+    let Linear { signed, offset, .. } = signal.encoding.linear()?;
     let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
     let raw = i128::from(signal.place.get(&example.data));
     let scale = number.minus(offset)?.over(Rational::integer(raw))?;

@@ -107,7 +107,7 @@ fn limits(record: Value, signal: &Signal) -> Value {
 }
 
 fn wide_limits(signal: &Signal, range: Range) -> Option<[Value; 2]> {
-    let Encoding::Number { signed, .. } = signal.encoding else { return None };
+    let signed = signal.encoding.linear()?.signed;
     if signal.place.width() <= LUA_BITS || !signal.encoding.is_unscaled() {
         return None;
     }

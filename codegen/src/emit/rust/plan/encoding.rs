@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::literal::{decimal, ends, physical, physical_type};
 use crate::emit::Float;
-use crate::model::{Doc, Encoding, EnumerationId, PartId, Piece, Protocol, Range, Signal, StatusWordId, Table};
+use crate::model::{Doc, Encoding, EnumerationId, Protocol, Range, Signal, StatusWordId, Table};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -138,13 +138,8 @@ pub enum Limits {
 
 /// Returns the type of a number that is a raw integer, and its limits too.
 pub fn whole(signal: &Signal) -> Option<TokenStream> {
-    match signal.encoding {
-        Encoding::Number { signed, .. } => {
-            let is_whole = signal.encoding.is_unscaled() && signal.has_whole_limits();
-            is_whole.then(|| integer(signal.place.width(), signed))
-        }
-        Encoding::Float | Encoding::Named(_) | Encoding::Status(_) | Encoding::Text | Encoding::Packed { .. } => None,
-    }
+    let is_whole = signal.encoding.is_unscaled() && signal.has_whole_limits();
+    is_whole.then(|| integer(signal.place.width(), signal.encoding.is_signed()))
 }
 
 fn fraction(number: Rational) -> [TokenStream; 2] {
@@ -172,14 +167,6 @@ fn text(width: u8) -> TokenStream {
     quote!(Text<#bytes>)
 }
 
-/// Returns what a packed value consists of; `None` of what is one value.
-pub fn parts(encoding: &Encoding) -> Option<(&[Piece], &Table<PartId, Signal>)> {
-    match encoding {
-        Encoding::Packed { pieces, parts } => Some((pieces, parts)),
-        Encoding::Number { .. } | Encoding::Float | Encoding::Named(_) | Encoding::Status(_) | Encoding::Text => None,
-    }
-}
-
 /// What a part of a packed value is in Rust.
 pub enum Part {
     /// A number of this type.
@@ -192,13 +179,6 @@ impl Part {
     /// Returns what a part is in Rust.
     pub fn new(part: &Signal) -> Self {
         let width = part.place.width();
-        match part.encoding {
-            Encoding::Text => Self::Text(text(width)),
-            Encoding::Number { .. }
-            | Encoding::Float
-            | Encoding::Named(_)
-            | Encoding::Status(_)
-            | Encoding::Packed { .. } => Self::Number(integer(width, false)),
-        }
+        if part.encoding.is_text() { Self::Text(text(width)) } else { Self::Number(integer(width, false)) }
     }
 }

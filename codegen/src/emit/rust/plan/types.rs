@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::encoding::{Words, parts};
+use super::encoding::Words;
 use super::naming::{Pool, camel_case};
 use crate::model::{
     EnumerationId, FrameId, FrameLayout, Kind, Message, MessageId, Protocol, Signal, SignalId, StatusWordId, Table,
@@ -92,7 +92,7 @@ fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Stru
 
 fn packed(message: &Message, signal: &Signal, types: &mut Pool) -> Option<Ident> {
     let name = if signal.name == "value" { message.name.clone() } else { format!("{}_{}", message.name, signal.name) };
-    parts(&signal.encoding).map(|_| types.take(camel_case(&name), "Value"))
+    signal.encoding.packed().map(|_| types.take(camel_case(&name), "Value"))
 }
 
 impl FrameTypes {

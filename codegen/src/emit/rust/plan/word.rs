@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 
 use super::doc::{self, Comment};
-use super::encoding::{Part, integer, parts};
+use super::encoding::{Part, integer};
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming, variants};
 use super::place::Written;
@@ -199,7 +199,7 @@ impl Packed {
     }
 
     fn new(protocol: &Protocol, name: &Ident, message: &Message, signal: &Signal) -> Option<Self> {
-        let (pieces, parts) = parts(&signal.encoding)?;
+        let (pieces, parts) = signal.encoding.packed()?;
         let titled = if signal.doc.title.is_some() { &signal.doc } else { &message.doc };
         let sentence = doc::sentence_of(&doc::title(titled, &signal.name));
         Some(Self {
