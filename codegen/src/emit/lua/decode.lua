@@ -60,6 +60,11 @@ local function lies_within(value, ranges)
   return false
 end
 
+-- Tests a value against limits, which are no Lua numbers where the value is none.
+local function keeps_to(value, limits)
+  return lies_within(type(limits[1]) == "number" and double(value) or value, { limits })
+end
+
 local function identifier_field(frame, index)
   local field = protocol.identifier.fields[index]
   return bits(frame.id, field.shift, field.width)
@@ -127,7 +132,7 @@ local function piece_text(frame, piece)
     return text and #text == width / 8 and text or nil
   end
   local number = type(raw) == "number" and string.format("%d", raw) or tostring(raw)
-  if piece.range and not lies_within(double(raw), { piece.range }) then return nil end
+  if piece.range and not keeps_to(raw, piece.range) then return nil end
   if not piece.digits then return number end
   return #number <= piece.digits and string.rep("0", piece.digits - #number) .. number or nil
 end
@@ -166,9 +171,7 @@ end
 
 local function range_note(signal, model, value)
   local range = signal.model_ranges and signal.model_ranges[model] or signal.range
-  if not range then return end
-  local compared = type(range[1]) == "number" and double(value) or value
-  if lies_within(compared, { range }) then return end
+  if not range or keeps_to(value, range) then return end
   local unit = signal.unit and " " .. signal.unit or ""
   local limits = plain(range[1]) .. ".." .. plain(range[2]) .. unit
   return "out_of_range", signal.name .. " " .. plain(value) .. unit .. " is outside " .. limits
