@@ -4,6 +4,7 @@ mod access;
 mod addressing;
 mod data;
 mod examples;
+mod format;
 mod identifier;
 mod keys;
 mod messages;
