@@ -1,0 +1,202 @@
+//! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
+
+use crate::plumbing::{Address, Decode, Encode, Pattern, Recognised, Task, Who};
+use crate::{
+    AddressType, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout, Mode, Place,
+    Problem, Protocol, Received, Request, Route, Selector, Signal,
+};
+
+pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
+pub const ERROR: Bits = Bits::new(28, 26);
+pub const COMMAND: Bits = Bits::new(23, 16);
+pub const TARGET: Bits = Bits::new(15, 8);
+pub const SOURCE: Bits = Bits::new(7, 0);
+
+pub const CONTROLLER: AddressType = AddressType::new("controller", 0xF0, 0xF1).strict().default_number(0xF0);
+pub const HEATER: AddressType = AddressType::new("heater", 1, 9);
+pub const GROUP: AddressType = AddressType::new("group", 0, 15).offset(0x5F).descending();
+
+pub const OTHERS: &[(u32, u32)] = &[(0x3F, 0x3F), (0x50, 0x5F), (0xF0, 0xF1)];
+pub const TO_CONTROLLER: Address = Address::new(TARGET, &CONTROLLER);
+pub const FROM_CONTROLLER: Address = Address::new(SOURCE, &CONTROLLER);
+
+pub const fn mode(name: &'static str, target: Option<&'static AddressType>, request: Pattern) -> Mode {
+    Mode { name, target, request: Some(request), one: None, each: None, coordinator: None }
+}
+
+pub const FROM_HEATER: Pattern =
+    Pattern { constants: &[], addresses: &[TO_CONTROLLER, Address::new(SOURCE, &HEATER).excluding(OTHERS)] };
+
+pub const SINGLE: Mode = Mode {
+    one: Some(FROM_HEATER),
+    ..mode(
+        "single",
+        Some(&HEATER),
+        Pattern { constants: &[], addresses: &[Address::new(TARGET, &HEATER).excluding(OTHERS), FROM_CONTROLLER] },
+    )
+};
+
+pub const GROUPED: Mode = Mode {
+    each: Some(FROM_HEATER),
+    coordinator: Some(Pattern { constants: &[], addresses: &[TO_CONTROLLER, Address::new(SOURCE, &GROUP)] }),
+    ..mode(
+        "grouped",
+        Some(&GROUP),
+        Pattern {
+            constants: &[],
+            addresses: &[Address::new(TARGET, &GROUP).excluding(&[(0, 0x4F), (0x60, 0xFF)]), FROM_CONTROLLER],
+        },
+    )
+};
+
+pub const ALL: Mode = mode("all", None, Pattern { constants: &[(TARGET, 0x3F)], addresses: &[FROM_CONTROLLER] });
+
+#[derive(Clone, Copy)]
+pub enum To {
+    Heater(u8),
+    Group(u8),
+    All,
+}
+
+impl Destination for To {
+    type Protocol = Message;
+
+    fn mode(self) -> usize {
+        match self {
+            Self::Heater(_) => 0,
+            Self::Group(_) => 1,
+            Self::All => 2,
+        }
+    }
+
+    fn number(self) -> Option<i32> {
+        match self {
+            Self::Heater(number) | Self::Group(number) => Some(number.into()),
+            Self::All => None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Identifier(pub u32);
+
+impl IdentifierFields for Identifier {
+    const FROM_RAW: fn(u32) -> Self = Self;
+    const TO_RAW: fn(Self) -> u32 = |identifier| identifier.0;
+
+    fn is_foreign(id: u32) -> bool {
+        id == 0x0100_0000
+    }
+
+    fn is_to_module(id: u32) -> bool {
+        SOURCE.of(id) >= 0xF0 && TARGET.of(id) < 0xF0
+    }
+
+    fn is_to_controller(id: u32) -> bool {
+        TARGET.of(id) >= 0xF0 && SOURCE.of(id) < 0xF0
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heat {
+    pub power_w: f64,
+}
+
+pub const FUNCTION: Selector = Selector::new("function", Place::byte(0));
+pub const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
+
+impl Heat {
+    pub const POWER: Signal<u16, f64> =
+        Signal::new("power", Place::bytes(2, 3)).unit("W").scale(10, 1).limits(0.0, 2000.0);
+    pub const SET: Exchange = Exchange::new("set", &[Some(Who::One), Some(Who::Each), Some(Who::Nobody)])
+        .with_values()
+        .request(FRAME.selectors(&[FUNCTION]).data(FUNCTION.place, 1))
+        .reply(FRAME.selectors(&[FUNCTION, RESULT]).data(FUNCTION.place, 2))
+        .of("heat", FRAME.id(COMMAND, 7))
+        .length(4)
+        .refusal(&FRAME.id(COMMAND, 9).selectors(&[FUNCTION]).data(FUNCTION.place, 1));
+    pub const READ: Exchange = Exchange::new("read", &[None, Some(Who::Coordinator), None])
+        .request(FRAME)
+        .reply(FRAME)
+        .of("heat", FRAME.id(COMMAND, 8))
+        .length(4);
+    pub const REPORT: Exchange =
+        Exchange::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
+    pub const PROBE: Exchange = Exchange::new("probe", &[None; 3]).of("heat", FRAME).length(2);
+
+    pub fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
+        Self::SET.request_to(route, &self)
+    }
+}
+
+impl Layout for Heat {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
+    const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.decode(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::POWER.encode(message.power_w, payload);
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Message {
+    Heat(Heat),
+    ReadHeat,
+}
+
+impl Protocol for Message {
+    type Identifier = Identifier;
+    const FRAME: Filter = FRAME;
+    const NORMAL: Filter = FRAME.id(ERROR, 0);
+    const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];
+
+    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
+        let data = &frame.bytes();
+        Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
+            (0x07, 0x01) => Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))),
+            (0x08, _) => Recognised::request(&Heat::READ, Self::ReadHeat),
+            (0x0A, _) => Recognised::request(&Heat::READ, Self::ReadHeat)
+                .or(Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))), frame, model)
+                .or(Recognised::request(&Heat::PROBE, Self::ReadHeat), frame, model),
+            _ => return None,
+        })
+    }
+
+    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
+        let data = &frame.bytes();
+        Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
+            (0x07, 0x02) => Recognised::reply(&Heat::SET, Self::Heat(Layout::decode(data))),
+            (0x08, _) => Recognised::reply(&Heat::READ, Self::Heat(Layout::decode(data))),
+            (0x0B, _) => Recognised::report(&Heat::REPORT, Self::Heat(Layout::decode(data))),
+            _ => return None,
+        })
+    }
+
+    fn request_lengths(id: u32) -> &'static [u8] {
+        if matches!(COMMAND.of(id), 0x07 | 0x08) { &[4] } else { &[] }
+    }
+
+    fn reply_lengths(id: u32) -> &'static [u8] {
+        Self::request_lengths(id)
+    }
+
+    fn run<T: Task>(&self, task: T) -> T::Output {
+        match self {
+            Self::Heat(message) => task.run(message),
+            Self::ReadHeat => task.run(&()),
+        }
+    }
+}
+
+pub const HEAT: Heat = Heat { power_w: 1500.0 };
+
+pub fn frame(id: u32, data: [u8; 4]) -> Frame {
+    let [a, b, c, d] = data;
+    Frame::new_raw(id, true, [a, b, c, d, 0, 0, 0, 0], 4)
+}
+
+pub fn decode(frame: &Frame) -> Result<Received<Message>, Problem> {
+    Received::decode(frame)
+}
+
+pub fn mode_of(id: u32, data: [u8; 4]) -> Option<(&'static str, bool, bool)> {
+    let addressing = decode(&frame(id, data)).expect("a known frame").addressing()?;
+    Some((addressing.mode().name, addressing.is_offered(), addressing.is_documented()))
+}
