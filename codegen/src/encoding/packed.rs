@@ -1,9 +1,8 @@
 //! One text that is made of several parts.
 
-use super::text::Text;
+use super::text::{Text, formless};
 use super::{Allowed, Input, Room, Value, bits};
 use crate::model::{Misfit, NoteRule, PartId, Piece, Signal, Table};
-use crate::number::Rational;
 
 pub struct Packed<'a> {
     pub signal: &'a Signal,
@@ -29,8 +28,7 @@ impl Room for Packed<'_> {
     }
 
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
-        let text = || format!("{} is not a text of the documented form", self.signal.name);
-        (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
+        formless(self.signal, value)
     }
 
     /// Returns the form as the spec writes it.
@@ -106,11 +104,6 @@ fn bits_of_part(part: &Signal, text: &str) -> Option<u64> {
     }
     let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let raw: u64 = digits.then(|| text.parse().ok()).flatten()?;
-    (raw <= part.place.max() && in_range(part, raw)).then_some(raw)
-}
-
-/// Tests a part against its range.
-fn in_range(part: &Signal, raw: u64) -> bool {
-    let raw = Rational::integer(raw.into());
-    part.range.is_none_or(|range| range.minimum <= raw && raw <= range.maximum)
+    let is_in_range = part.range.is_none_or(|range| range.has_whole(raw.into()));
+    (raw <= part.place.max() && is_in_range).then_some(raw)
 }

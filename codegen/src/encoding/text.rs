@@ -25,13 +25,18 @@ impl Room for Text<'_> {
     }
 
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
-        let text = || format!("{} is not a text of the documented form", self.signal.name);
-        (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
+        formless(self.signal, value)
     }
 
     fn description(&self) -> Vec<String> {
         vec![format!("text of {} characters", self.signal.place.width().div_ceil(8))]
     }
+}
+
+/// Says that bits are no text, if that is what is odd about them.
+pub fn formless(signal: &Signal, value: &Value) -> Option<(NoteRule, String)> {
+    let text = || format!("{} is not a text of the documented form", signal.name);
+    (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
 }
 
 impl Text<'_> {
