@@ -10,7 +10,7 @@ use crate::number::Rational;
 use crate::syntax::tree::Path;
 
 /// The types that words have of their own.
-pub struct Words<'a> {
+pub struct WordTypes<'a> {
     /// Named values.
     pub enumerations: &'a Table<EnumerationId, Ident>,
     /// Status words.
@@ -41,7 +41,7 @@ pub struct Coding {
 
 impl Coding {
     /// Returns what a signal is in Rust.
-    pub fn new(protocol: &Protocol, words: &Words, signal: &Signal) -> Self {
+    pub fn new(protocol: &Protocol, words: &WordTypes, signal: &Signal) -> Self {
         let width = signal.place.width();
         match &signal.encoding {
             Encoding::Number { signed, scale, offset } => Self {
@@ -154,14 +154,14 @@ fn step(signal: &Signal, scale: Rational, offset: Rational) -> Option<String> {
     (!facts.is_empty()).then(|| facts.join(", "))
 }
 
-/// Returns the smallest integer type of so many bits.
+/// Returns the smallest integer type that holds `width` bits.
 pub fn integer(width: u8, signed: bool) -> TokenStream {
     let size = width.next_power_of_two().max(8);
     let name = if signed { format_ident!("i{size}") } else { format_ident!("u{size}") };
     quote!(#name)
 }
 
-/// Returns the type of a text of so many bits.
+/// Returns the type of a text that takes `width` bits.
 fn text(width: u8) -> TokenStream {
     let bytes = Literal::u8_unsuffixed(width / 8);
     quote!(Text<#bytes>)

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::encoding::Words;
+use super::encoding::WordTypes;
 use super::naming::{Pool, camel_case};
 use crate::model::{
     EnumerationId, FrameId, FrameLayout, Kind, Message, MessageId, Protocol, Signal, SignalId, StatusWordId, Table,
@@ -60,9 +60,9 @@ impl Types {
     }
 
     /// Returns the types of words as a signal has them.
-    pub fn words(&self, message: MessageId, signal: SignalId) -> Words<'_> {
+    pub fn words(&self, message: MessageId, signal: SignalId) -> WordTypes<'_> {
         let packed = self.packed[message][signal].as_ref();
-        Words { enumerations: &self.enumerations, statuses: &self.status_words, packed }
+        WordTypes { enumerations: &self.enumerations, statuses: &self.status_words, packed }
     }
 
     /// Returns the type of named values.
