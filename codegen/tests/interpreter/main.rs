@@ -27,6 +27,8 @@ access: {set: {request: {}, reply: {}, answers: {single: one}}}
 messages:
   positive: {section: "1", match: {command: 1}, access: [set], value: {bytes: 0..7, range: 0..1000}}
   negative: {section: "1", match: {command: 2}, access: [set], value: {bytes: 7..0, as: signed, range: 0..1000}}
+  single: {section: "1", match: {command: 3}, access: [set], value: {bytes: 0..3, as: float, range: 0.7..1.1}}
+  scaled: {section: "1", match: {command: 4}, access: [set], value: {bytes: 0..3, scale: 1/10000, range: 0..16777.218}}
 "#;
 
 /// Returns the specs of a folder of the workspace, in order.

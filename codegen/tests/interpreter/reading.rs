@@ -107,6 +107,17 @@ fn the_note_of_a_wide_number_has_all_its_digits() {
 }
 
 #[test]
+fn a_float_meets_its_limits_as_nearly_as_it_can_and_a_scaled_number_exactly() {
+    let wide = written(WIDE);
+    // The floats nearest to 0.7 and 1.1 are 0.69999999 and 1.10000002; beyond them are 3F333332 and 3F8CCCCE.
+    let of_float = |bits: &str| notes(&wide, &format!("031#{bits}00000000")).len();
+    assert_eq!(["3F333332", "3F333333", "3F8CCCCD", "3F8CCCCE"].map(of_float), [1, 0, 0, 1]);
+    // The float nearest to 16777.218 is 16777.21875, and 16777.2187 lies between the two.
+    let of_scaled = |raw: u32| notes(&wide, &format!("041#{raw:08X}00000000")).len();
+    assert_eq!([167_772_180, 167_772_187].map(of_scaled), [0, 1]);
+}
+
+#[test]
 fn an_error_code_gets_a_note() {
     assert_eq!(notes(&feature("addressing"), "0443F003#3200000000000000"), ["error_code"]);
     let registers = feature("register_table");
