@@ -56,7 +56,7 @@ fn main() -> io::Result<()> {
     Ok(())
 }
 
-/// Returns a spec of so many messages.
+/// Returns a spec with `count` messages.
 fn spec(count: u32) -> String {
     (0..count).fold(HEAD.to_owned(), |mut spec, number| {
         let _ = write!(
@@ -69,7 +69,7 @@ fn spec(count: u32) -> String {
     })
 }
 
-/// Returns a log of replies, each of one of so many messages.
+/// Returns a log of replies that go through all messages.
 fn log(messages: u32, lines: u32) -> String {
     (0..lines).fold(String::new(), |mut log, line| {
         // A step without a common divisor goes through all messages in no order that a cache likes.

@@ -1,4 +1,4 @@
-//! Which of two entries that claim the same bits is rather the wrong one: the one that does not fit among its neighbours.
+//! Two entries claim the same bits: the one that does not fit among its neighbours is probably wrong.
 
 /// The bits that an entry claims, from `first` to `last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,13 +8,13 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claims the set bits of a mask, the most significant bit of which is bit 0.
+    /// Claims the set bits of a mask, whose most significant bit is bit 0.
     pub fn of_mask(mask: u64) -> Self {
         let bit = |count: u32| u8::try_from(count).unwrap_or(u8::MAX);
         Self { first: bit(mask.leading_zeros()), last: bit(63_u32.saturating_sub(mask.trailing_zeros())) }
     }
 
-    /// Whole bytes of which there are 3, 5, 6 or 7, as numbers rarely have.
+    /// Tests whether this is 3, 5, 6 or 7 whole bytes, which numbers rarely have.
     fn has_rare_width(self) -> bool {
         self.width().is_multiple_of(8) && !self.width().is_power_of_two()
     }
@@ -24,10 +24,15 @@ impl Claim {
     }
 }
 
-/// Returns which of two of the claims, given in the order of the file, is rather wrong: `one` or `other`.
+/// Returns which of two claims is probably wrong, `one` or `other`; the claims have the order of the file.
 ///
-/// It is the one with the rare width; or else the one that stands out of order; or else the one that has fewer free bits beside it, which
-/// it may have been meant for; or else the one whose width is no power of two. If nothing tells, it is the later one.
+/// The first of these tests that tells them apart decides:
+/// - its width is rare;
+/// - it stands out of order;
+/// - it has free bits beside it, and fewer than the other one: it may have been meant for these;
+/// - its width is no power of two.
+///
+/// If no test tells, the later one is wrong.
 pub fn misplaced(claims: &[Claim], one: usize, other: usize) -> usize {
     let (earlier, later) = (one.min(other), one.max(other));
     let free = |index: usize| Neighbours::of(claims, index, None).free(claims);

@@ -39,8 +39,9 @@ impl Layout for () {
     const ENCODE: Encode<Self> = |(), _| Ok(());
 }
 
-/// What is done with the values of a message, whichever it is; each task has code of its own, so that reading does not
-/// link writing.
+/// What is done with the values of any message.
+///
+/// Each task has code of its own, so that reading does not link writing.
 pub trait Task {
     /// What comes out.
     type Output;

@@ -4,8 +4,10 @@ use crate::plumbing::Scale;
 use crate::raw::{Integer, Raw};
 use crate::{Error, Meaning, Number, Payload, Signal};
 
-/// The type of the physical values and of the limits of a signal whose raw values have the type `R`: that type itself, so
-/// that integers are compared as integers, or a floating-point type where there is a scale or a limit with a fraction.
+/// The type of a signal's physical values and limits; its raw values have the type `R`.
+///
+/// It is `R` itself where that will do, so that integers are compared as integers. A scale, or a limit with a fraction,
+/// needs a floating-point type.
 pub trait Physical<R: Raw>: Copy + 'static {
     /// Returns the physical value of a raw one.
     fn of(raw: R, scale: Option<Scale>) -> Self;

@@ -27,8 +27,8 @@ impl<P: Protocol> Received<P> {
     ///
     /// # Errors
     ///
-    /// Says why the frame is not recognised; the tests come in the order of [`Problem`], except that selectors in the
-    /// data are looked at once the length is known to be right.
+    /// Says why the frame is not recognised. The tests have the order of [`Problem`], but for one: selectors in the data
+    /// are read after the length.
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         Self::decode_by(None, frame)
     }
@@ -157,9 +157,13 @@ impl<P: Protocol> Received<P> {
     ///
     /// # Errors
     ///
-    /// Refuses what the signals cannot hold and identifiers of another message; in a request also values outside their
-    /// limits, messages that the device model does not have, addressing modes that the message does not have, and
-    /// addresses that the document does not name.
+    /// Refuses what the signals cannot hold, and identifiers of another message.
+    ///
+    /// In a request it also refuses
+    /// - values outside their limits,
+    /// - messages that the device model does not have,
+    /// - addressing modes that the message does not have,
+    /// - addresses that the document does not name.
     pub fn encode(&self) -> Result<Frame, Error> {
         let id = P::Identifier::TO_RAW(self.identifier);
         let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());

@@ -11,8 +11,9 @@ use crate::{Data, Error, Number, Payload, Place};
 
 pub use any::{AnySignal, Reading, WriteSignal};
 
-/// A named bit range of a message's data, whose raw value has the type `R` and whose physical value the type `F`: the
-/// same one unless it is scaled.
+/// A named bit range of a message's data.
+///
+/// Its raw value has the type `R`, its physical value the type `F`: another one only where the value is calculated.
 ///
 /// [`get`](Self::get) and [`put`](Self::put) deal in raw values; [`decode`](Self::decode) and [`encode`](Self::encode)
 /// in physical ones. Limits of raw integers are integers, and are compared as such.

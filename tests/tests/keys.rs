@@ -119,7 +119,7 @@ errata:
   E1: {kind: note, prints: a, uses: b, because: c}
 "#;
 
-/// Returns what is written after a key, of which something should mean something in each place that reads the key.
+/// Returns what is written after a key. In each place that reads the key, one of these should mean something.
 fn samples(key: Key) -> &'static [&'static str] {
     match key {
         Key::Bytes => &["1", "5", "3..2"],
@@ -150,8 +150,9 @@ fn samples(key: Key) -> &'static [&'static str] {
 /// The keys that lead to a field.
 type Place = Vec<String>;
 
-/// Where one key alone cannot be changed without an error, although it has an effect: all bits of the identifier are
-/// taken, an address that counts down has another offset, and only one field continues a set.
+/// Keys that have an effect, but cannot be changed alone without an error.
+///
+/// All bits of the identifier are taken. An address that counts down has another offset. Only one field continues a set.
 const ALWAYS_ERRORS: [(Key, char); 3] = [(Key::Bits, 'I'), (Key::Scale, 'A'), (Key::Continues, 'I')];
 
 /// What one sample of a key does in one place.

@@ -1,4 +1,4 @@
-//! Words of which each bit is a condition.
+//! Words whose bits are conditions.
 
 use super::{Allowed, Input, Room, Value, bits};
 use crate::model::{Misfit, NoteRule, Signal, StatusWord};
@@ -52,7 +52,7 @@ impl Room for Status<'_> {
 }
 
 impl Status<'_> {
-    /// Returns the raw bits of which the names are given.
+    /// Returns the raw bits that have these names.
     fn named(&self, names: &[String]) -> Result<u64, String> {
         names.iter().try_fold(0, |bits, name| {
             let bit = self.word.bits.iter().find(|bit| bit.name == *name);

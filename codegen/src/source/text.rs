@@ -44,7 +44,7 @@ impl Source {
         self.lines[first - 1]..self.lines.get(next).copied().unwrap_or(self.text.len())
     }
 
-    /// Returns the byte offset of a character of which the position in the text is known.
+    /// Returns the byte offset of a character, whose position in the text is known.
     pub(crate) fn byte_of_character(&self, position: usize) -> usize {
         let block = self.blocks.partition_point(|&before| before <= position).max(1) - 1;
         let start = block * BLOCK;

@@ -37,8 +37,10 @@ pub(super) fn read(tree: &Node, problems: &mut Vec<Diagnostic>) -> Option<Spec> 
     }
 }
 
-/// Adds what the reader found. Where the gate refused the value of an unknown key as a plain word, the key is the mistake;
-/// where it refused something else, that explains the key.
+/// Adds what the reader found.
+///
+/// The gate may have refused the value of an unknown key. If it was a plain word, the key is the mistake. Anything else
+/// that was refused explains the key.
 fn add(item: Diagnostic, tree: &Node, problems: &mut Vec<Diagnostic>) {
     let refused = match &item.at {
         At::Key(path) if *item.rule == UNKNOWN_KEY => tree.get(path),

@@ -1,7 +1,7 @@
 //! The mistakes that no test finds, each with the reason for which it may stay so.
 //!
-//! A line says in which function and of which kind they are, and after the colon why nobody needs to find them: for
-//! most, because what the program does is the same. A `*` stands for any part of a function's name, or for any kind.
+//! A line names their function and kind, and says after the colon why nobody needs to find them. Most of them leave what
+//! the program does as it is. A `*` stands for any part of a function's name, or for any kind.
 
 use std::{fs, io, path::Path};
 

@@ -1,8 +1,10 @@
 //! Plants one mistake after the other in a copy of the sources, and proves that the tests find each.
 //!
-//! The mistakes are made from the syntax of the sources. With words as arguments, only those whose part, file and line of
-//! output have them all; with `--since REVISION`, only those in functions that have changed; with `--at-most NUMBER`, so many of
-//! each part; with `--list`, none is planted.
+//! The mistakes are made from the syntax of the sources. Arguments choose among them:
+//! - words: those whose part, file and line of output have them all;
+//! - `--since REVISION`: those in functions that have changed;
+//! - `--at-most NUMBER`: no more than this of each part;
+//! - `--list`: all are listed, and none is planted.
 #![expect(clippy::print_stdout, reason = "the table is what people call it for")]
 
 mod accepted;

@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(formatted(&code.parse().expect("the tokens of Rust")), code);
     }
 
-    /// Returns a name that is so long.
+    /// Returns a name of `length` letters.
     fn name(length: usize) -> String {
         "a".repeat(length)
     }

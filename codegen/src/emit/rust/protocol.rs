@@ -82,8 +82,9 @@ fn definition(plan: &Plan, derives: Derives) -> TokenStream {
     }
 }
 
-/// Emits the functions of the trait, each with those in which it goes on: how frames are recognised, how long those should
-/// be that are not, and how a task runs on what a message carries.
+/// Emits the functions of the trait: they recognise frames, say how long frames should be, and run a task on a message.
+///
+/// A long function goes on in others, which stand behind it.
 fn functions(plan: &Plan) -> Vec<Vec<TokenStream>> {
     let Plan { requests, replies, selectors, .. } = plan;
     let directions = [("request", requests), ("reply", replies)];

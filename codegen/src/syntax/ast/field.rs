@@ -1,7 +1,7 @@
 //! The one table of a field's keys: each row says what is read, and whether a type passes it on.
 //!
-//! Whatever else is true of a key is a `match` on [`Key`] that names every key: who reads it in `resolve/keys.rs`, which
-//! values it takes in `schema/values.rs`.
+//! Whatever else is true of a key is a `match` that names every [`Key`]. `resolve/keys.rs` says who reads it, and
+//! `schema/values.rs` which values it takes.
 
 use indexmap::IndexMap;
 use serde::Deserialize;
@@ -141,7 +141,7 @@ keys! {
     Fields "fields": fields: Map<Field>, inherited;
     /// Bits of a status word by name, in place of `fields`: `{fan_fault: {bit: 3, severity: fault}}`; none if absent.
     Status "status": status: Map<StatusBit>, inherited;
-    /// Form of a text that the parts in `fields` make up, a number with at least so many digits:
+    /// Text of a packed value: the names of its parts in braces, and behind a colon the least digits of a number:
     /// `"{letter}-{number:4}"`; none if absent.
     Format "format": format: Option<String>, inherited;
     /// Raw value that is always sent and required: `0x1205`; none if absent. Another value in the identifier is another

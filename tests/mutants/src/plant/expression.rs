@@ -56,7 +56,7 @@ const STEPS: [&str; 17] = [
     "xor",
 ];
 
-/// Calls of which the argument is a predicate.
+/// Calls whose argument is a predicate.
 const PREDICATES: [&str; 13] = [
     "all",
     "any",

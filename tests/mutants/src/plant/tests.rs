@@ -94,7 +94,7 @@ fn code_that_only_tests_compile_has_no_mistakes() {
     assert_eq!(mistakes(&file, "module"), []);
 }
 
-/// Prints a file without the spaces, of which macros have others.
+/// Prints a file without its spaces, since those in macros differ.
 fn printed(file: &syn::File) -> String {
     prettyplease::unparse(file).split_whitespace().collect()
 }

@@ -7,11 +7,13 @@ use super::control::closure;
 use super::flat::flat;
 use super::shape::{STEP, Shape, breaks, first_line, is_broken, line_break, width};
 
-/// Elements of which each is at most so wide are put on as few lines as they need.
+/// Elements that are no wider than this share lines.
 const SHORT: usize = 10;
 
-/// Lays out items in brackets that do not fit on one line: the last one alone is broken if that is enough, else each has
-/// its line. The text before stands on the same line as the opening bracket.
+/// Lays out items in brackets that do not fit on one line.
+///
+/// If that is enough, only the last item is broken. Else each has its line. The text before stands on the same line as
+/// the opening bracket.
 pub fn broken(before: &str, brackets: [char; 2], items: &Punctuated<Expr, Token![,]>, shape: Shape) -> Option<String> {
     let [open, close] = brackets;
     let items: Vec<_> = items.iter().collect();

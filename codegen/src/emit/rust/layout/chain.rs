@@ -37,7 +37,7 @@ impl Link<'_> {
     }
 }
 
-/// Counts the question marks behind a chain, for each of which rustfmt keeps a column more than it takes.
+/// Counts the question marks behind a chain. rustfmt keeps one column more for each than it takes.
 pub fn tries(expr: &Expr) -> usize {
     match expr {
         Expr::Try(tried) => 1 + tries(&tried.expr),
@@ -70,8 +70,9 @@ fn links(expr: &Expr) -> (&Expr, Vec<Link<'_>>) {
     }
 }
 
-/// Lays out a chain that does not fit on one line: its last link alone is broken if that is enough, else each link has its
-/// line.
+/// Lays out a chain that does not fit on one line.
+///
+/// If that is enough, only its last link is broken. Else each link has its line.
 pub fn broken(expr: &Expr, shape: Shape) -> Option<String> {
     let (root, links) = links(expr);
     let mut root = shape.rewrite(root)?;

@@ -6,7 +6,7 @@ use super::assignment::{assigned, is_better_below};
 use super::flat::{flat, pattern, patterns, tokens};
 use super::shape::{STEP, Shape, is_broken, line_break, width};
 
-/// Patterns of which each is at most so wide are put on as few lines as they need.
+/// Patterns that are no wider than this share lines.
 const SHORT: usize = 20;
 
 /// Lays out statements, each on its line.

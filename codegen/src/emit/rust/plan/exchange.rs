@@ -31,7 +31,7 @@ pub struct Access {
     pub answers: Vec<Option<Who>>,
     /// Whether requests carry values.
     pub has_values: bool,
-    /// The set of which messages are members.
+    /// The set whose members the messages are.
     pub member_of: Option<String>,
     /// The method that adds a kind of frame, and what such frames show.
     pub frames: Vec<(Ident, Filter)>,
@@ -63,7 +63,7 @@ pub struct Exchange {
 struct Way {
     constant: Ident,
     access: AccessId,
-    /// The set of which the messages are members.
+    /// The set whose members the messages are.
     set: Option<MessageId>,
     frames: Vec<Shown>,
 }
@@ -204,7 +204,7 @@ pub fn exchange_name(protocol: &Protocol, access: &str, set: Option<MessageId>) 
     set.map_or_else(|| access.to_owned(), |set| format!("{access}_{}", protocol[set].name))
 }
 
-/// Says as a member of which set a message travels.
+/// Names the set in which a message travels as a member.
 fn membership(protocol: &Protocol, set: Option<MessageId>) -> String {
     set.map_or_else(String::new, |set| format!(" in the set `{}`", protocol[set].name))
 }

@@ -8,7 +8,7 @@ use crate::emit::Float;
 use crate::model::Range;
 use crate::number::Rational;
 
-/// Writes a field of so many bits in hexadecimal.
+/// Writes a field in hexadecimal, with the digits that its width needs.
 pub fn hexadecimal(value: impl Into<u64>, width: u8) -> TokenStream {
     let digits = usize::from(width.div_ceil(4));
     positive(&format!("0x{}", from_the_right(&format!("{:0digits$X}", value.into()), 4)))
