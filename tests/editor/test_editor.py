@@ -60,11 +60,22 @@ class Edited:
         return {"start": self.places[0], "end": self.places[1]}
 
 
-def documented(heading):
-    """Returns the keys in the first table of a section of the language reference."""
+def rows(heading):
+    """Returns the cells of each row in the first table of a section of the language reference."""
     section = re.split(rf"^### {re.escape(heading)}$", REFERENCE, flags=re.MULTILINE)[1]
     table = re.search(r"^\| (?:key|entry) .*\n\|[-|]*\n((\|.*\n)*)", section, flags=re.MULTILINE)[1]
-    return {key for row in table.splitlines() for key in re.findall(r"`(\w+)`", row.split("|")[1])}
+    return [row.split("|")[1:] for row in table.splitlines()]
+
+
+def documented(heading):
+    """Returns the keys in such a table."""
+    return {key for cells in rows(heading) for key in re.findall(r"`(\w+)`", cells[0])}
+
+
+def words(key):
+    """Returns the words among which a key of a field chooses."""
+    [choice] = [cells[2] for cells in rows("Fields") if cells[0].strip() == f"`{key}`"]
+    return set(re.findall(r"`(\w+)`", choice))
 
 
 class Completion(unittest.TestCase):
@@ -131,7 +142,7 @@ class Completion(unittest.TestCase):
         answers = {"one", "each", "coordinator", "nobody"}
         for line, written, words in [
             (TYPE, "  alarms: {status: {fan_fault: {bit: 3, severity: ¦}}}", {"state", "alarm", "fault"}),
-            (TYPE, "  current: {as: ¦}", {"unsigned", "signed", "float", "text"}),
+            (TYPE, "  current: {as: ¦}", words("as")),
             (TYPE, "  group: {outside: ¦}", {"refused"}),
             (SIGNAL, "      current: {bytes: 2, in: [¦]}", kinds),
             (ACCESS, "  read: {in: [¦]}", kinds),

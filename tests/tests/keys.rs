@@ -120,12 +120,12 @@ errata:
 "#;
 
 /// Returns what is written after a key. In each place that reads the key, one of these should mean something.
-fn samples(key: Key) -> &'static [&'static str] {
-    match key {
+fn samples(key: Key) -> Vec<&'static str> {
+    let samples: &[_] = match key {
         Key::Bytes => &["1", "5", "3..2"],
         Key::Bits => &["1", "2..1"],
         Key::Type => &["titled"],
-        Key::As => &["signed", "float", "text"],
+        Key::As => return words(key),
         Key::Scale => &["1/4", "-1"],
         Key::Offset => &["3"],
         Key::Unit => &["V"],
@@ -144,7 +144,15 @@ fn samples(key: Key) -> &'static [&'static str] {
         Key::Note => &["a new note"],
         Key::Section => &["\"9.9\""],
         Key::Erratum => &["E1"],
-    }
+    };
+    samples.to_vec()
+}
+
+/// Returns the words among which a key chooses, as the reference lists them, without that which an absent key stands for.
+fn words(key: Key) -> Vec<&'static str> {
+    let quoted = |cell: &'static str| cell.split('`').skip(1).step_by(2);
+    let (words, default) = (quoted(row(key)[2]), row(key)[4]);
+    words.filter(|word| !quoted(default).any(|absent| absent == *word)).collect()
 }
 
 /// The keys that lead to a field.
@@ -192,15 +200,19 @@ fn misstated(key: Key, trials: &[Trial]) -> Option<String> {
 
 /// Returns what the reference says in the column "used in".
 fn stated(key: Key) -> BTreeSet<char> {
+    match row(key)[6].trim() {
+        "entries of `types`" => BTreeSet::from(['A', 'M']),
+        letters => letters.chars().filter(|letter| *letter != ' ').collect(),
+    }
+}
+
+/// Returns the cells of a key in the table of the reference.
+fn row(key: Key) -> Vec<&'static str> {
     let name = format!("`{}`", key.name());
     let (_, text) = REFERENCE.split_once("### Fields").expect("the reference has fields");
     let rows = text.lines().filter_map(|line| line.strip_prefix('|')).map(|line| line.split('|').collect::<Vec<_>>());
     let row = rows.into_iter().find(|cells| cells[0].contains(&name));
-    let row = row.unwrap_or_else(|| panic!("the reference has no {name}"));
-    match row[6].trim() {
-        "entries of `types`" => BTreeSet::from(['A', 'M']),
-        letters => letters.chars().filter(|letter| *letter != ' ').collect(),
-    }
+    row.unwrap_or_else(|| panic!("the reference has no {name}"))
 }
 
 /// Sets each key in each place.
@@ -218,7 +230,7 @@ fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
     for place in places(&spec) {
         for key in Key::ALL.iter().copied() {
-            for sample in samples(key).iter().copied() {
+            for sample in samples(key) {
                 let changed = with(&spec, &place, key, sample);
                 if changed == spec {
                     continue;
