@@ -114,7 +114,9 @@ impl Words<'_> {
     /// Asks the room of a signal's encoding.
     pub fn with<R>(self, signal: &Signal, ask: impl FnOnce(&dyn Room) -> R) -> R {
         match &signal.encoding {
-            Encoding::Number { scale, offset, .. } => ask(&number::Number { signal, scale: *scale, offset: *offset }),
+            Encoding::Number { numeral, scale, offset } => {
+                ask(&number::Number { signal, numeral: *numeral, scale: *scale, offset: *offset })
+            }
             Encoding::Float => ask(&float::Float { signal }),
             Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
             Encoding::Status(id) => ask(&status::Status { signal, word: &self.status_words[*id] }),
@@ -141,7 +143,7 @@ fn bits(signal: &Signal, raw: i128) -> Result<u64, String> {
 fn bits_of_spec(signal: &Signal, raw: i128) -> Result<u64, Misfit> {
     signal.bits_of(raw).ok_or_else(|| {
         let why = format!("the raw value {raw} does not fit the {} bits of `{}`", signal.place.width(), signal.name);
-        let is_below = raw < 0 && !signal.encoding.is_signed();
+        let is_below = raw < 0 && !signal.encoding.numeral().is_signed();
         let help = is_below.then(|| "numbers below 0 need `as: signed` or an `offset`".to_owned());
         Misfit { why, help }
     })

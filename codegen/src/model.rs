@@ -10,13 +10,14 @@ mod id;
 mod identifier;
 mod message;
 mod note;
+mod numeral;
 mod recognition;
 mod set;
 mod signal;
 
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
-pub use encoding::{Encoding, Linear, Piece, raw_limits};
+pub use encoding::{Encoding, Linear, Piece};
 pub use example::{Example, Failure, Meaning, Misfit, ValueExample};
 pub use id::{
     AccessId, AddressTypeId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId, ModelId,
@@ -25,6 +26,7 @@ pub use id::{
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Travel, Who};
 pub use note::NoteRule;
+pub use numeral::Numeral;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit};

@@ -1,20 +1,19 @@
 //! The words of the language among which a key chooses.
 
-use crate::model::{Severity, Who};
+use crate::model::{Numeral, Severity, Who};
 
 /// How a number or a text is written in bits.
 #[derive(Clone, Copy)]
 pub enum NumberFormat {
-    Unsigned,
-    Signed,
+    Integer(Numeral),
     Float,
     Text,
 }
 
 /// What may stand after `as`.
 pub const NUMBER_FORMATS: [(&str, NumberFormat); 4] = [
-    ("unsigned", NumberFormat::Unsigned),
-    ("signed", NumberFormat::Signed),
+    ("unsigned", NumberFormat::Integer(Numeral::Unsigned)),
+    ("signed", NumberFormat::Integer(Numeral::Signed)),
     ("float", NumberFormat::Float),
     ("text", NumberFormat::Text),
 ];

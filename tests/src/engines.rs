@@ -1,7 +1,7 @@
 //! What both engines say of a frame, and to which bits they encode a value.
 
 use canspec_codegen::interpret::{self, Frame, Input, Limits, Value, raw_of};
-use canspec_codegen::model::{Encoding, Message, ModelId, Protocol, Signal};
+use canspec_codegen::model::{Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
 use canspec_runtime::{Meaning, Number, Payload, Problem, Reading, WriteSignal};
 use embedded_can::Frame as _;
@@ -132,8 +132,7 @@ fn interpreted(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Re
 
 fn read(signal: &Signal, reading: &interpret::Reading) -> (String, Option<String>, u64, String) {
     let width = signal.place.width();
-    let signed = matches!(signal.encoding, Encoding::Number { signed: true, .. });
-    let negative = signed && reading.bits >> (width - 1) == 1;
+    let negative = signal.encoding.numeral().is_signed() && reading.bits >> (width - 1) == 1;
     let bits = if negative && width < 64 { reading.bits | u64::MAX << width } else { reading.bits };
     let meaning = match &reading.value {
         Value::None => "none".to_owned(),

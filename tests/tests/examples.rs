@@ -1,7 +1,7 @@
 //! The documents' own frames in the generated code: the values that the spec states, and the same bytes back.
 
 use canspec_codegen::interpret::Frame;
-use canspec_codegen::model::{Encoding, Example, Kind, Protocol};
+use canspec_codegen::model::{Example, Kind, Protocol};
 use canspec_runtime::Number;
 use canspec_tests::{Visitor, protocol, received, visit};
 use embedded_can::Frame as _;
@@ -37,7 +37,7 @@ fn holds<P: canspec_runtime::Protocol>(protocol: &Protocol, example: &Example) -
         let width = signal.place.width();
         let mask = u64::MAX >> (64 - width);
         assert_eq!(Ok(raw & mask), meaning.raw, "{at}: {} means {}", signal.name, meaning.text);
-        assert!(matches!(signal.encoding, Encoding::Number { signed: true, .. }) || raw & !mask == 0, "{at}");
+        assert!(signal.encoding.numeral().is_signed() || raw & !mask == 0, "{at}");
     }
     if example.kind != Kind::Request || example.notes.is_empty() {
         let encoded = received.encode().unwrap_or_else(|error| panic!("{at}: {error}"));

@@ -38,7 +38,7 @@ const DIFFERENCES: [[&str; 4]; 9] = [
     [
         "command 0x13 set_walk_in.interval",
         "-",
-        "request: big endian 16 bits from 0 up, unsigned, scale 0.01, offset 0, special 0=unspecified, s",
+        "request: big endian 16 bits from 0 up, Unsigned, scale 0.01, offset 0, special 0=unspecified, s",
         "GCP 3.3 has the time in bytes 6 and 7, which INFY 2.4 prints as 0",
     ],
     [
@@ -155,9 +155,8 @@ impl Words<'_> {
 
     fn encoding(&self, signal: &Signal) -> String {
         match &signal.encoding {
-            Encoding::Number { signed, scale, offset } => {
-                let sign = if *signed { "signed" } else { "unsigned" };
-                format!("{sign}, scale {scale}, offset {offset}, special {}", values(&signal.specials))
+            Encoding::Number { numeral, scale, offset } => {
+                format!("{numeral:?}, scale {scale}, offset {offset}, special {}", values(&signal.specials))
             }
             Encoding::Named(known) => values(&self.0.enumerations[*known].values),
             Encoding::Status(_) => "status".to_owned(),

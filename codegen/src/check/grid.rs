@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::Float;
-use crate::model::{Linear, Protocol, Signal};
+use crate::model::{Linear, Numeral, Protocol, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
 
@@ -26,49 +26,40 @@ const EXACT: u32 = 24;
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let help = "write the step that the document prints, or a smaller place; or leave `scale` and `offset` out, \
                 and say the step in `title`";
-    each_scaled(protocol, diagnostics, help, |signal, signed, scale, offset| {
+    each_scaled(protocol, diagnostics, help, |signal, linear| {
+        let (width, scale) = (signal.place.width(), linear.scale);
         if scale == Rational::ZERO {
             return Some("a scale of 0 makes every value 0".to_owned());
         }
-        let width = signal.place.width();
-        (!has_exact_steps(width, signed, scale, offset))
+        (!has_exact_steps(width, linear))
             .then(|| format!("{width} bits in steps of {scale} reach 2^50, beyond which an `f64` misses steps"))
     });
 }
 
 /// Tests whether a double tells all steps of a scaled number of so many bits apart.
-pub fn has_exact_steps(width: u8, signed: bool, scale: Rational, offset: Rational) -> bool {
-    scale != Rational::ZERO && is_below(largest(full_width(width, signed), scale, offset), DOUBLE)
+pub fn has_exact_steps(width: u8, linear: Linear) -> bool {
+    linear.scale != Rational::ZERO && is_below(largest(beyond(width, linear.numeral), linear), DOUBLE)
 }
 
 /// Looks for scales and limits that do not fit single precision, if that is what generated code is to calculate in.
 pub fn fits(protocol: &Protocol, float: Float, diagnostics: &mut Diagnostics) {
     if float == Float::F32 {
         let help = "generate code with `f64`, or write the range that the document states";
-        each_scaled(protocol, diagnostics, help, |signal, signed, scale, offset| {
-            missed_by_single(signal, signed, documented(signal, scale, offset), scale, offset)
-        });
+        each_scaled(protocol, diagnostics, help, missed_by_single);
         limits(protocol, diagnostics);
     }
 }
 
-fn missed_by_single(
-    signal: &Signal,
-    signed: bool,
-    documented: Option<i128>,
-    scale: Rational,
-    offset: Rational,
-) -> Option<String> {
-    let Some(denominator) = scale.common_denominator(offset).filter(|common| is_below(Some(*common), EXACT)) else {
+fn missed_by_single(signal: &Signal, linear: Linear) -> Option<String> {
+    let (width, scale) = (signal.place.width(), linear.scale);
+    let Some(denominator) = scale.common_denominator(linear.offset).filter(|common| is_below(Some(*common), EXACT))
+    else {
         return Some(format!("the denominator of {scale} reaches 2^{EXACT}, beyond which a single misses integers"));
     };
     let limit = if denominator.count_ones() == 1 { EXACT } else { SINGLE };
-    let extreme = largest(
-        documented.unwrap_or_else(|| full_width(signal.place.width(), signed) - i128::from(!signed)),
-        scale,
-        offset,
-    );
-    let raw = documented.map_or_else(|| format!("{} bits", signal.place.width()), |raw| format!("raw values to {raw}"));
+    let documented = documented(signal, linear);
+    let extreme = largest(documented.unwrap_or_else(|| farthest(width, linear.numeral)), linear);
+    let raw = documented.map_or_else(|| format!("{width} bits"), |raw| format!("raw values to {raw}"));
     (!is_below(extreme, limit))
         .then(|| format!("{raw} times {scale} reach 2^{limit}, beyond which a single misses steps"))
 }
@@ -78,12 +69,12 @@ fn each_scaled(
     protocol: &Protocol,
     diagnostics: &mut Diagnostics,
     help: &str,
-    fault: impl Fn(&Signal, bool, Rational, Rational) -> Option<String>,
+    fault: impl Fn(&Signal, Linear) -> Option<String>,
 ) {
     for message in &protocol.messages {
         for signal in message.signals.iter().filter(|signal| !signal.encoding.is_unscaled()) {
-            let Some(Linear { signed, scale, offset }) = signal.encoding.linear() else { continue };
-            if let Some(why) = fault(signal, signed, scale, offset) {
+            let fault = signal.encoding.linear().and_then(|linear| fault(signal, linear));
+            if let Some(why) = fault {
                 let text = format!("`{}.{}`: {why}", message.name, signal.name);
                 let at = signal.doc.path.key("scale").at_value();
                 diagnostics.push(Diagnostic::error(&GRID, at, text).help(help));
@@ -114,28 +105,35 @@ fn is_below(number: Option<i128>, power: u32) -> bool {
     number.is_some_and(|number| number.unsigned_abs() < 1 << power)
 }
 
-/// Returns one more than the largest raw value that the bits can hold.
-fn full_width(width: u8, signed: bool) -> i128 {
-    1 << (u32::from(width) - u32::from(signed))
+/// Returns one more than the largest integer that the bits can hold.
+fn beyond(width: u8, numeral: Numeral) -> i128 {
+    numeral.limits(width).1 + 1
 }
 
-/// Returns the largest |raw| that the document speaks of, if there is a range.
-fn documented(signal: &Signal, scale: Rational, offset: Rational) -> Option<i128> {
+/// Returns the largest |integer| that the bits can hold.
+fn farthest(width: u8, numeral: Numeral) -> i128 {
+    let (first, last) = numeral.limits(width);
+    last.max(-first)
+}
+
+/// Returns the largest |integer| that the document speaks of, if there is a range.
+fn documented(signal: &Signal, linear: Linear) -> Option<i128> {
     signal.range?;
-    let raw = |end: Rational| {
-        let raw = end.minus(offset)?.over(scale)?;
-        (raw.numerator() / raw.denominator()).checked_abs()
+    let integer = |end: Rational| {
+        let integer = end.minus(linear.offset)?.over(linear.scale)?;
+        (integer.numerator() / integer.denominator()).checked_abs()
     };
-    let ends = signal.ranges().flat_map(|(range, _)| [range.minimum, range.maximum]).map(raw);
+    let ends = signal.ranges().flat_map(|(range, _)| [range.minimum, range.maximum]).map(integer);
     let specials = signal.specials.iter().map(|special| special.raw).chain(signal.default);
     let specials = specials.chain(signal.model_defaults.iter().map(|own| own.value));
-    ends.chain(specials.map(i128::checked_abs)).try_fold(0, |largest: i128, raw| Some(raw?.max(largest)))
+    let specials = specials.filter_map(|raw| linear.numeral.integer(raw));
+    ends.chain(specials.map(i128::checked_abs)).try_fold(0, |largest: i128, integer| Some(integer?.max(largest)))
 }
 
-/// Returns the largest |raw * a + b| where physical = (raw * a + b) / c; `None` on overflow.
-fn largest(raw: i128, scale: Rational, offset: Rational) -> Option<i128> {
+/// Returns the largest |integer * a + b| where physical = (integer * a + b) / c; `None` on overflow.
+fn largest(integer: i128, Linear { scale, offset, .. }: Linear) -> Option<i128> {
     let common = Rational::integer(scale.common_denominator(offset)?);
     let step = scale.times(common)?.to_integer()?;
     let start = offset.times(common)?.to_integer()?;
-    raw.checked_mul(step.checked_abs()?)?.checked_add(start.checked_abs()?)
+    integer.checked_mul(step.checked_abs()?)?.checked_add(start.checked_abs()?)
 }

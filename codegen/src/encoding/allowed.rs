@@ -28,6 +28,14 @@ impl Allowed {
         self.check(signal, value)
     }
 
+    /// Tests a raw value that is no number.
+    pub fn check_meaning(&self, raw: i128) -> Result<(), String> {
+        match self {
+            Self::Everything => Ok(()),
+            Self::Within { .. } => Err(format!("raw {raw:#X} is no number")),
+        }
+    }
+
     /// Tests a number.
     pub fn check(&self, signal: &Signal, value: f64) -> Result<(), String> {
         self.check_by(signal, value, |range| signal.is_within(range, value))

@@ -4,11 +4,12 @@ use canspec_runtime::plumbing::{Scale, nearest};
 
 use super::quantity::{as_double, quantity, typed, wanted};
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
-use crate::model::{Misfit, NamedValue, NoteRule, Range, Signal};
+use crate::model::{Misfit, NamedValue, NoteRule, Numeral, Range, Signal};
 use crate::number::Rational;
 
 pub struct Number<'a> {
     pub signal: &'a Signal,
+    pub numeral: Numeral,
     pub scale: Rational,
     pub offset: Rational,
 }
@@ -16,10 +17,11 @@ pub struct Number<'a> {
 impl Room for Number<'_> {
     fn value(&self, bits: u64) -> Value {
         let raw = self.signal.raw_of(bits);
-        match self.special(raw) {
-            Some(special) => Value::Name(special.name.clone()),
-            None if self.is_unscaled() => Value::Integer(raw),
-            None => Value::Number(self.physical(raw)),
+        match (self.special(raw), self.numeral.integer(raw)) {
+            (Some(special), _) => Value::Name(special.name.clone()),
+            (None, Some(integer)) if self.is_unscaled() => Value::Integer(integer),
+            (None, Some(integer)) => Value::Number(self.physical(integer)),
+            (None, None) => Value::None,
         }
     }
 
@@ -42,9 +44,10 @@ impl Room for Number<'_> {
             return bits_of_spec(self.signal, special.raw);
         }
         let value = quantity(self.signal, text, unit)?;
-        let raw = value.minus(self.offset).and_then(|value| value.over(self.scale)).and_then(Rational::to_integer);
+        let integer = value.minus(self.offset).and_then(|value| value.over(self.scale)).and_then(Rational::to_integer);
         let (scale, name) = (self.scale, &self.signal.name);
-        let raw = raw.ok_or_else(|| format!("`{text}` is no whole number of steps of {scale} for `{name}`"))?;
+        let integer = integer.ok_or_else(|| format!("`{text}` is no whole number of steps of {scale} for `{name}`"))?;
+        let raw = self.numeral.raw(integer).ok_or_else(|| self.misfit(value))?;
         bits_of_spec(self.signal, raw)
     }
 
@@ -52,8 +55,9 @@ impl Room for Number<'_> {
         typed(self.signal, text)
     }
 
-    fn oddity(&self, _: u64, _: &Value) -> Option<(NoteRule, String)> {
-        None
+    fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)> {
+        let text = || format!("{} {bits:#X} is no number", self.signal.name);
+        (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
     }
 
     fn description(&self) -> Vec<String> {
@@ -70,8 +74,8 @@ impl Number<'_> {
         self.signal.specials.iter().find(|special| special.raw == raw)
     }
 
-    fn physical(&self, raw: i128) -> f64 {
-        i64::try_from(raw).map_or(f64::NAN, |raw| self.runtime_scale().physical(raw))
+    fn physical(&self, integer: i128) -> f64 {
+        i64::try_from(integer).map_or(f64::NAN, |integer| self.runtime_scale().physical(integer))
     }
 
     /// Returns the scale as the runtime computes with it; the checks have made sure that its numbers fit.
@@ -82,34 +86,37 @@ impl Number<'_> {
     }
 
     fn number(&self, value: f64, allowed: &Allowed) -> Result<u64, String> {
-        let raw = if self.is_unscaled() { nearest(value) } else { self.runtime_scale().raw(value) };
-        let Some(raw) = raw.map(i128::from) else {
+        let integer = if self.is_unscaled() { nearest(value) } else { self.runtime_scale().raw(value) };
+        let integer = integer.map(i128::from);
+        let Some((integer, raw)) = integer.and_then(|integer| Some((integer, self.numeral.raw(integer)?))) else {
             allowed.check(self.signal, value)?;
             return Err(self.misfit(value));
         };
         let special = self.special(raw).map(|special| special.name.as_str());
-        allowed.check_sent(self.signal, value, self.physical(raw), special)?;
+        allowed.check_sent(self.signal, value, self.physical(integer), special)?;
         if special.is_none() && self.is_unscaled() {
-            allowed.check_whole(self.signal, raw)?;
+            allowed.check_whole(self.signal, integer)?;
         }
         bits(self.signal, raw).map_err(|_| self.misfit(value))
     }
 
     /// Encodes an unscaled number.
     fn whole(&self, value: i128, allowed: &Allowed) -> Result<u64, String> {
-        if self.special(value).is_none() {
+        let raw = self.numeral.raw(value);
+        if raw.is_none_or(|raw| self.special(raw).is_none()) {
             allowed.check_whole(self.signal, value)?;
         }
-        bits(self.signal, value).map_err(|_| self.misfit(value))
+        raw.and_then(|raw| self.signal.bits_of(raw)).ok_or_else(|| self.misfit(value))
     }
 
     /// Encodes a raw number, which in a request must lie in the range too.
     fn raw_number(&self, raw: i128, allowed: &Allowed) -> Result<u64, String> {
         let bits = bits(self.signal, raw)?;
-        match self.special(raw) {
-            Some(_) => {}
-            None if self.is_unscaled() => allowed.check_whole(self.signal, raw)?,
-            None => allowed.check(self.signal, self.physical(raw))?,
+        match (self.special(raw), self.numeral.integer(raw)) {
+            (Some(_), _) => {}
+            (None, Some(integer)) if self.is_unscaled() => allowed.check_whole(self.signal, integer)?,
+            (None, Some(integer)) => allowed.check(self.signal, self.physical(integer))?,
+            (None, None) => allowed.check_meaning(raw)?,
         }
         Ok(bits)
     }

@@ -2,19 +2,19 @@
 //!
 //! How each of them makes values of bits, and bits of values, is in `crate::encoding`.
 
-use super::{EnumerationId, PartId, Signal, StatusWordId, Table};
+use super::{EnumerationId, Numeral, PartId, Signal, StatusWordId, Table};
 use crate::number::Rational;
 
 /// What a signal's bits mean.
 #[derive(Clone, Debug)]
 pub enum Encoding {
-    /// physical = raw * scale + offset.
+    /// physical = integer * scale + offset.
     Number {
-        /// Two's complement.
-        signed: bool,
+        /// Which integer the bits are.
+        numeral: Numeral,
         /// Physical value of one step.
         scale: Rational,
-        /// Physical value of raw 0.
+        /// Physical value of 0.
         offset: Rational,
     },
     /// IEEE 754 single precision.
@@ -34,15 +34,22 @@ pub enum Encoding {
     },
 }
 
-/// How a number is made of a raw one: physical = raw * scale + offset.
+/// How a number is made of an integer: physical = integer * scale + offset.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear {
-    /// Two's complement.
-    pub signed: bool,
+    /// Which integer the bits are.
+    pub numeral: Numeral,
     /// Physical value of one step.
     pub scale: Rational,
-    /// Physical value of raw 0.
+    /// Physical value of 0.
     pub offset: Rational,
+}
+
+impl Linear {
+    /// Returns the exact physical value of an integer; `None` on overflow.
+    pub fn value(&self, integer: i128) -> Option<Rational> {
+        Rational::integer(integer).times(self.scale)?.plus(self.offset)
+    }
 }
 
 /// What others ask, each an exhaustive match: a new encoding has to answer.
@@ -50,7 +57,7 @@ impl Encoding {
     /// Returns how numbers are made, if that is by a scale.
     pub fn linear(&self) -> Option<Linear> {
         match *self {
-            Self::Number { signed, scale, offset } => Some(Linear { signed, scale, offset }),
+            Self::Number { numeral, scale, offset } => Some(Linear { numeral, scale, offset }),
             Self::Float | Self::Named(_) | Self::Status(_) | Self::Text | Self::Packed { .. } => None,
         }
     }
@@ -102,16 +109,16 @@ impl Encoding {
 
     /// Returns the exact physical value of a raw number; `None` of what is no number, and on overflow.
     pub fn value_of(&self, raw: i128) -> Option<Rational> {
-        let Linear { scale, offset, .. } = self.linear()?;
-        Rational::integer(raw).times(scale)?.plus(offset)
+        let linear = self.linear()?;
+        linear.value(linear.numeral.integer(raw)?)
     }
 
-    /// Tests whether raw values are in two's complement.
-    pub fn is_signed(&self) -> bool {
-        self.linear().is_some_and(|linear| linear.signed)
+    /// Returns which integer the bits are, whatever it stands for.
+    pub fn numeral(&self) -> Numeral {
+        self.linear().map_or(Numeral::Unsigned, |linear| linear.numeral)
     }
 
-    /// Tests whether the physical value is a raw integer.
+    /// Tests whether the physical value is the integer that the bits are.
     pub fn is_unscaled(&self) -> bool {
         self.linear().is_some_and(|linear| linear.scale == Rational::ONE && linear.offset == Rational::ZERO)
     }
@@ -129,9 +136,4 @@ pub enum Piece {
         /// To how many digits a number is filled with zeros.
         digits: Option<usize>,
     },
-}
-
-/// Returns the least and the greatest raw value of a width.
-pub fn raw_limits(width: u8, signed: bool) -> (i128, i128) {
-    if signed { (-(1 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1 << width) - 1) }
 }

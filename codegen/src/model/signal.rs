@@ -2,7 +2,7 @@
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, Encoding, Kind, ModelId, raw_limits};
+use crate::model::{Doc, Encoding, Kind, ModelId};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -157,8 +157,9 @@ impl Signal {
 
     /// Returns the physical limits of what the bits hold; `None` of what is no number.
     pub fn held(&self) -> Option<Range> {
-        let (first, last) = self.raw_limits();
-        let (one, other) = (self.encoding.value_of(first)?, self.encoding.value_of(last)?);
+        let linear = self.encoding.linear()?;
+        let (first, last) = linear.numeral.limits(self.place.width());
+        let (one, other) = (linear.value(first)?, linear.value(last)?);
         Some(Range { minimum: one.min(other), maximum: one.max(other) })
     }
 
@@ -173,13 +174,13 @@ impl Signal {
 
     /// Returns the least and the greatest raw value.
     pub fn raw_limits(&self) -> (i128, i128) {
-        raw_limits(self.place.width(), self.encoding.is_signed())
+        self.encoding.numeral().raw_limits(self.place.width())
     }
 
     /// Returns the raw value of bits, sign-extended where the signal is signed.
     pub fn raw_of(&self, bits: u64) -> i128 {
         let width = self.place.width();
-        let is_negative = self.encoding.is_signed() && bits >> (width - 1) & 1 == 1;
+        let is_negative = self.encoding.numeral().is_signed() && bits >> (width - 1) & 1 == 1;
         i128::from(bits) - if is_negative { 1 << width } else { 0 }
     }
 

@@ -7,7 +7,9 @@ use super::keys::{Role, Site};
 use super::texts::remarks;
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
-use crate::model::{DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, OfModel, PartId, Signal, Table, TypeOfModel};
+use crate::model::{
+    DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, Numeral, OfModel, PartId, Signal, Table, TypeOfModel,
+};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
@@ -207,10 +209,10 @@ impl Resolver<'_> {
     pub fn signal(&mut self, name: &str, merged: &Merged, place: Place, doc: Doc, owner: &str) -> Option<Signal> {
         let field = &merged.field;
         let encoding = self.encoding(name, merged, place, &doc, owner)?;
-        let signed = encoding.is_signed();
         let values = merged.path(self.diagnostics, Key::Values);
         let named = encoding.enumeration().is_some();
-        let specials = if named { Vec::new() } else { self.values(&values, &field.values, place.width(), signed) };
+        let specials =
+            if named { Vec::new() } else { self.values(&values, &field.values, place.width(), encoding.numeral()) };
         let unit = field.unit.as_ref();
         let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, Key::Unit), text, field));
         let (range_path, default_path) =
@@ -323,9 +325,8 @@ impl Resolver<'_> {
         if !field.status.is_empty() {
             return Some(Encoding::Status(self.status_word(merged, &otherwise, place.width(), doc)));
         }
-        let signed = match self.number_format(merged)? {
-            NumberFormat::Unsigned => false,
-            NumberFormat::Signed => true,
+        let numeral = match self.number_format(merged)? {
+            NumberFormat::Integer(numeral) => numeral,
             NumberFormat::Float => return self.float(name, merged, place),
             NumberFormat::Text => return self.text(name, merged, place),
         };
@@ -339,12 +340,12 @@ impl Resolver<'_> {
         };
         let scale = read(Key::Scale, &field.scale, Rational::ONE)?;
         let offset = read(Key::Offset, &field.offset, Rational::ZERO)?;
-        Some(Encoding::Number { signed, scale, offset })
+        Some(Encoding::Number { numeral, scale, offset })
     }
 
     /// Reads `as`.
     fn number_format(&mut self, merged: &Merged) -> Option<NumberFormat> {
-        let Some(word) = &merged.field.format_of_number else { return Some(NumberFormat::Unsigned) };
+        let Some(word) = &merged.field.format_of_number else { return Some(NumberFormat::Integer(Numeral::Unsigned)) };
         let at = merged.path(self.diagnostics, Key::As);
         let index = self.lookup(&at, "number format", word, NUMBER_FORMATS.iter().map(|(word, _)| *word))?;
         Some(NUMBER_FORMATS[index].1)

@@ -4,7 +4,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::misplaced::{Claim, misplaced};
-use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, StatusBit, StatusWord, StatusWordId, raw_limits};
+use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral, StatusBit, StatusWord, StatusWordId};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
@@ -167,14 +167,15 @@ impl Resolver<'_> {
             known.width = known.width.max(width);
             return Some(index);
         }
-        let values = self.values(&merged.path(self.diagnostics, Key::Values), &merged.field.values, width, false);
+        let values =
+            self.values(&merged.path(self.diagnostics, Key::Values), &merged.field.values, width, Numeral::Unsigned);
         let doc = self.type_doc(&name, &source, doc);
         Some(self.tables.enumerations.push(Enumeration { name, doc, width, values }))
     }
 
     /// Reads `{raw: name}`.
-    pub fn values(&mut self, path: &Path, values: &ast::Map<String>, width: u8, signed: bool) -> Vec<NamedValue> {
-        let (first, last) = raw_limits(width, signed);
+    pub fn values(&mut self, path: &Path, values: &ast::Map<String>, width: u8, numeral: Numeral) -> Vec<NamedValue> {
+        let (first, last) = numeral.raw_limits(width);
         let mut named: Vec<NamedValue> = Vec::new();
         let mut places = Vec::new();
         for (raw, name) in values {

@@ -2,7 +2,7 @@
 
 use can_dbc::{Dbc, MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
 use canspec_codegen::check::has_exact_steps;
-use canspec_codegen::model::{Unit, raw_limits};
+use canspec_codegen::model::{Linear, Numeral, Unit};
 use canspec_codegen::multiples::{prefixed, respelled};
 use canspec_codegen::number::Rational;
 
@@ -62,21 +62,22 @@ fn number(signal: &Signal, named: &[Named]) -> Result<Translated, String> {
     let offset = exact(signal.offset).ok_or_else(|| format!("no spec can write its offset {}", signal.offset))?;
     let is_scaled = (scale, offset) != (Rational::ONE, Rational::ZERO);
     let signed = signal.value_type == ValueType::Signed;
+    let numeral = if signed { Numeral::Signed } else { Numeral::Unsigned };
+    let linear = Linear { numeral, scale, offset };
     let width = u8::try_from(signal.size).unwrap_or(u8::MAX);
     if scale == Rational::ZERO {
         return Err("it has a scale of 0".to_owned());
     }
-    if is_scaled && !has_exact_steps(width, signed, scale, offset) {
+    if is_scaled && !has_exact_steps(width, linear) {
         return Err(format!("a double cannot tell the steps of {scale} of its {width} bits apart"));
     }
-    let value = |raw: i128| Rational::integer(raw).times(scale)?.plus(offset);
-    let (first, last) = raw_limits(width.clamp(1, 64), signed);
+    let (first, last) = numeral.limits(width.clamp(1, 64));
     let mut meaning = Translated::default();
     let named = fitting(named, (first, last), &mut meaning);
-    let held = value(first).zip(value(last)).map(|(one, other)| (one.min(other), one.max(other)));
+    let held = linear.value(first).zip(linear.value(last)).map(|(one, other)| (one.min(other), one.max(other)));
     let stated = stated(signal, &mut meaning);
     let range = stated.zip(held).and_then(|(range, held)| within(range, held, &mut meaning));
-    let range = beside(range, &named, |raw| value(raw.into()), &mut meaning);
+    let range = beside(range, &named, |raw| linear.value(raw.into()), &mut meaning);
     meaning.is_named = !named.is_empty() && !signed && !is_scaled && range.is_none() && unit_of(signal).is_none();
     meaning.keys.extend(signed.then(|| ("as", "signed".to_owned())));
     let is_plain = !named.is_empty() && !meaning.is_named && !is_scaled;

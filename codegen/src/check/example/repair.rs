@@ -121,12 +121,12 @@ fn with_unit(examples: &[(&Signal, &Evidence)], at: Path) -> Option<Repair> {
 /// Takes the scale that the first example has, if it is one that is easily mistaken for the other.
 fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
     let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
-    let Linear { signed, offset, .. } = signal.encoding.linear()?;
+    let Linear { numeral, offset, .. } = signal.encoding.linear()?;
     let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
     let raw = i128::from(signal.place.get(&example.data));
     let scale = number.minus(offset)?.over(Rational::integer(raw))?;
     let right = scale.fraction();
-    let change = Change::Encoding(Encoding::Number { signed, scale, offset });
+    let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
     let is_near = examples.len() > 1 || strsim::osa_distance(&right, text) == 1;
     is_near.then(|| Repair { at, text: format!("scale: {right}"), change })
 }

@@ -21,9 +21,13 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
     let whole = |signals| Written { signals, loss: None };
     let range = signal.range.or_else(|| signal.held());
     match &signal.encoding {
-        Encoding::Number { signed, scale, offset } => {
-            whole(vec![Signal { signed: *signed, factor: *scale, offset: *offset, range, ..plain(signal, name) }])
-        }
+        Encoding::Number { numeral, scale, offset } => whole(vec![Signal {
+            signed: numeral.is_signed(),
+            factor: *scale,
+            offset: *offset,
+            range,
+            ..plain(signal, name)
+        }]),
         Encoding::Float => whole(vec![Signal { float: true, range, ..plain(signal, name) }]),
         Encoding::Named(id) => {
             let values = named(&protocol[*id].values);

@@ -184,7 +184,7 @@ local function reading(frame, signal)
   local special = signal.specials and signal.specials[key(raw)]
   if special then return { signal = signal, raw = raw, name = special } end
   local value, rule, text = values[signal.kind](signal, raw, frame)
-  local is_number = signal.kind == "integer" or signal.kind == "number" or signal.kind == "float"
+  local is_number = signal.shown == "integer" or signal.shown == "double"
   if is_number and value then rule, text = range_note(signal, frame.model, value) end
   return { signal = signal, raw = raw, value = value, rule = rule, text = text }
 end

@@ -30,11 +30,11 @@ end
 
 local function define_signal(signal, prefix)
   local name, text, width = prefix .. signal.name, title(signal), signal.place.width
-  if signal.kind == "integer" then
+  if signal.shown == "integer" then
     signal.field = number_field(name, text, width, signal.signed, base.DEC)
-  elseif signal.kind == "number" or signal.kind == "float" then
+  elseif signal.shown == "double" then
     signal.field = define(ProtoField.double(name, text))
-  elseif signal.kind == "status" then
+  elseif signal.shown == "bits" then
     signal.field = number_field(name, text, width, false, base.HEX)
     for _, bit in ipairs(signal.bits) do
       bit.field = define(ProtoField.bool(name .. "." .. bit.name, title(bit)))
@@ -43,7 +43,7 @@ local function define_signal(signal, prefix)
     signal.field = define(ProtoField.string(name, text))
   end
   if signal.specials then signal.name_field = define(ProtoField.string(name .. ".name", text)) end
-  if signal.specials or (signal.kind ~= "integer" and signal.kind ~= "status") then
+  if signal.specials or (signal.shown ~= "integer" and signal.shown ~= "bits") then
     signal.raw_field = number_field(name .. ".raw", "raw", width, signal.signed, base.DEC_HEX)
   end
 end
@@ -137,7 +137,7 @@ local function add_reading(tree, tvb, reading)
   local item, text
   if reading.name then
     item, text = tree:add(signal.name_field, range, reading.name), reading.name
-  elseif signal.kind == "status" then
+  elseif signal.shown == "bits" then
     item = tree:add(signal.field, range, reading.raw)
     text = add_bits(item, range, reading)
   else

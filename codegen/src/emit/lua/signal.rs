@@ -4,8 +4,14 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::table::Value;
-use crate::model::{Encoding, NamedValue, PartId, Piece, Protocol, Range, Signal, StatusBit, Table};
+use crate::model::{Encoding, NamedValue, Numeral, PartId, Piece, Protocol, Range, Signal, StatusBit, Table};
 use crate::number::Rational;
+
+/// What shows a value; numbers are those that have limits.
+const INTEGER: &str = "integer";
+const DOUBLE: &str = "double";
+const TEXT: &str = "text";
+const BITS: &str = "bits";
 
 /// Raw values of more bits are no Lua numbers before 5.3.
 const LUA_BITS: u8 = 32;
@@ -43,26 +49,34 @@ pub fn signal(protocol: &Protocol, signal: &Signal) -> Value {
     limits(meaning(protocol, record, signal), signal)
 }
 
-/// Adds what the bits mean.
+/// Adds what the bits mean: the function that makes a value of them, and what shows the value.
 fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
-    let kind = |name| record.with("kind", Value::text(name));
+    let made = |by, shown| record.with("kind", Value::text(by)).with("shown", Value::text(shown));
     match &signal.encoding {
-        Encoding::Number { signed, .. } if signal.encoding.is_unscaled() => {
-            kind("integer").maybe("signed", signed.then(|| Value::flag(true)))
+        Encoding::Number { numeral, .. } if signal.encoding.is_unscaled() => {
+            written(made("integer", INTEGER), *numeral)
         }
-        Encoding::Number { signed, scale, offset } => {
-            scaled(kind("number").maybe("signed", signed.then(|| Value::flag(true))), *scale, *offset)
+        Encoding::Number { numeral, scale, offset } => {
+            scaled(written(made("number", DOUBLE), *numeral), *scale, *offset)
         }
-        Encoding::Float => kind("float"),
+        Encoding::Float => made("float", DOUBLE),
         Encoding::Named(id) => {
             let values = &protocol[*id].values;
-            kind("named").with("names", names(values, signal.place.width()))
+            made("named", TEXT).with("names", names(values, signal.place.width()))
         }
-        Encoding::Status(id) => kind("status").with("bits", Value::list(&protocol[*id].bits, status_bit)),
-        Encoding::Text => kind("text"),
+        Encoding::Status(id) => made("status", BITS).with("bits", Value::list(&protocol[*id].bits, status_bit)),
+        Encoding::Text => made("text", TEXT),
         Encoding::Packed { pieces, parts } => {
-            kind("packed").with("pieces", Value::list(pieces, |known| piece(known, parts)))
+            made("packed", TEXT).with("pieces", Value::list(pieces, |known| piece(known, parts)))
         }
+    }
+}
+
+/// Adds which integer the bits are.
+fn written(record: Value, numeral: Numeral) -> Value {
+    match numeral {
+        Numeral::Unsigned => record,
+        Numeral::Signed => record.with("signed", Value::flag(true)),
     }
 }
 
@@ -107,13 +121,13 @@ fn limits(record: Value, signal: &Signal) -> Value {
 }
 
 fn wide_limits(signal: &Signal, range: Range) -> Option<[Value; 2]> {
-    let signed = signal.encoding.linear()?.signed;
+    let numeral = signal.encoding.linear()?.numeral;
     if signal.place.width() <= LUA_BITS || !signal.encoding.is_unscaled() {
         return None;
     }
     let limit = |limit: Rational| {
         let integer = limit.to_integer()?;
-        if signed {
+        if numeral.is_signed() {
             i64::try_from(integer).ok().map(Value::signed_of_64_bits)
         } else {
             u64::try_from(integer).ok().map(Value::unsigned_of_64_bits)

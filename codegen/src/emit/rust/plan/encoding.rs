@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::literal::{decimal, ends, physical, physical_type};
 use crate::emit::Float;
-use crate::model::{Doc, Encoding, EnumerationId, Protocol, Range, Signal, StatusWordId, Table};
+use crate::model::{Doc, Encoding, EnumerationId, Numeral, Protocol, Range, Signal, StatusWordId, Table};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -44,13 +44,13 @@ impl Coding {
     pub fn new(protocol: &Protocol, words: &WordTypes, signal: &Signal) -> Self {
         let width = signal.place.width();
         match &signal.encoding {
-            Encoding::Number { signed, scale, offset } => Self {
+            Encoding::Number { numeral, scale, offset } => Self {
                 is_scaled: !signal.encoding.is_unscaled(),
                 scale: (*scale != Rational::ONE).then(|| fraction(*scale)),
                 offset: (*offset != Rational::ZERO).then(|| fraction(*offset)),
                 limits: if whole(signal).is_some() { Limits::Raw } else { Limits::Physical },
                 step: step(signal, *scale, *offset),
-                ..Self::raw(integer(width, *signed))
+                ..Self::raw(integer(width, *numeral))
             },
             Encoding::Float => Self {
                 is_float: true,
@@ -138,8 +138,9 @@ pub enum Limits {
 
 /// Returns the type of a number that is a raw integer, and its limits too.
 pub fn whole(signal: &Signal) -> Option<TokenStream> {
-    let is_whole = signal.encoding.is_unscaled() && signal.has_whole_limits();
-    is_whole.then(|| integer(signal.place.width(), signal.encoding.is_signed()))
+    let is_raw = signal.encoding.is_unscaled() && signal.encoding.numeral().is_raw();
+    let is_whole = is_raw && signal.has_whole_limits();
+    is_whole.then(|| integer(signal.place.width(), signal.encoding.numeral()))
 }
 
 fn fraction(number: Rational) -> [TokenStream; 2] {
@@ -154,10 +155,13 @@ fn step(signal: &Signal, scale: Rational, offset: Rational) -> Option<String> {
     (!facts.is_empty()).then(|| facts.join(", "))
 }
 
-/// Returns the smallest integer type that holds `width` bits.
-pub fn integer(width: u8, signed: bool) -> TokenStream {
+/// Returns the smallest type of raw values that holds `width` bits.
+pub fn integer(width: u8, numeral: Numeral) -> TokenStream {
     let size = width.next_power_of_two().max(8);
-    let name = if signed { format_ident!("i{size}") } else { format_ident!("u{size}") };
+    let name = match numeral {
+        Numeral::Unsigned => format_ident!("u{size}"),
+        Numeral::Signed => format_ident!("i{size}"),
+    };
     quote!(#name)
 }
 
@@ -179,6 +183,6 @@ impl Part {
     /// Returns what a part is in Rust.
     pub fn new(part: &Signal) -> Self {
         let width = part.place.width();
-        if part.encoding.is_text() { Self::Text(text(width)) } else { Self::Number(integer(width, false)) }
+        if part.encoding.is_text() { Self::Text(text(width)) } else { Self::Number(integer(width, Numeral::Unsigned)) }
     }
 }

@@ -7,7 +7,7 @@ use super::encoding::integer;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming};
 use super::types::Types;
-use crate::model::{self, Direction, FieldId, FieldTest, Foreign, Protocol};
+use crate::model::{self, Direction, FieldId, FieldTest, Foreign, Numeral, Protocol};
 
 /// The identifier.
 pub struct Identifier {
@@ -110,7 +110,7 @@ impl Field {
         Self {
             comment: Comment::item(protocol, &field.doc, &sentence, None),
             member: ident(&field.name),
-            kind: field.enumeration.map_or_else(|| integer(field.width, false), |id| types.enumeration(id)),
+            kind: field.enumeration.map_or_else(|| integer(field.width, Numeral::Unsigned), |id| types.enumeration(id)),
             place_comment: Comment::line(format!("Place of `{}`.", field.name)),
             place: screaming(&field.name),
             bits: [field.shift + field.width - 1, field.shift].map(decimal),

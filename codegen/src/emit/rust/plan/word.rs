@@ -8,7 +8,7 @@ use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming, variants};
 use super::place::Written;
 use super::types::Types;
-use crate::model::{self, Message, PartId, Protocol, Severity, Signal, Table};
+use crate::model::{self, Message, Numeral, PartId, Protocol, Severity, Signal, Table};
 
 /// Named values.
 pub struct Enumeration {
@@ -55,7 +55,7 @@ impl Enumeration {
         Self {
             name: name.clone(),
             comment: Comment::item(protocol, &known.doc, &sentence, None),
-            raw: integer(known.width, false),
+            raw: integer(known.width, Numeral::Unsigned),
             values: values.collect(),
             unknown,
         }
@@ -104,7 +104,7 @@ impl StatusWord {
         Self {
             name: name.clone(),
             comment: Comment::item(protocol, &word.doc, &sentence, None),
-            raw: integer(word.width, false),
+            raw: integer(word.width, Numeral::Unsigned),
             bits: word.bits.iter().map(|bit| StatusBit::new(protocol, word, bit)).collect(),
         }
     }

@@ -1,0 +1,55 @@
+//! Numerals: which integer the bits of a number are.
+
+/// How bits write an integer.
+///
+/// A raw value is what a frame holds: its bits, in two's complement with their sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numeral {
+    /// Binary, from 0 on.
+    Unsigned,
+    /// Two's complement.
+    Signed,
+}
+
+impl Numeral {
+    /// Tests whether raw values have a sign.
+    pub fn is_signed(self) -> bool {
+        match self {
+            Self::Unsigned => false,
+            Self::Signed => true,
+        }
+    }
+
+    /// Tests whether raw values are the integers themselves.
+    pub fn is_raw(self) -> bool {
+        match self {
+            Self::Unsigned | Self::Signed => true,
+        }
+    }
+
+    /// Returns the least and the greatest raw value of a width.
+    pub fn raw_limits(self, width: u8) -> (i128, i128) {
+        if self.is_signed() { (-(1 << (width - 1)), (1 << (width - 1)) - 1) } else { (0, (1 << width) - 1) }
+    }
+
+    /// Returns the least and the greatest integer of a width.
+    pub fn limits(self, width: u8) -> (i128, i128) {
+        match self {
+            Self::Unsigned | Self::Signed => self.raw_limits(width),
+        }
+    }
+
+    /// Returns the integer that a raw value is; `None` if it is none.
+    pub fn integer(self, raw: i128) -> Option<i128> {
+        match self {
+            Self::Unsigned | Self::Signed => Some(raw),
+        }
+    }
+
+    /// Returns the raw value that is an integer, however wide; `None` if there is none.
+    pub fn raw(self, integer: i128) -> Option<i128> {
+        match self {
+            Self::Unsigned | Self::Signed => Some(integer),
+        }
+    }
+}
