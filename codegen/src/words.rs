@@ -11,9 +11,10 @@ pub enum NumberFormat {
 }
 
 /// What may stand after `as`.
-pub const NUMBER_FORMATS: [(&str, NumberFormat); 4] = [
+pub const NUMBER_FORMATS: [(&str, NumberFormat); 5] = [
     ("unsigned", NumberFormat::Integer(Numeral::Unsigned)),
     ("signed", NumberFormat::Integer(Numeral::Signed)),
+    ("bcd", NumberFormat::Integer(Numeral::Bcd)),
     ("float", NumberFormat::Float),
     ("text", NumberFormat::Text),
 ];

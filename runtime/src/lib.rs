@@ -20,6 +20,7 @@ extern crate std;
 
 mod address;
 pub mod assembler;
+mod bcd;
 mod entry;
 mod error;
 mod filter;
@@ -54,6 +55,7 @@ pub mod with_serde;
 mod word;
 
 pub use address::{AddressType, Addressing, Kind, Mode};
+pub use bcd::Bcd;
 pub use embedded_can;
 pub use entry::Entry;
 pub use error::Error;

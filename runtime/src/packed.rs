@@ -3,7 +3,7 @@
 use core::fmt::{self, Write};
 
 use crate::plumbing::{Legend, Raw, Word};
-use crate::{Data, Place};
+use crate::{Data, Place, bcd};
 
 /// A piece of a packed value's text; places count from the first byte of the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,25 +21,29 @@ pub enum Piece {
         digits: u8,
         /// The smallest and the largest number.
         limits: (u64, u64),
+        /// Whether each digit has four bits of its own.
+        is_decimal: bool,
     },
 }
 
 impl Piece {
-    /// Returns a number that has as many digits as it needs.
-    pub const fn number(place: Place) -> Self {
-        Self::Number { place, digits: 0, limits: (0, place.max()) }
+    /// Returns a number that has as many digits as it needs; its raw value has the type `R`.
+    pub const fn number<R: Raw>(place: Place) -> Self {
+        Self::digits::<R>(place, 0)
     }
 
-    /// Returns a number of so many digits, with zeros in front.
-    pub const fn digits(place: Place, digits: u8) -> Self {
-        Self::Number { place, digits, limits: (0, place.max()) }
+    /// Returns a number of so many digits, with zeros in front; its raw value has the type `R`.
+    pub const fn digits<R: Raw>(place: Place, digits: u8) -> Self {
+        Self::Number { place, digits, limits: (0, place.max()), is_decimal: R::IS_DECIMAL }
     }
 
     /// Sets the limits of a number.
     #[must_use]
     pub const fn limits(self, minimum: u64, maximum: u64) -> Self {
         match self {
-            Self::Number { place, digits, .. } => Self::Number { place, digits, limits: (minimum, maximum) },
+            Self::Number { place, digits, is_decimal, .. } => {
+                Self::Number { place, digits, limits: (minimum, maximum), is_decimal }
+            }
             other @ (Self::Literal(_) | Self::Text(_)) => other,
         }
     }
@@ -51,8 +55,12 @@ impl Piece {
                 let letters = place.get(&data).to_be_bytes().into_iter().skip(8_usize.saturating_sub(bytes(place)));
                 letters.map(char::from).try_for_each(|letter| formatter.write_char(letter))
             }
-            Self::Number { place, digits, .. } => {
-                write!(formatter, "{:0width$}", place.get(&data), width = usize::from(digits))
+            Self::Number { place, digits, is_decimal, .. } => {
+                let (bits, width) = (place.get(&data), usize::from(digits));
+                match if is_decimal { bcd::number(bits) } else { Some(bits) } {
+                    Some(number) => write!(formatter, "{number:0width$}"),
+                    None => write!(formatter, "{bits:#X}"),
+                }
             }
         }
     }
@@ -66,7 +74,7 @@ impl Piece {
                 place.put(data, letters.bytes().fold(0, |bits, byte| bits << 8 | u64::from(byte)));
                 letters.bytes().all(|byte| matches!(byte, b' '..=b'~')).then_some(rest)
             }
-            Self::Number { place, digits, limits: (minimum, maximum) } => {
+            Self::Number { place, digits, limits: (minimum, maximum), is_decimal } => {
                 let length = match digits {
                     0 if is_last => text.len(),
                     0 => text.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(text.len()),
@@ -75,7 +83,8 @@ impl Piece {
                 let (number, rest) = text.split_at_checked(length)?;
                 let is_plain = number.bytes().all(|byte| byte.is_ascii_digit());
                 let number = number.parse().ok().filter(|number| is_plain && (minimum..=maximum).contains(number))?;
-                place.put(data, number);
+                let bits = if is_decimal { bcd::bits(number) } else { Some(number) };
+                place.put(data, bits.filter(|bits| *bits <= place.max())?);
                 Some(rest)
             }
         }
@@ -203,9 +212,9 @@ mod tests {
         const LEGEND: Legend<Self> = Legend::Text(
             8,
             &[
-                Piece::digits(Self::NUMBER, 12).limits(0, 999_999_999_999),
+                Piece::digits::<u64>(Self::NUMBER, 12).limits(0, 999_999_999_999),
                 Piece::Text(Self::LETTER),
-                Piece::digits(Self::SUFFIX, 4).limits(0, 9_999),
+                Piece::digits::<u16>(Self::SUFFIX, 4).limits(0, 9_999),
             ],
         );
         const FROM_RAW: fn(u64) -> Self = |raw| {

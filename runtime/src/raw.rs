@@ -9,6 +9,9 @@ pub trait Raw: Copy + 'static {
     /// Whether the bits are a number in two's complement.
     const SIGNED: bool = false;
 
+    /// Whether the bits are decimal digits of four bits each.
+    const IS_DECIMAL: bool = false;
+
     /// Whether a number in the signal's unit means a raw value.
     const IS_NUMBER: bool = false;
 
@@ -27,6 +30,17 @@ pub trait Raw: Copy + 'static {
     /// Tests whether the bits give the same value; the parts of a packed value can be too large for their places.
     fn is_whole(self) -> bool {
         true
+    }
+
+    /// Returns the bits of an integer, which can be too many; `None` if there are none.
+    fn bits_of(integer: i64) -> Option<u64> {
+        (Self::SIGNED || integer >= 0).then_some(integer.cast_unsigned())
+    }
+
+    /// Returns the bits of the least and the greatest number at a place whose bits are `all`.
+    fn ends(all: u64) -> [u64; 2] {
+        let highest = all.wrapping_shr(Self::SIGNED.into());
+        [if Self::SIGNED { !highest } else { 0 }, highest]
     }
 
     /// Returns the number that limits apply to: the integer, or the float.

@@ -173,9 +173,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Names the limits of what the bits can hold.
     fn too_wide(&self, value: Number, payload: &Payload) -> Error {
-        let highest = self.place.max().wrapping_shr(R::SIGNED.into());
-        let lowest = if R::SIGNED { !highest } else { 0 };
-        let [one, other] = [lowest, highest].map(|bits| self.physical(R::from_bits(bits)).number());
+        let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number());
         let is_falling = self.scale.is_some_and(Scale::is_falling);
         let (minimum, maximum) = if is_falling { (other, one) } else { (one, other) };
         self.outside(value, minimum, maximum, payload)
@@ -224,17 +222,17 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
         if payload.keeps_limits() {
             self.check_rounded(physical, raw, payload)?;
         }
-        match raw {
-            Some(raw) if R::SIGNED || raw >= 0 => self.store(raw.cast_unsigned(), || number, payload),
-            _ if physical.is_nan() => Err(self.not_finite(payload)),
-            _ => Err(self.too_wide(number, payload)),
+        match raw.and_then(R::bits_of) {
+            Some(bits) => self.store(bits, || number, payload),
+            None if physical.is_nan() => Err(self.not_finite(payload)),
+            None => Err(self.too_wide(number, payload)),
         }
     }
 
     /// Tests a physical value and the raw value to which it is rounded, which has a meaning of its own if it is special.
     fn check_rounded(&self, physical: F, raw: Option<i64>, payload: &Payload) -> Result<(), Error> {
         let sent = raw.map_or(physical, |raw| F::scaled(raw, self.exact_scale()));
-        let special = raw.and_then(|raw| self.special(raw.cast_unsigned()));
+        let special = raw.and_then(R::bits_of).and_then(|bits| self.special(bits));
         if sent == physical && special.is_some() {
             return Ok(());
         }

@@ -2,8 +2,8 @@
 
 use defmt::{Display2Format, Format, Formatter, write};
 
-use crate::plumbing::{Raw, Word};
-use crate::{Frame, Meaning, StatusBit, Text, status};
+use crate::plumbing::{Integer, Raw, Word};
+use crate::{Bcd, Frame, Meaning, StatusBit, Text, status};
 
 /// Writes a named value by its name, a status word by the names of its set bits, a packed value by its text.
 ///
@@ -37,6 +37,16 @@ impl<const N: usize> Format for Text<N> {
             write!(formatter, "{=str}", text);
         } else {
             write!(formatter, "{=[u8]:#04X}", self.as_bytes().as_slice());
+        }
+    }
+}
+
+impl<R: Integer> Format for Bcd<R> {
+    fn format(&self, formatter: Formatter<'_>) {
+        if let Some(number) = self.number() {
+            write!(formatter, "{=u64}", number);
+        } else {
+            write!(formatter, "{=u64:#X}", self.to_bits());
         }
     }
 }

@@ -7,11 +7,13 @@
 //! | status word | `{"set": NAMES, "unknown": MASK}`: the set bits that have a name, and those that have none |
 //! | packed value | its text, or its raw number if that text would not give the same value |
 //! | [`Text`](crate::Text) | the text, or its bytes if they are no printable ASCII |
+//! | [`Bcd`](crate::Bcd) | the number, or its bits such as `"0x2A"` if a digit is above 9 |
 //! | `f32` of the frame | the number, or its bits such as `"0x7FC00000"` if it is not finite |
 //! | [`Frame`](crate::Frame) | as in a log: `"029C03F0#000B71B000003A98"` |
 //!
 //! A format for people must describe itself, as JSON does.
 
+mod bcd;
 pub mod float;
 mod frame;
 mod text;

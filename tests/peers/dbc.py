@@ -40,7 +40,10 @@ class Protocol:
     def __init__(self, canspec, spec, *options, dbc_of=None):
         self.canspec, self.spec = canspec, spec
         export = [canspec, "export", "dbc", "--spec", dbc_of or spec, *options]
-        mask = int(re.search("mask (0x[0-9A-F]+)", run(*export, "--report"))[1], 16)
+        report = run(*export, "--report")
+        # Signals in decimal digits, whose bits are all that a DBC has.
+        self.decimal = set(re.findall(r"`(\S+)` is in decimal digits", report))
+        mask = int(re.search("mask (0x[0-9A-F]+)", report)[1], 16)
         self.database = cantools.database.load_string(run(*export), "dbc", frame_id_mask=mask, strict=True)
 
     def examples(self):
@@ -110,7 +113,10 @@ def differences(protocol, frame):
         name = name_of(message, frame, signal)
         if name in raw:
             seen.add(name)
-            found += compare(message.get_signal_by_name(name), ours, raw[name], values[name])
+            if f"{frame['message']}.{signal}" not in protocol.decimal:
+                found += compare(message.get_signal_by_name(name), ours, raw[name], values[name])
+            elif raw[name] != ours["raw"]:
+                found.append(f"raw {name} is {ours['raw']}, not {raw[name]}")
         else:
             inside = parts(message, name, raw)
             seen.update(part.name for part, _ in inside)

@@ -41,7 +41,9 @@ function Word.__lt(one, other)
   return math.ult(one.value, other.value)
 end
 function Word.__le(one, other) return not (other < one) end
+function Word.__add(one, other) return word(one.value + other.value) end
 function Word.__sub(one, other) return word(one.value - other.value) end
+function Word.__mul(one, other) return word(one.value * other.value) end
 function Word.__tostring(self)
   return self.is_signed and string.format("%d", self.value) or unsigned_text(self.value)
 end

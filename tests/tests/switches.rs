@@ -7,7 +7,7 @@ use canspec_codegen::interpret;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
 use canspec_runtime::plumbing::Raw;
-use canspec_runtime::{Frame, Layout, Payload, Protocol, Text};
+use canspec_runtime::{Bcd, Frame, Layout, Payload, Protocol, Text};
 use canspec_tests::features_status_word_switched::State;
 use canspec_tests::{Frames, Optional, SwitchedVisitor, models, protocol, received, visit_switched};
 use serde::de::DeserializeOwned;
@@ -191,6 +191,15 @@ fn a_text_is_a_text_or_its_bytes() {
     assert_eq!(texts.map(|text| both_ways(&text)), texts.map(|text| [text; 2]));
     assert!(refused::<Text<4>>(json!("ABCDE")).ends_with("expected at most 4 printable ASCII characters, or 4 bytes"));
     refused::<Text<4>>(json!([1, 2, 3]));
+}
+
+#[test]
+fn a_number_in_decimal_digits_is_a_number_or_its_bits() {
+    let values = [Bcd::<u8>::from_raw(0x42), Bcd::from_raw(0x2A)];
+    assert_eq!(values.map(shown), [json!(42), json!("0x2A")]);
+    assert_eq!(values.map(|value| both_ways(&value)), values.map(|value| [value; 2]));
+    assert!(refused::<Bcd<u8>>(json!(100)).ends_with("expected a number that fits, or raw bits such as `0x2A`"));
+    refused::<Bcd<u8>>(json!("0x100"));
 }
 
 #[test]

@@ -80,7 +80,8 @@ impl Packed<'_> {
                 if part.encoding.is_text() {
                     return Text { signal: part }.text(raw);
                 }
-                Some(format!("{raw:0width$}", width = digits.unwrap_or(1)))
+                let number = part.encoding.numeral().integer(raw.into())?;
+                Some(format!("{number:0width$}", width = digits.unwrap_or(1)))
             }
         }
     }
@@ -103,7 +104,7 @@ fn bits_of_part(part: &Signal, text: &str) -> Option<u64> {
         return Text { signal: part }.bits(text).ok();
     }
     let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    let raw: u64 = digits.then(|| text.parse().ok()).flatten()?;
-    let is_in_range = part.range.is_none_or(|range| range.has_whole(raw.into()));
-    (raw <= part.place.max() && is_in_range).then_some(raw)
+    let number: i128 = digits.then(|| text.parse().ok()).flatten()?;
+    let is_in_range = part.range.is_none_or(|range| range.has_whole(number));
+    is_in_range.then(|| part.bits_of(part.encoding.numeral().raw(number)?)).flatten()
 }

@@ -9,13 +9,15 @@ pub enum Numeral {
     Unsigned,
     /// Two's complement.
     Signed,
+    /// Decimal digits of four bits each, the first digit highest.
+    Bcd,
 }
 
 impl Numeral {
     /// Tests whether raw values have a sign.
     pub fn is_signed(self) -> bool {
         match self {
-            Self::Unsigned => false,
+            Self::Unsigned | Self::Bcd => false,
             Self::Signed => true,
         }
     }
@@ -24,6 +26,7 @@ impl Numeral {
     pub fn is_raw(self) -> bool {
         match self {
             Self::Unsigned | Self::Signed => true,
+            Self::Bcd => false,
         }
     }
 
@@ -36,6 +39,7 @@ impl Numeral {
     pub fn limits(self, width: u8) -> (i128, i128) {
         match self {
             Self::Unsigned | Self::Signed => self.raw_limits(width),
+            Self::Bcd => (0, 10_i128.pow(u32::from(width / 4)) - 1),
         }
     }
 
@@ -43,6 +47,7 @@ impl Numeral {
     pub fn integer(self, raw: i128) -> Option<i128> {
         match self {
             Self::Unsigned | Self::Signed => Some(raw),
+            Self::Bcd => format!("{raw:X}").parse().ok(),
         }
     }
 
@@ -50,6 +55,7 @@ impl Numeral {
     pub fn raw(self, integer: i128) -> Option<i128> {
         match self {
             Self::Unsigned | Self::Signed => Some(integer),
+            Self::Bcd => i128::from_str_radix(&integer.to_string(), 16).ok().filter(|raw| *raw >= 0),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
-use crate::model::Encoding;
+use crate::model::{Encoding, Numeral};
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::{Node, Path};
@@ -28,6 +28,7 @@ pub enum Role {
     Word,
     Constant,
     Number,
+    Decimal,
     Float,
     Named,
     Status,
@@ -35,14 +36,18 @@ pub enum Role {
     Packed,
     PackedWord,
     PackedNumber,
+    PackedDecimal,
     PackedText,
 }
 
 /// Numbers with a unit.
-const QUANTITIES: &[Role] = &[Role::Number, Role::Float];
+const QUANTITIES: &[Role] = &[Role::Number, Role::Decimal, Role::Float];
 
 /// Signals that are not put together of parts.
 const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text]];
+
+/// Numbers in a packed value.
+const PACKED_NUMBERS: &[Role] = &[Role::PackedNumber, Role::PackedDecimal];
 
 /// Fields of the identifier.
 const IDENTIFIER: &[Role] = &[Role::Identifier, Role::IdentifierConstant];
@@ -51,7 +56,7 @@ const IDENTIFIER: &[Role] = &[Role::Identifier, Role::IdentifierConstant];
 const WORDS: &[Role] = &[Role::Word, Role::HeaderWord, Role::PackedWord];
 
 /// What is one range of bits in the data bytes, beside signals and words.
-const PLACED: &[Role] = &[Role::Header, Role::Constant, Role::PackedNumber, Role::PackedText];
+const PLACED: &[Role] = &[Role::Header, Role::Constant, Role::PackedNumber, Role::PackedDecimal, Role::PackedText];
 
 impl Role {
     /// Returns the role in a sentence: "`scale` means nothing for ...".
@@ -66,6 +71,7 @@ impl Role {
             Self::Word => "a word of fields",
             Self::Constant => "a constant field",
             Self::Number => "a number",
+            Self::Decimal => "a number in decimal digits",
             Self::Float => "a float",
             Self::Named => "a signal of named values",
             Self::Status => "a status word",
@@ -73,6 +79,7 @@ impl Role {
             Self::Packed => "a packed value",
             Self::PackedWord => "a word of a packed value",
             Self::PackedNumber => "a number of a packed value",
+            Self::PackedDecimal => "a number in decimal digits of a packed value",
             Self::PackedText => "a text of a packed value",
         }
     }
@@ -87,11 +94,15 @@ impl Role {
             Key::Type => !among(&[Self::Address, Self::OfModel]),
             Key::Bytes => signal || among(WORDS) || among(PLACED),
             Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
-            Key::As => among(QUANTITIES) || among(&[Self::Text, Self::PackedText]),
+            Key::As => among(QUANTITIES) || among(&[Self::Text, Self::PackedDecimal, Self::PackedText]),
             Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
             Key::Unit => among(QUANTITIES),
-            Key::Range => among(QUANTITIES) || among(&[Self::Address, Self::OfModel, Self::PackedNumber]),
-            Key::Values => among(IDENTIFIER) || among(&[Self::Header, Self::Constant, Self::Number, Self::Named]),
+            Key::Range => {
+                [QUANTITIES, PACKED_NUMBERS].concat().contains(&self) || among(&[Self::Address, Self::OfModel])
+            }
+            Key::Values => {
+                among(IDENTIFIER) || among(&[Self::Header, Self::Constant, Self::Number, Self::Decimal, Self::Named])
+            }
             Key::Fields => among(WORDS) || self == Self::Packed,
             Key::Status => self == Self::Status,
             Key::Format => self == Self::Packed,
@@ -141,13 +152,17 @@ impl Role {
             Site::Message => Self::of_signal(encoding),
             Site::Header => Self::Header,
             Site::Packed if encoding.is_text() => Self::PackedText,
-            Site::Packed => Self::PackedNumber,
+            Site::Packed => match encoding.numeral() {
+                Numeral::Unsigned | Numeral::Signed => Self::PackedNumber,
+                Numeral::Bcd => Self::PackedDecimal,
+            },
         }
     }
 
     fn of_signal(encoding: &Encoding) -> Self {
         match encoding {
-            Encoding::Number { .. } => Self::Number,
+            Encoding::Number { numeral: Numeral::Bcd, .. } => Self::Decimal,
+            Encoding::Number { numeral: Numeral::Unsigned | Numeral::Signed, .. } => Self::Number,
             Encoding::Float => Self::Float,
             Encoding::Named(_) => Self::Named,
             Encoding::Status(_) => Self::Status,

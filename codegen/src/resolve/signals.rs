@@ -326,7 +326,8 @@ impl Resolver<'_> {
             return Some(Encoding::Status(self.status_word(merged, &otherwise, place.width(), doc)));
         }
         let numeral = match self.number_format(merged)? {
-            NumberFormat::Integer(numeral) => numeral,
+            NumberFormat::Integer(Numeral::Bcd) => self.decimal(name, merged, place)?,
+            NumberFormat::Integer(numeral @ (Numeral::Unsigned | Numeral::Signed)) => numeral,
             NumberFormat::Float => return self.float(name, merged, place),
             NumberFormat::Text => return self.text(name, merged, place),
         };
@@ -349,6 +350,16 @@ impl Resolver<'_> {
         let at = merged.path(self.diagnostics, Key::As);
         let index = self.lookup(&at, "number format", word, NUMBER_FORMATS.iter().map(|(word, _)| *word))?;
         Some(NUMBER_FORMATS[index].1)
+    }
+
+    fn decimal(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Numeral> {
+        if !place.width().is_multiple_of(4) {
+            let text = format!("a decimal digit has four bits, the place of `{name}` has {}", place.width());
+            let help = "give the field a multiple of four bits, or take `as: bcd` out";
+            self.error_with_help(&rules::TYPE, merged.sources[0].key("as").at_value(), text, help);
+            return None;
+        }
+        Some(Numeral::Bcd)
     }
 
     fn float(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {

@@ -118,6 +118,19 @@ fn a_float_meets_its_limits_as_nearly_as_it_can_and_a_scaled_number_exactly() {
 }
 
 #[test]
+fn decimal_digits_are_a_number_unless_one_is_above_nine() {
+    let wide = written(WIDE);
+    let said = |bits: &str| notes(&wide, &format!("051#{bits}000000000000"));
+    for bits in ["0500", "0010", "FFFF"] {
+        assert!(said(bits).is_empty(), "{bits}");
+    }
+    for bits in ["0501", "0009"] {
+        assert_eq!(said(bits), ["out_of_range"], "{bits}");
+    }
+    assert_eq!(said("04A9"), ["unknown_value"]);
+}
+
+#[test]
 fn an_error_code_gets_a_note() {
     assert_eq!(notes(&feature("addressing"), "0443F003#3200000000000000"), ["error_code"]);
     let registers = feature("register_table");

@@ -1,7 +1,7 @@
 //! Values that the compiler cannot foresee.
 
 use canspec_runtime::plumbing::Raw;
-use canspec_runtime::{Destination, Frame, Meaning, Number, Payload, Route, Text};
+use canspec_runtime::{Bcd, Destination, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
 pub trait Unknown: Sized {
@@ -71,6 +71,12 @@ impl<const N: usize> Unknown for [u8; N] {
 impl<const N: usize> Unknown for Text<N> {
     fn unknown() -> Self {
         Self::from_bits(unknown())
+    }
+}
+
+impl<R: Unknown> Unknown for Bcd<R> {
+    fn unknown() -> Self {
+        Self::from_raw(unknown())
     }
 }
 

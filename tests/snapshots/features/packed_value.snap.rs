@@ -132,9 +132,9 @@ impl Word for LabelValue {
     const LEGEND: Legend<Self> = Legend::Text(
         4,
         &[
-            Piece::number(Self::MAJOR),
+            Piece::number::<u8>(Self::MAJOR),
             Piece::Literal("."),
-            Piece::digits(Self::MINOR, 2).limits(0, 99),
+            Piece::digits::<u16>(Self::MINOR, 2).limits(0, 99),
             Piece::Literal("-"),
             Piece::Text(Self::LETTER),
         ],

@@ -981,9 +981,9 @@ impl Word for BarcodeValue {
     const LEGEND: Legend<Self> = Legend::Text(
         8,
         &[
-            Piece::digits(Self::NUMBER, 12).limits(0, 999_999_999_999),
+            Piece::digits::<u64>(Self::NUMBER, 12).limits(0, 999_999_999_999),
             Piece::Text(Self::LETTER),
-            Piece::digits(Self::SUFFIX, 4).limits(0, 9999),
+            Piece::digits::<u16>(Self::SUFFIX, 4).limits(0, 9999),
         ],
     );
     const FROM_RAW: fn(u64) -> Self = |raw| {

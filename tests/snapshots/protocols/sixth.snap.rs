@@ -750,11 +750,11 @@ impl Word for FirmwareValue {
     const LEGEND: Legend<Self> = Legend::Text(
         3,
         &[
-            Piece::number(Self::MAJOR),
+            Piece::number::<u8>(Self::MAJOR),
             Piece::Literal("."),
-            Piece::number(Self::MINOR),
+            Piece::number::<u8>(Self::MINOR),
             Piece::Literal("."),
-            Piece::number(Self::PATCH),
+            Piece::number::<u8>(Self::PATCH),
         ],
     );
     const FROM_RAW: fn(u64) -> Self = |raw| {

@@ -5,7 +5,7 @@ use canspec_runtime::Place;
 use super::file::Signal;
 use super::text::{ascii, remarks, unit};
 use crate::model::{
-    Encoding, NamedValue, Protocol, Range, Selector, Severity, Signal as Meaning, StatusBit, StatusWord,
+    Encoding, NamedValue, Numeral, Protocol, Range, Selector, Severity, Signal as Meaning, StatusBit, StatusWord,
 };
 use crate::number::Rational;
 
@@ -21,13 +21,19 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
     let whole = |signals| Written { signals, loss: None };
     let range = signal.range.or_else(|| signal.held());
     match &signal.encoding {
-        Encoding::Number { numeral, scale, offset } => whole(vec![Signal {
-            signed: numeral.is_signed(),
-            factor: *scale,
-            offset: *offset,
-            range,
-            ..plain(signal, name)
-        }]),
+        Encoding::Number { numeral: Numeral::Bcd, .. } => {
+            let number = Signal { unit: "", ..plain(signal, name) };
+            Written { signals: vec![number], loss: Some("is in decimal digits; its bits are given as a number") }
+        }
+        Encoding::Number { numeral: numeral @ (Numeral::Unsigned | Numeral::Signed), scale, offset } => {
+            whole(vec![Signal {
+                signed: numeral.is_signed(),
+                factor: *scale,
+                offset: *offset,
+                range,
+                ..plain(signal, name)
+            }])
+        }
         Encoding::Float => whole(vec![Signal { float: true, range, ..plain(signal, name) }]),
         Encoding::Named(id) => {
             let values = named(&protocol[*id].values);

@@ -78,12 +78,33 @@ local function shows(id, constants)
   return true
 end
 
+-- Numerals: the integer that a raw value is, or nil.
+
+local numerals = {}
+
+-- Decimal digits of four bits each.
+function numerals.bcd(raw)
+  local hex = digits(raw, 1)
+  if hex:find("%a") then return nil end
+  if type(raw) == "number" then return tonumber(hex) end
+  local high = #hex > 8 and UInt64(tonumber(hex:sub(1, -9))) or UInt64(0)
+  return high * UInt64(100000000) + UInt64(tonumber(hex:sub(-8)))
+end
+
+-- Returns the integer of a signal or of a part.
+local function integer(signal, raw)
+  if not signal.numeral then return raw end
+  return numerals[signal.numeral](raw)
+end
+
 -- Values: the physical value of a raw one, or nil and the note that says why there is none.
 
 local values = {}
 
-function values.integer(_, raw)
-  return raw
+function values.integer(signal, raw)
+  local number = integer(signal, raw)
+  if number then return number end
+  return nil, "unknown_value", signal.name .. " 0x" .. digits(raw, 1) .. " is no number"
 end
 
 function values.number(signal, raw)
@@ -131,8 +152,9 @@ local function piece_text(frame, piece)
     local text = ascii(digits(raw, math.floor(width / 4)))
     return text and #text == width / 8 and text or nil
   end
+  raw = integer(piece, raw)
+  if not raw or piece.range and not keeps_to(raw, piece.range) then return nil end
   local number = type(raw) == "number" and string.format("%d", raw) or tostring(raw)
-  if piece.range and not keeps_to(raw, piece.range) then return nil end
   if not piece.digits then return number end
   return #number <= piece.digits and string.rep("0", piece.digits - #number) .. number or nil
 end

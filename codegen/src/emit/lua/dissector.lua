@@ -43,7 +43,7 @@ local function define_signal(signal, prefix)
     signal.field = define(ProtoField.string(name, text))
   end
   if signal.specials then signal.name_field = define(ProtoField.string(name .. ".name", text)) end
-  if signal.specials or (signal.shown ~= "integer" and signal.shown ~= "bits") then
+  if signal.specials or signal.numeral or (signal.shown ~= "integer" and signal.shown ~= "bits") then
     signal.raw_field = number_field(name .. ".raw", "raw", width, signal.signed, base.DEC_HEX)
   end
 end

@@ -77,6 +77,7 @@ fn written(record: Value, numeral: Numeral) -> Value {
     match numeral {
         Numeral::Unsigned => record,
         Numeral::Signed => record.with("signed", Value::flag(true)),
+        Numeral::Bcd => record.with("numeral", Value::text("bcd")),
     }
 }
 
@@ -102,7 +103,7 @@ fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> Value {
         Piece::Literal(text) => return Value::record().with("literal", Value::text(text)),
         Piece::Part { part, digits } => (&parts[*part], digits),
     };
-    Value::record()
+    written(Value::record(), part.encoding.numeral())
         .with("place", place(part.place))
         .maybe("text", part.encoding.is_text().then(|| Value::flag(true)))
         .maybe("digits", digits.map(|digits| Value::Plain(digits.to_string())))

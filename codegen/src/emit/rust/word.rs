@@ -181,14 +181,14 @@ fn packed_word(Packed { name, bytes, parts, pieces, .. }: &Packed) -> TokenStrea
 }
 
 fn piece(piece: &Piece) -> TokenStream {
-    let (place, digits, limits) = match piece {
+    let (place, kind, digits, limits) = match piece {
         Piece::Literal(literal) => return quote!(Piece::Literal(#literal)),
         Piece::Text(place) => return quote!(Piece::Text(Self::#place)),
-        Piece::Number { place, digits, limits } => (place, digits, limits),
+        Piece::Number { place, kind, digits, limits } => (place, kind, digits, limits),
     };
     let limits = limits.iter().map(|(minimum, maximum)| quote!(.limits(#minimum, #maximum)));
     match digits {
-        None => quote!(Piece::number(Self::#place) #(#limits)*),
-        Some(digits) => quote!(Piece::digits(Self::#place, #digits) #(#limits)*),
+        None => quote!(Piece::number::<#kind>(Self::#place) #(#limits)*),
+        Some(digits) => quote!(Piece::digits::<#kind>(Self::#place, #digits) #(#limits)*),
     }
 }

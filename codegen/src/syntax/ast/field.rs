@@ -120,8 +120,8 @@ keys! {
     /// Entry of `types`, or a list of them, from which the field takes the keys that it does not have itself: `real` or
     /// `[real, volts]`, where the last one wins; none if absent.
     Type "type": types: Names, own;
-    /// Number format: `unsigned`, `signed` (two's complement), `float` (IEEE 754 in 32 bits) or `text` (ASCII in whole
-    /// bytes); `unsigned` if absent.
+    /// Number format: `unsigned`, `signed` (two's complement), `bcd` (decimal digits of four bits each), `float`
+    /// (IEEE 754 in 32 bits) or `text` (ASCII in whole bytes); `unsigned` if absent.
     As "as": format_of_number: Option<String>, inherited;
     /// Step of the raw value in the field's unit, exact: `1/10` or `0.02`; 1 if absent. The physical value is raw x
     /// scale + offset; an address has a scale of 1 or -1.

@@ -98,5 +98,10 @@ pub fn tokens(code: &impl ToTokens) -> String {
     if text.starts_with('"') {
         return text;
     }
-    text.replace(" :: ", "::").replace(":: ", "::").replace("- ", "-").replace(" < ", "<").replace(" >", ">")
+    text.replace(" :: ", "::")
+        .replace(":: ", "::")
+        .replace("- ", "-")
+        .replace(" <", "<")
+        .replace("< ", "<")
+        .replace(" >", ">")
 }

@@ -48,8 +48,8 @@ impl Coding {
                 is_scaled: !signal.encoding.is_unscaled(),
                 scale: (*scale != Rational::ONE).then(|| fraction(*scale)),
                 offset: (*offset != Rational::ZERO).then(|| fraction(*offset)),
-                limits: if whole(signal).is_some() { Limits::Raw } else { Limits::Physical },
-                step: step(signal, *scale, *offset),
+                limits: if is_compared_raw(signal) { Limits::Raw } else { Limits::Physical },
+                step: step(signal, Integer::new(width, *numeral).digits, *scale, *offset),
                 ..Self::raw(integer(width, *numeral))
             },
             Encoding::Float => Self {
@@ -118,9 +118,12 @@ impl Coding {
     /// Writes the value that a raw value of the signal stands for.
     pub fn value_of(&self, signal: &Signal, raw: i128, float: Float) -> TokenStream {
         if self.is_scaled {
-            physical(signal.encoding.value_of(raw).unwrap_or(Rational::ZERO), float)
-        } else {
-            decimal(raw)
+            return physical(signal.encoding.value_of(raw).unwrap_or(Rational::ZERO), float);
+        }
+        let raw = decimal(raw);
+        match Integer::new(signal.place.width(), signal.encoding.numeral()).around {
+            None => raw,
+            Some(around) => quote!(#around::from_raw(#raw)),
         }
     }
 }
@@ -136,6 +139,11 @@ pub enum Limits {
     Double,
 }
 
+/// Tests whether limits can be raw values; if there are none, any unscaled number is one.
+fn is_compared_raw(signal: &Signal) -> bool {
+    whole(signal).is_some() || signal.encoding.is_unscaled() && signal.ranges().next().is_none()
+}
+
 /// Returns the type of a number that is a raw integer, and its limits too.
 pub fn whole(signal: &Signal) -> Option<TokenStream> {
     let is_raw = signal.encoding.is_unscaled() && signal.encoding.numeral().is_raw();
@@ -147,22 +155,40 @@ fn fraction(number: Rational) -> [TokenStream; 2] {
     [number.numerator(), number.denominator()].map(decimal)
 }
 
-fn step(signal: &Signal, scale: Rational, offset: Rational) -> Option<String> {
+fn step(signal: &Signal, digits: Option<&str>, scale: Rational, offset: Rational) -> Option<String> {
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
     let step = (scale != Rational::ONE).then(|| format!("steps of {scale}{unit}"));
     let offset = (offset != Rational::ZERO).then(|| format!("raw 0 is {offset}{unit}"));
-    let facts: Vec<_> = step.into_iter().chain(offset).collect();
+    let facts: Vec<_> = digits.map(str::to_owned).into_iter().chain(step).chain(offset).collect();
     (!facts.is_empty()).then(|| facts.join(", "))
 }
 
 /// Returns the smallest type of raw values that holds `width` bits.
 pub fn integer(width: u8, numeral: Numeral) -> TokenStream {
-    let size = width.next_power_of_two().max(8);
-    let name = match numeral {
-        Numeral::Unsigned => format_ident!("u{size}"),
-        Numeral::Signed => format_ident!("i{size}"),
-    };
-    quote!(#name)
+    let Integer { kind, around, .. } = Integer::new(width, numeral);
+    around.map_or_else(|| quote!(#kind), |around| quote!(#around<#kind>))
+}
+
+/// What a numeral is in Rust.
+struct Integer {
+    /// The smallest integer that holds the bits.
+    kind: Ident,
+    /// The type of the runtime around it, which is made by `from_raw`.
+    around: Option<Ident>,
+    /// What the comment says of the digits.
+    digits: Option<&'static str>,
+}
+
+impl Integer {
+    fn new(width: u8, numeral: Numeral) -> Self {
+        let size = width.next_power_of_two().max(8);
+        let plain = |sign| Self { kind: format_ident!("{sign}{size}"), around: None, digits: None };
+        match numeral {
+            Numeral::Unsigned => plain("u"),
+            Numeral::Signed => plain("i"),
+            Numeral::Bcd => Self { around: Some(format_ident!("Bcd")), digits: Some("decimal digits"), ..plain("u") },
+        }
+    }
 }
 
 /// Returns the type of a text that takes `width` bits.
@@ -183,6 +209,10 @@ impl Part {
     /// Returns what a part is in Rust.
     pub fn new(part: &Signal) -> Self {
         let width = part.place.width();
-        if part.encoding.is_text() { Self::Text(text(width)) } else { Self::Number(integer(width, Numeral::Unsigned)) }
+        if part.encoding.is_text() {
+            Self::Text(text(width))
+        } else {
+            Self::Number(integer(width, part.encoding.numeral()))
+        }
     }
 }

@@ -5,11 +5,12 @@ use proc_macro2::{Ident, Span};
 use crate::model::Signal;
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 75] = [
+const TAKEN: [&str; 76] = [
     "Address",
     "AddressType",
     "Addressing",
     "AnySignal",
+    "Bcd",
     "Bits",
     "Clone",
     "Continuation",

@@ -181,6 +181,8 @@ pub enum Piece {
     Number {
         /// Constant of the place.
         place: Ident,
+        /// Type of the raw value.
+        kind: TokenStream,
         /// To how many digits it is filled with zeros.
         digits: Option<Literal>,
         /// Its lowest and highest value.
@@ -252,7 +254,7 @@ impl Piece {
         let limits = part.range.map(|range| (decimal(range.minimum.numerator()), decimal(range.maximum.numerator())));
         match Part::new(part) {
             Part::Text(_) => Self::Text(place),
-            Part::Number(_) => Self::Number { place, digits: digits.map(Literal::usize_unsuffixed), limits },
+            Part::Number(kind) => Self::Number { place, kind, digits: digits.map(Literal::usize_unsuffixed), limits },
         }
     }
 }
