@@ -3,6 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use canspec_codegen::model::{Example, Protocol};
+use canspec_codegen::text::Text;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -54,10 +55,15 @@ fn row(protocol: &Protocol, example: &Example) -> Row {
         data.map_or(id.clone(), |data| format!("{id}#{data}")),
         example.kind.name().to_owned(),
         example.message.map_or(String::new(), |message| protocol.messages[message].name.clone()),
-        section.unwrap_or_default().to_owned(),
+        section.map_or("", Text::for_people).to_owned(),
         expect.to_owned(),
     ];
-    Row { cells, last: example.doc.errata.clone(), separator: ", " }
+    Row { cells, last: errata(example).map(str::to_owned).collect(), separator: ", " }
+}
+
+/// Returns the errata of an example by name.
+fn errata(example: &Example) -> impl Iterator<Item = &str> {
+    example.doc.errata.iter().map(Text::for_people)
 }
 
 #[derive(Serialize)]
@@ -65,7 +71,7 @@ struct Object<'a> {
     id: String,
     /// `None` where the document prints an identifier alone.
     data: Option<String>,
-    section: Option<&'a str>,
+    section: Option<&'a Text>,
     expect: &'static str,
     /// Errata by name, one behind the other.
     erratum: Option<String>,
@@ -76,9 +82,9 @@ impl<'a> Object<'a> {
         Self {
             id: log::identifier_digits(example.id, example.extended),
             data: example.data.as_deref().map(log::hexadecimal),
-            section: example.doc.section.as_deref(),
+            section: example.doc.section.as_ref(),
             expect: example.fails.map_or("ok", canspec_codegen::model::Failure::name),
-            erratum: (!example.doc.errata.is_empty()).then(|| example.doc.errata.join(", ")),
+            erratum: (!example.doc.errata.is_empty()).then(|| errata(example).collect::<Vec<_>>().join(", ")),
         }
     }
 

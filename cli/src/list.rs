@@ -4,7 +4,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
-use canspec_codegen::model::{DeviceModel, Document, Example, Message, MessageId, Protocol, SelectorId, Signal};
+use canspec_codegen::model::{DeviceModel, Doc, Document, Example, Message, MessageId, Protocol, SelectorId, Signal};
+use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
 use clap::Args;
 
@@ -52,17 +53,17 @@ fn protocol_row(name: &str, protocol: &Protocol) -> Row {
     let covered = protocol.messages.ids().filter(shown).count();
     let cells = vec![
         name.to_owned(),
-        protocol.title.clone(),
+        words(Some(&protocol.title)),
         count.to_string(),
         format!("{} in {covered} of {count} messages", documented.len()),
-        protocol.document.version.clone(),
+        words(Some(&protocol.document.version)),
     ];
-    Row { cells, last: vec![protocol.document.title.clone()], separator: "" }
+    Row { cells, last: vec![words(Some(&protocol.document.title))], separator: "" }
 }
 
 /// Writes a table of messages, each followed by its signals.
 fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    writeln!(out, "{}: {}\n{}\n", protocol.name, protocol.title, document(&protocol.document))?;
+    writeln!(out, "{}: {}\n{}\n", protocol.name, protocol.title.for_people(), document(&protocol.document))?;
     let selectors = selectors(protocol);
     let upper: Vec<String> = selectors.iter().map(|id| protocol[*id].name.to_uppercase()).collect();
     let mut headings: Vec<&str> = upper.iter().map(String::as_str).collect();
@@ -91,23 +92,23 @@ fn model_row(model: &DeviceModel) -> Row {
     let rates = model.bit_rates.iter().map(|rate| (rate / 1000).to_string());
     let cells = vec![
         model.name.clone(),
-        model.items.join(", "),
+        model.items.iter().map(Text::for_people).collect::<Vec<_>>().join(", "),
         model.max_parallel.map_or(String::new(), |count| count.to_string()),
         rates.collect::<Vec<_>>().join(", "),
-        model.doc.section.clone().unwrap_or_default(),
+        words(model.doc.section.as_ref()),
     ];
     let facts = model.facts.iter().map(|(name, fact)| {
         let unit = fact.unit.map_or(String::new(), |unit| format!(" {}", unit.symbol));
-        format!("{name} {}{unit}", fact.value)
+        format!("{} {}{unit}", name.for_people(), fact.value)
     });
     let limits = model.types.iter().filter_map(|own| Some((&own.name, own.range?)));
     let limits = limits.map(|(name, range)| format!("{name} {}..{}", range.minimum, range.maximum));
-    Row { cells, last: titled(model.doc.title.as_deref(), facts.chain(limits).collect()), separator: ", " }
+    Row { cells, last: titled(title(&model.doc), facts.chain(limits).collect()), separator: ", " }
 }
 
 fn document(document: &Document) -> String {
-    let date = document.date.as_ref().map_or(String::new(), |date| format!(", {date}"));
-    format!("{}, {}{date}", document.title, document.version)
+    let date = document.date.as_ref().map_or(String::new(), |date| format!(", {}", date.for_people()));
+    format!("{}, {}{date}", document.title.for_people(), document.version.for_people())
 }
 
 /// Returns the selectors whose constants choose a message whatever its access.
@@ -139,17 +140,17 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     let mut cells: Vec<String> = selectors.iter().map(shown).collect();
     cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
     cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_owned()));
-    cells.push(message.doc.section.clone().unwrap_or_default());
+    cells.push(words(message.doc.section.as_ref()));
     let models = message.models.iter().map(|model| protocol.models[*model].name.as_str()).collect::<Vec<_>>();
     let models = if models.is_empty() { String::new() } else { format!(" (only {})", models.join(", ")) };
-    let title = format!("{}{models}", message.doc.title.as_deref().unwrap_or_default());
+    let title = format!("{}{models}", title(&message.doc).unwrap_or_default());
     let title = Some(title.trim_start()).filter(|title| !title.is_empty());
     match value(message) {
         Some(signal) => Row { cells, last: titled(title, meaning(protocol, signal)), separator: ", " },
         None if message.set.is_some() => {
             Row { cells, last: titled(title, members(protocol, message)), separator: ", " }
         }
-        None => Row { cells, last: words(title.unwrap_or_default()), separator: " " },
+        None => Row { cells, last: split(title.unwrap_or_default()), separator: " " },
     }
 }
 
@@ -168,8 +169,8 @@ fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: 
     let mut cells = vec![String::new(); selectors + 1];
     cells.push(format!("  {}", signal.name));
     cells.push(signal.unit.map_or(String::new(), |unit| unit.symbol.to_owned()));
-    cells.push(signal.doc.section.clone().filter(|_| signal.doc.section != message.doc.section).unwrap_or_default());
-    Row { cells, last: titled(signal.doc.title.as_deref(), meaning(protocol, signal)), separator: ", " }
+    cells.push(words(signal.doc.section.as_ref().filter(|_| signal.doc.section != message.doc.section)));
+    Row { cells, last: titled(title(&signal.doc), meaning(protocol, signal)), separator: ", " }
 }
 
 /// Puts a title before the first item.
@@ -192,6 +193,15 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     items
 }
 
-fn words(text: &str) -> Vec<String> {
+/// Returns a text of the spec, or nothing.
+fn words(text: Option<&Text>) -> String {
+    text.map_or("", Text::for_people).to_owned()
+}
+
+fn title(doc: &Doc) -> Option<&str> {
+    doc.title.as_ref().map(Text::for_people)
+}
+
+fn split(text: &str) -> Vec<String> {
     text.split(' ').map(str::to_owned).collect()
 }

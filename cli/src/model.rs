@@ -17,7 +17,8 @@ impl Model {
     /// Returns the model in each protocol that has it.
     pub fn find(&self, protocols: &[Protocol]) -> Result<Vec<Option<ModelId>>, Failure> {
         let Some(name) = &self.name else { return Ok(vec![None; protocols.len()]) };
-        let is_meant = |model: &DeviceModel| model.name == *name || model.items.contains(name);
+        let is_meant =
+            |model: &DeviceModel| model.name == *name || model.items.iter().any(|item| item.for_people() == name);
         let found: Vec<_> = protocols.iter().map(|protocol| protocol.models.position(is_meant)).collect();
         if found.iter().all(Option::is_none) { Err(Failure::Call(unknown(name, protocols))) } else { Ok(found) }
     }

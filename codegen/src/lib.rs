@@ -26,6 +26,7 @@ pub mod schema;
 pub mod source;
 mod summary;
 pub mod syntax;
+pub mod text;
 mod words;
 
 pub use builder::{Builder, Generated, generate};
@@ -34,6 +35,7 @@ use model::Protocol;
 pub use nearest::nearest;
 use source::Source;
 pub use summary::Summary;
+use text::Text;
 
 /// What became of a spec.
 #[derive(Debug)]
@@ -60,7 +62,8 @@ pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
     if usable.is_some() {
         lint::lint(&mut diagnostics);
     }
-    let resolved = usable.as_ref().and_then(|spec| resolve::resolve(spec, &file, &rules::RULES, &mut diagnostics));
+    let resolved =
+        usable.as_ref().and_then(|spec| resolve::resolve(spec, Text::new(&file), &rules::RULES, &mut diagnostics));
     let counts = match &resolved {
         Some(protocol) if !diagnostics.has_errors() => check::check(protocol, percent, &mut diagnostics),
         _ => check::Counts::default(),

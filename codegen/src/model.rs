@@ -31,6 +31,8 @@ pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit};
 
+use crate::text::Text;
+
 /// A whole protocol.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -38,9 +40,9 @@ pub struct Protocol {
     /// Module name of the generated code.
     pub name: String,
     /// The spec's file name, without folders.
-    pub file: String,
+    pub file: Text,
     /// What the devices are, without a full stop.
-    pub title: String,
+    pub title: Text,
     /// The vendor document that the spec follows.
     pub document: Document,
     /// Bit rates of the bus in bit/s.

@@ -25,13 +25,14 @@ use crate::model::{self, EnumerationId, ModelId, Protocol, Recognition, Selector
 use crate::rule::Rule;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
+use crate::text::Text;
 
 /// Resolves a spec; `file` is its name without folders, and `rules` are those that it can allow.
 ///
 /// The protocol is `None` if something it needs is missing. One that is returned beside errors is only good for further checks.
 pub fn resolve(
     spec: &ast::Spec,
-    file: &str,
+    file: Text,
     rules: &[&'static Rule],
     diagnostics: &mut Diagnostics,
 ) -> Option<Protocol> {
@@ -66,7 +67,7 @@ struct Tables {
 }
 
 impl Resolver<'_> {
-    fn protocol(mut self, file: &str) -> Option<Protocol> {
+    fn protocol(mut self, file: Text) -> Option<Protocol> {
         self.version();
         let name = self.protocol_name();
         let bit_rates = self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone());
@@ -88,8 +89,8 @@ impl Resolver<'_> {
         self.check_allowances();
         Some(Protocol {
             name,
-            file: file.to_owned(),
-            title: self.spec.title.clone(),
+            file,
+            title: Text::new(&self.spec.title),
             document: self.document(),
             bit_rates,
             identifier,

@@ -23,7 +23,15 @@ impl Visitor for Listed {
         for (entry, message) in P::MESSAGES.iter().zip(&protocol.messages) {
             let name = format!("{path}: {}", message.name);
             assert_eq!(entry.name(), message.name, "{path}");
-            assert_eq!(entry.title, message.doc.title.clone().unwrap_or(message.name.replace('_', " ")), "{name}");
+            assert_eq!(
+                entry.title,
+                message
+                    .doc
+                    .title
+                    .as_ref()
+                    .map_or(message.name.replace('_', " "), |title| title.as_rust_str().to_owned()),
+                "{name}"
+            );
             for known in &message.constants {
                 assert!(entry.constants.contains(&(&protocol[known.selector].name, known.value)), "{name}");
             }

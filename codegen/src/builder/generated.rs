@@ -9,6 +9,7 @@ use crate::emit::{self, Options};
 use crate::files::File;
 use crate::source::Source;
 use crate::syntax::tree;
+use crate::text::Text;
 use crate::{Outcome, check, compile};
 
 /// Rust that was generated from one spec.
@@ -17,7 +18,7 @@ pub struct Generated {
     /// Name of the protocol.
     pub name: String,
     /// Title of the protocol.
-    pub title: String,
+    pub title: Text,
     /// Content of a module.
     pub code: String,
     /// Warnings about the spec.

@@ -29,6 +29,6 @@ fn path_in(folder: &Path) -> PathBuf {
 
 /// Returns the module that includes the file of a protocol, which stands beside the list.
 fn module(generated: &Generated) -> String {
-    let (name, title) = (&generated.name, format!("{}.", generated.title));
+    let (name, title) = (&generated.name, format!("{}.", generated.title.in_rust_doc()));
     format!("#[doc = {title:?}]\npub mod {name} {{\n    include!(\"{name}.rs\");\n}}\n")
 }

@@ -32,7 +32,7 @@ pub(crate) use plan::naming::{camel_case, member};
 
 /// Returns the content of a module that encodes and decodes the protocol, as text to be included as it is.
 pub fn rust(protocol: &Protocol, options: &Options) -> String {
-    let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file);
+    let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file.for_people());
     header + &formatted(&tokens(protocol, options))
 }
 

@@ -85,8 +85,8 @@ impl<'a> Decoder<'a> {
         let same_width = self.frame.extended == self.protocol.identifier.extended;
         let found = self.protocol.foreign.iter().find(|foreign| foreign.ranges.iter().all(within));
         found.filter(|_| same_width).map(|foreign| {
-            let title = foreign.doc.title.clone().or_else(|| foreign.doc.note.clone());
-            title.map_or_else(|| foreign.name.clone(), |title| format!("{}: {title}", foreign.name))
+            let title = foreign.doc.title.as_ref().or(foreign.doc.note.as_ref());
+            title.map_or_else(|| foreign.name.clone(), |title| format!("{}: {}", foreign.name, title.for_people()))
         })
     }
 

@@ -3,19 +3,20 @@
 use crate::model::{Quantity, Range, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
+use crate::text::Text;
 
 /// The vendor document.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Document {
     /// Title as printed.
-    pub title: String,
+    pub title: Text,
     /// Version as printed.
-    pub version: String,
+    pub version: Text,
     /// Date of that version, if the spec states it.
-    pub date: Option<String>,
+    pub date: Option<Text>,
     /// Name of the file that was read, if the spec states it.
-    pub file: Option<String>,
+    pub file: Option<Text>,
 }
 
 /// What a spec says about an item beside its meaning for the codec.
@@ -23,13 +24,13 @@ pub struct Document {
 #[non_exhaustive]
 pub struct Doc {
     /// What the item is, in a few words without a full stop.
-    pub title: Option<String>,
+    pub title: Option<Text>,
     /// What else a reader must know.
-    pub note: Option<String>,
+    pub note: Option<Text>,
     /// The item's own section, or that of what it stands in.
-    pub section: Option<String>,
+    pub section: Option<Text>,
     /// Errata by name.
-    pub errata: Vec<String>,
+    pub errata: Vec<Text>,
     /// Place in the spec.
     pub path: Path,
 }
@@ -43,13 +44,13 @@ pub struct DeviceModel {
     /// What the spec says beside it.
     pub doc: Doc,
     /// Item numbers.
-    pub items: Vec<String>,
+    pub items: Vec<Text>,
     /// Most devices that can work together, if the document says so.
     pub max_parallel: Option<u32>,
     /// Bit rates of this model in bit/s; empty if the document says nothing of it.
     pub bit_rates: Vec<u32>,
     /// Ratings that no message carries, by name.
-    pub facts: Vec<(String, Quantity)>,
+    pub facts: Vec<(Text, Quantity)>,
     /// What this model changes of a type, by the type's name.
     pub types: Vec<TypeOfModel>,
 }
@@ -93,7 +94,7 @@ pub struct Procedure {
     /// What the spec says beside it.
     pub doc: Doc,
     /// One sentence each; names of messages stand in backquotes.
-    pub steps: Vec<String>,
+    pub steps: Vec<Text>,
 }
 
 /// A departure from the document.
@@ -101,17 +102,17 @@ pub struct Procedure {
 #[non_exhaustive]
 pub struct Erratum {
     /// Name in the spec.
-    pub name: String,
+    pub name: Text,
     /// What is wrong: `vendor`, `translation`, `ocr`, `unclear`, `gap` or `note`.
     pub kind: String,
     /// Section of the document that prints it.
-    pub section: Option<String>,
+    pub section: Option<Text>,
     /// What the document prints.
-    pub prints: String,
+    pub prints: Text,
     /// What the spec uses.
-    pub uses: String,
+    pub uses: Text,
     /// Why the spec departs from the document.
-    pub because: String,
+    pub because: Text,
     /// Place in the spec.
     pub path: Path,
 }

@@ -5,6 +5,7 @@ use canspec_runtime::Place;
 use crate::model::{Doc, Encoding, Kind, ModelId};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
+use crate::text::Text;
 
 /// Named values of a signal.
 #[derive(Clone, Debug)]
@@ -71,13 +72,13 @@ pub struct StatusBit {
     /// How grave the set bit is, if the document says so.
     pub severity: Option<Severity>,
     /// Condition that sets the bit.
-    pub set_when: Option<String>,
+    pub set_when: Option<Text>,
     /// Condition that clears the bit.
-    pub clear_when: Option<String>,
+    pub clear_when: Option<Text>,
     /// What the device does while the bit is set.
-    pub effect: Option<String>,
+    pub effect: Option<Text>,
     /// What the device's LED shows while the bit is set.
-    pub led: Option<String>,
+    pub led: Option<Text>,
 }
 
 /// How grave a status bit is.

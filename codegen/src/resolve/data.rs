@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::keys::Role;
-use super::texts::remarks;
+use super::texts::{remarks, text};
 use crate::model::{
     DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, Timing, TimingId, TypeOfModel, Unit,
 };
@@ -10,6 +10,7 @@ use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
+use crate::text::Text;
 use crate::words::ERRATUM_KINDS;
 
 /// The version of the spec language.
@@ -32,8 +33,13 @@ impl Resolver<'_> {
     }
 
     pub fn document(&self) -> Document {
-        let ast::Document { title, version, date, file } = self.spec.document.clone();
-        Document { title, version, date, file }
+        let ast::Document { title, version, date, file } = &self.spec.document;
+        Document {
+            title: Text::new(title),
+            version: Text::new(version),
+            date: text(date.as_ref()),
+            file: text(file.as_ref()),
+        }
     }
 
     /// Reads bit rates such as `125 kbit/s`, in bit/s.
@@ -99,7 +105,7 @@ impl Resolver<'_> {
                 self.check_name(&path, name);
                 self.check_steps(&path.key("steps"), &procedure.steps);
                 let doc = remarks!(procedure).doc(&path, None);
-                Procedure { name: name.clone(), doc, steps: procedure.steps.clone() }
+                Procedure { name: name.clone(), doc, steps: texts(&procedure.steps) }
             })
             .collect()
     }
@@ -128,7 +134,7 @@ impl Resolver<'_> {
             model.types.iter().filter_map(|(name, field)| self.type_of_model(path, name, field, &doc)).collect();
         DeviceModel {
             name: name.to_owned(),
-            items: model.items.clone(),
+            items: texts(&model.items),
             max_parallel: parallel
                 .and_then(|text| self.integer(&path.key("max_parallel"), text, 1, u32::from(u16::MAX))),
             bit_rates: self.bit_rates(&path.key("bit_rates"), &model.bit_rates),
@@ -143,9 +149,9 @@ impl Resolver<'_> {
         self.lookup(path, "model", name, self.spec.models.keys().map(String::as_str)).map(ModelId::new)
     }
 
-    fn facts(&mut self, path: &Path, facts: &ast::Map<String>) -> Vec<(String, Quantity)> {
+    fn facts(&mut self, path: &Path, facts: &ast::Map<String>) -> Vec<(Text, Quantity)> {
         let entries = facts.iter();
-        entries.filter_map(|(name, text)| Some((name.clone(), self.quantity(&path.key(name), text)?))).collect()
+        entries.filter_map(|(name, text)| Some((Text::new(name), self.quantity(&path.key(name), text)?))).collect()
     }
 
     fn type_of_model(
@@ -171,9 +177,15 @@ impl Resolver<'_> {
 
     fn erratum(&mut self, path: &Path, name: &str, erratum: &ast::Erratum) -> Erratum {
         self.lookup(&path.key("kind"), "kind of erratum", &erratum.kind, ERRATUM_KINDS.into_iter());
-        let ast::Erratum { kind, prints, uses, because, section } = erratum.clone();
-        Erratum { name: name.to_owned(), kind, section, prints, uses, because, path: path.clone() }
+        let [prints, uses, because] =
+            [&erratum.prints, &erratum.uses, &erratum.because].map(|written| Text::new(written));
+        let (name, kind, section) = (Text::new(name), erratum.kind.clone(), text(erratum.section.as_ref()));
+        Erratum { name, kind, section, prints, uses, because, path: path.clone() }
     }
+}
+
+fn texts(written: &[String]) -> Vec<Text> {
+    written.iter().map(|text| Text::new(text)).collect()
 }
 
 /// Reads a bit rate in bit/s, at most that of CAN.

@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::keys::Role;
-use super::texts::remarks;
+use super::texts::{self, remarks};
 use crate::diagnostic::{At, Diagnostic};
 use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Identifier, IdentifierField, Table};
@@ -93,7 +93,7 @@ impl Resolver<'_> {
         let send = number(Key::Send, &merged.field.send);
         let normal = number(Key::Normal, &merged.field.normal);
         let continues = number(Key::Continues, &merged.field.continues);
-        let doc = Doc { title: merged.field.title.clone(), ..remarks!(field).doc(path, None) };
+        let doc = Doc { title: texts::text(merged.field.title.as_ref()), ..remarks!(field).doc(path, None) };
         let enumeration = self.enumeration(&merged, &format!("{name}_code"), width, &doc);
         let run = Run { high, low, place: path.key("bits") };
         let name = name.to_owned();

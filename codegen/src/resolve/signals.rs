@@ -4,7 +4,7 @@ use canspec_runtime::Place;
 
 use super::Resolver;
 use super::keys::{Role, Site};
-use super::texts::remarks;
+use super::texts::{self, remarks};
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
@@ -119,7 +119,7 @@ impl Resolver<'_> {
         let around = [outer.around, std::slice::from_ref(&fields)].concat();
         let outer = Outer { around: &around, ..outer };
         let doc = remarks!(field).doc(path, Some(outer.doc));
-        let doc = Doc { title: merged.field.title.clone(), ..doc };
+        let doc = Doc { title: texts::text(merged.field.title.as_ref()), ..doc };
         leaves.replies.push((merged.path(self.diagnostics, Key::Reply), merged.field.reply.clone()));
         if merged.field.format.is_some() {
             self.check_keys(merged, Role::of_packed(outer.site));

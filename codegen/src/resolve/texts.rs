@@ -13,6 +13,7 @@ use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Names};
 use crate::syntax::tree::Path;
+use crate::text::Text;
 
 /// The keys that say something about an item rather than to the codec.
 #[derive(Clone, Copy)]
@@ -41,13 +42,18 @@ impl Remarks<'_> {
     pub fn doc(&self, path: &Path, outer: Option<&Doc>) -> Doc {
         let inherited = || outer.and_then(|outer| outer.section.clone());
         Doc {
-            title: self.title.clone(),
-            note: self.note.clone(),
-            section: self.section.clone().or_else(inherited),
-            errata: self.erratum.0.clone(),
+            title: text(self.title.as_ref()),
+            note: text(self.note.as_ref()),
+            section: text(self.section.as_ref()).or_else(inherited),
+            errata: self.erratum.0.iter().map(|name| Text::new(name)).collect(),
             path: path.clone(),
         }
     }
+}
+
+/// Reads a text that may be missing.
+pub fn text(written: Option<&String>) -> Option<Text> {
+    written.map(|text| Text::new(text))
 }
 
 impl Resolver<'_> {

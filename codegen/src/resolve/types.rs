@@ -1,7 +1,7 @@
 //! Fields take keys from the types they name; named values and status words become types of their own.
 
 use super::Resolver;
-use super::texts::remarks;
+use super::texts::{remarks, text};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral, StatusBit, StatusWord, StatusWordId};
@@ -284,10 +284,10 @@ impl Resolver<'_> {
             doc: remarks!(bit).doc(path, Some(outer)),
             bit: self.bit(&path.key("bit"), &bit.bit, width)?,
             severity: severity.map(|index| SEVERITIES[index].1),
-            set_when: bit.set_when.clone(),
-            clear_when: bit.clear_when.clone(),
-            effect: bit.effect.clone(),
-            led: bit.led.clone(),
+            set_when: text(bit.set_when.as_ref()),
+            clear_when: text(bit.clear_when.as_ref()),
+            effect: text(bit.effect.as_ref()),
+            led: text(bit.led.as_ref()),
         })
     }
 

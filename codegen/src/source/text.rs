@@ -79,6 +79,13 @@ pub(crate) fn forbidden(character: char) -> Option<&'static str> {
         BYTE_ORDER_MARK => Some("byte order mark"),
         '\u{85}' | '\u{2028}' | '\u{2029}' => Some("line separator that not every reader takes for one"),
         '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => Some("mark that reverses the direction of text"),
+        '\u{AD}'
+        | '\u{61C}'
+        | '\u{180E}'
+        | '\u{200B}'..='\u{200F}'
+        | '\u{2060}'..='\u{206F}'
+        | '\u{FFF9}'..='\u{FFFB}'
+        | '\u{E0000}'..='\u{E007F}' => Some("character that nobody sees"),
         '\u{FFFE}' | '\u{FFFF}' => Some("code point that is no character"),
         _ if character.is_control() => Some("control character"),
         _ => None,

@@ -50,6 +50,17 @@ fn marks_that_reverse_the_direction_of_text_are_refused() {
 }
 
 #[test]
+fn characters_that_nobody_sees_are_refused() {
+    for character in ['\u{AD}', '\u{200B}', '\u{200F}', '\u{2060}', '\u{E0041}'] {
+        let code = u32::from(character);
+        let expected = format!(
+            "mini.yaml:1:4: error[encoding]: the character that nobody sees U+{code:04X} may not stand in a spec"
+        );
+        assert_eq!(refusal(format!("a: {character}b\n").as_bytes()), expected);
+    }
+}
+
+#[test]
 fn a_carriage_return_by_itself_is_refused() {
     let expected =
         "mini.yaml:2:5: error[encoding]: the carriage return without a line feed U+000D may not stand in a spec";

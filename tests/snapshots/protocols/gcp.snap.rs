@@ -669,13 +669,13 @@ impl Status2 {
     pub const CURRENT_IMBALANCE: Self = Self(0x04);
     /// Input phase lost: bit 3, alarm. Set when one phase lost. Effect: module is off. LED: yellow.
     ///
-    /// Erratum C30: printed is "input overvoltage if single phase first, in the condition of a lost phase;
-    /// / for all about asymmetry", used is "one phase lost; no condition for asymmetry".
+    /// Erratum C30: printed is "input overvoltage if single phase first, in the condition of a lost phase; /
+    /// for all about asymmetry", used is "one phase lost; no condition for asymmetry".
     pub const INPUT_PHASE_LOST: Self = Self(0x08);
     /// Three-phase input unbalanced: bit 4, alarm.
     ///
-    /// Erratum C30: printed is "input overvoltage if single phase first, in the condition of a lost phase;
-    /// / for all about asymmetry", used is "one phase lost; no condition for asymmetry".
+    /// Erratum C30: printed is "input overvoltage if single phase first, in the condition of a lost phase; /
+    /// for all about asymmetry", used is "one phase lost; no condition for asymmetry".
     pub const INPUT_UNBALANCED: Self = Self(0x10);
     /// Input voltage too low: bit 5, alarm. Set when input below 255 V AC or 300 V DC. Cleared when input
     /// above 275 V AC or 315 V DC. Effect: module is off. LED: yellow.
@@ -822,8 +822,8 @@ impl core::ops::BitOr for Status1 {
 pub struct Status0(pub u8);
 
 impl Status0 {
-    /// Output short-circuited: bit 0, fault. Set when output voltage below 25 V and output current above 10
-    /// % for 2 s. Effect: module is off. LED: red.
+    /// Output short-circuited: bit 0, fault. Set when output voltage below 25 V and output current above 10 %
+    /// for 2 s. Effect: module is off. LED: red.
     pub const OUTPUT_SHORT_CIRCUIT: Self = Self(0x01);
     /// Communication inside the module failed: bit 2, fault. Set when communication between PFC and DC side
     /// interrupted. Effect: module is off. LED: yellow, and red after 2 minutes.
@@ -1350,9 +1350,9 @@ pub struct SetWalkIn {
     /// Replies are read without it.
     ///
     /// Erratum C12: printed is "3 s to 8 s in steps of 0.01 s in bytes 6 and 7, beside Response only,
-    /// without byte order; default 5 s; byte 6 & 7 each answer with 00; 00 in every example", used is "byte
-    /// 6 as the high byte; 0 in a request as the special value `unspecified`, which is sent unless somebody
-    /// sets a time; no interval in replies".
+    /// without byte order; default 5 s; byte 6 \& 7 each answer with 00; 00 in every example", used is
+    /// "byte 6 as the high byte; 0 in a request as the special value `unspecified`, which is sent unless
+    /// somebody sets a time; no interval in replies".
     pub interval_s: f64,
 }
 

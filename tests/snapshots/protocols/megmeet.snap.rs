@@ -2172,8 +2172,8 @@ impl Layout for OvervoltageProtectionPoint {
 ///
 /// Best sent to all modules in each polling cycle.
 ///
-/// Erratum M18: printed is "(0~1.22) Rated current, and 1.22 as default", used is "0 to 1.22 as a share
-/// without unit, and 1249/1024 as default".
+/// Erratum M18: printed is "(0\~1.22) Rated current, and 1.22 as default", used is "0 to 1.22 as a
+/// share without unit, and 1249/1024 as default".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentLimitSetting {
     /// Current limit as a share of the rated current: bytes 4..7, steps of 1/1024, `0..=1.22`.
@@ -2219,8 +2219,8 @@ impl Layout for CurrentLimitSetting {
 ///
 /// The limit returns to it after a minute without communication.
 ///
-/// Erratum M18: printed is "(0~1.22) Rated current, and 1.22 as default", used is "0 to 1.22 as a share
-/// without unit, and 1249/1024 as default".
+/// Erratum M18: printed is "(0\~1.22) Rated current, and 1.22 as default", used is "0 to 1.22 as a
+/// share without unit, and 1249/1024 as default".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultCurrentLimit {
     /// Current limit as a share of the rated current: bytes 4..7, steps of 1/1024, `0..=1.22`.

@@ -154,7 +154,7 @@ pub const CONTROLLER_ADDRESS: AddressType = AddressType::new("controller", 0xF0,
 
 /// Address of a module: `0x00..=0x3F`. Section 2.2.3, 2.2.4.
 ///
-/// Erratum X24: printed is "00~63 as module addresses, beside `0xF0` and `0xFF`", used is "0 to 63,
+/// Erratum X24: printed is "00\~63 as module addresses, beside `0xF0` and `0xFF`", used is "0 to 63,
 /// decimal".
 pub const MODULE_ADDRESS: AddressType = AddressType::new("module", 0x00, 0x3F);
 
@@ -1448,7 +1448,7 @@ impl Layout for SetOutputCurrent {
 /// Fails with automatic addresses, when the DIP switch gives the group; takes effect at once and is
 /// kept after power-off.
 ///
-/// Erratum X13: printed is "lower six bits of byte 7 (range 0~60), and a broken sentence on the
+/// Erratum X13: printed is "lower six bits of byte 7 (range 0\~60), and a broken sentence on the
 /// remaining bytes and the upper two bits", used is "bits 5 to 0 as group, all other bits reserved".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetGroup {

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 
 use super::Dropped;
 use super::file::DbcMessage;
-use super::text::{self, ascii, remarks};
+use super::text::{self, remarks};
 use super::tree::{self, Candidate, Tree};
 use crate::model::{Address, AddressPattern, FrameId, FrameLayout, Kind, Message, ModeId, Protocol};
 
@@ -211,7 +211,7 @@ fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
             modes.push(mode);
         }
     }
-    lines.push(format!("Addressing: {}", ascii(&modes.join(", "))));
+    lines.push(format!("Addressing: {}", modes.join(", ")));
     lines.join("\n")
 }
 

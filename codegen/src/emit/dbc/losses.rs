@@ -1,7 +1,6 @@
 //! What a protocol says and a DBC cannot.
 
 use super::signals::written;
-use super::text::ascii;
 use crate::model::{Kind, Message, Protocol, Signal};
 
 /// Returns a sentence for each.
@@ -36,7 +35,7 @@ fn foreign(protocol: &Protocol) -> Option<String> {
 }
 
 fn models(protocol: &Protocol) -> Option<String> {
-    let names: Vec<_> = protocol.models.iter().map(|model| ascii(&model.name)).collect();
+    let names: Vec<_> = protocol.models.iter().map(|model| model.name.as_str()).collect();
     (!names.is_empty()).then(|| format!("the device models {}", names.join(", ")))
 }
 

@@ -3,7 +3,7 @@
 use canspec_runtime::Place;
 
 use super::file::Signal;
-use super::text::{ascii, remarks, unit};
+use super::text::{remarks, unit};
 use crate::model::{
     Encoding, NamedValue, Numeral, Protocol, Range, Selector, Severity, Signal as Meaning, StatusBit, StatusWord,
 };
@@ -92,7 +92,7 @@ fn unnamed(place: Place, name: &str, low: u8, end: u8) -> Option<Signal> {
 fn about(bit: &StatusBit) -> String {
     let facts =
         [("set when", &bit.set_when), ("cleared when", &bit.clear_when), ("effect", &bit.effect), ("LED", &bit.led)];
-    let facts = facts.iter().filter_map(|(what, text)| Some(format!("{what}: {}", ascii(text.as_ref()?))));
+    let facts = facts.iter().filter_map(|(what, text)| Some(format!("{what}: {}", text.as_ref()?.in_dbc())));
     let severity = bit.severity.map(|severity| match severity {
         Severity::State => "state".to_owned(),
         Severity::Alarm => "alarm".to_owned(),

@@ -1,24 +1,9 @@
-//! Texts of a DBC, in ASCII, since no two tools agree on another encoding.
+//! Texts of a DBC.
 
 use std::ops::RangeInclusive;
 
 use crate::model::{Doc, Protocol, Unit};
-
-/// Returns a text in the characters that every tool reads alike.
-pub fn ascii(text: &str) -> String {
-    let plain = text.chars().map(|letter| match letter {
-        '"' => "'".to_owned(),
-        '\\' => "/".to_owned(),
-        '°' => "deg".to_owned(),
-        '–' | '—' => "-".to_owned(),
-        '×' => "x".to_owned(),
-        'µ' | 'μ' => "u".to_owned(),
-        'Ω' => "ohm".to_owned(),
-        letter if letter.is_ascii() => letter.into(),
-        _ => String::new(),
-    });
-    plain.collect::<String>().trim().to_owned()
-}
+use crate::text::Text;
 
 /// Returns the symbol of a unit.
 pub fn unit(unit: Unit) -> &'static str {
@@ -27,20 +12,20 @@ pub fn unit(unit: Unit) -> &'static str {
 
 /// Returns what the spec says beside an item.
 pub fn remarks(doc: &Doc) -> String {
-    let section = doc.section.as_ref().map(|section| format!("section {section}"));
-    let parts = [doc.title.clone(), doc.note.clone(), section];
-    parts.iter().flatten().map(|text| ascii(text)).collect::<Vec<_>>().join("; ")
+    let section = doc.section.as_ref().map(|section| format!("section {}", section.in_dbc()));
+    let parts = [&doc.title, &doc.note].into_iter().flatten().map(Text::in_dbc);
+    parts.chain(section).collect::<Vec<_>>().join("; ")
 }
 
 /// Returns the comment of the whole file.
 pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
     let document = &protocol.document;
     let printed = [Some(&document.title), Some(&document.version), document.date.as_ref(), document.file.as_ref()];
-    let printed: Vec<_> = printed.into_iter().flatten().map(|text| ascii(text)).collect();
+    let printed: Vec<_> = printed.into_iter().flatten().map(Text::in_dbc).collect();
     let mut lines = vec![
-        format!("{}: {}", protocol.name, ascii(&protocol.title)),
+        format!("{}: {}", protocol.name, protocol.title.in_dbc()),
         format!("Document: {}", printed.join(", ")),
-        format!("Made by canspec from {}", ascii(&protocol.file)),
+        format!("Made by canspec from {}", protocol.file.in_dbc()),
         format!("Frame-id mask: {mask:#010X}. Compare only these bits of an identifier; the other ones vary"),
     ];
     if !losses.is_empty() {

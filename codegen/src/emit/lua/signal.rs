@@ -43,7 +43,7 @@ pub fn names(values: &[NamedValue], width: u8) -> Value {
 pub fn signal(protocol: &Protocol, signal: &Signal) -> Value {
     let record = Value::record()
         .with("name", Value::text(&signal.name))
-        .maybe("title", signal.doc.title.as_deref().map(Value::text))
+        .maybe("title", signal.doc.title.as_ref().map(Value::words))
         .with("place", place(signal.place))
         .maybe("unit", signal.unit.map(|unit| Value::text(unit.symbol)));
     limits(meaning(protocol, record, signal), signal)
@@ -95,7 +95,7 @@ fn status_bit(bit: &StatusBit) -> Value {
     Value::record()
         .with("bit", Value::number(bit.bit))
         .with("name", Value::text(&bit.name))
-        .maybe("title", bit.doc.title.as_deref().map(Value::text))
+        .maybe("title", bit.doc.title.as_ref().map(Value::words))
 }
 
 fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> Value {

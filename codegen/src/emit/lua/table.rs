@@ -1,6 +1,7 @@
 //! Lua tables, laid out as people write them.
 
 use crate::model::Id;
+use crate::text::{Text, quoted_in_lua};
 
 /// Columns of a line.
 const WIDTH: usize = 120;
@@ -43,14 +44,14 @@ impl Value {
         Self::List(items.into_iter().map(value).collect())
     }
 
-    /// Writes a text in quotes.
+    /// Writes a name or a number in quotes.
     pub fn text(text: &str) -> Self {
-        let escaped = text.chars().map(|letter| match letter {
-            '"' | '\\' => format!("\\{letter}"),
-            letter if letter.is_ascii_control() => format!("\\{:03}", u32::from(letter)),
-            letter => letter.to_string(),
-        });
-        Self::Plain(format!("\"{}\"", escaped.collect::<String>()))
+        Self::Plain(quoted_in_lua(text))
+    }
+
+    /// Writes a text of the spec in quotes.
+    pub fn words(text: &Text) -> Self {
+        Self::Plain(text.in_lua())
     }
 
     /// Writes a whole number.
@@ -128,11 +129,6 @@ fn inline(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_text_is_quoted_so_that_lua_reads_the_same() {
-        assert_eq!(inline(&Value::text("a \"b\" \\ °C\n1")), r#""a \"b\" \\ °C\0101""#);
-    }
 
     #[test]
     fn a_table_stands_on_one_line_until_it_is_too_long() {

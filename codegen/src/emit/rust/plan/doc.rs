@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 
 use crate::model::{Doc, Protocol};
+use crate::text::Text;
 
 /// The longest line of text behind `/// `.
 const WIDTH: usize = 100;
@@ -51,33 +52,35 @@ pub fn paragraphs(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<
         doc.section.as_ref().filter(|section| outer.is_none_or(|outer| outer.section.as_ref() != Some(section)));
     let section = section.map(|section| sentence_of(&reference(section)));
     let first = std::iter::once(sentence.to_owned()).chain(section).collect::<Vec<_>>().join(" ");
-    let note = doc.note.iter().map(|note| sentence_of(&plain(note)));
+    let note = doc.note.iter().map(|note| sentence_of(&note.in_rust_doc()));
     let errata = doc.errata.iter().filter_map(|name| erratum(protocol, name));
     std::iter::once(first).chain(note).chain(errata).collect()
 }
 
 /// Returns a section as `Section 2.4`, or as the table that it names.
-fn reference(section: &str) -> String {
-    if section.starts_with(|first: char| first.is_ascii_digit()) {
-        format!("Section {section}")
-    } else {
-        plain(section)
-    }
+fn reference(section: &Text) -> String {
+    let section = section.in_rust_doc();
+    if section.starts_with(|first: char| first.is_ascii_digit()) { format!("Section {section}") } else { section }
 }
 
 /// Writes an erratum in one line, unless it is about the scan of the document alone.
-fn erratum(protocol: &Protocol, name: &str) -> Option<String> {
-    let erratum = protocol.errata.iter().find(|erratum| erratum.name == name)?;
+fn erratum(protocol: &Protocol, name: &Text) -> Option<String> {
+    let erratum = protocol.errata.iter().find(|erratum| erratum.name == *name)?;
     if matches!(erratum.kind.as_str(), "ocr" | "note") {
         return None;
     }
-    let [prints, uses] = [&erratum.prints, &erratum.uses].map(|text| plain(text));
+    let [name, prints, uses] = [name, &erratum.prints, &erratum.uses].map(Text::in_rust_doc);
     Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\"")))
 }
 
 /// Returns what an item is called, for people.
 pub fn title(doc: &Doc, name: &str) -> String {
-    doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| plain(title))
+    doc.title.as_ref().map_or_else(|| name.replace('_', " "), Text::in_rust_doc)
+}
+
+/// Returns what an item is called, for a string.
+pub fn plain_title(doc: &Doc, name: &str) -> String {
+    doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.as_rust_str().to_owned())
 }
 
 /// Begins with a capital and ends with a full stop.
@@ -88,50 +91,14 @@ pub fn sentence_of(text: &str) -> String {
     format!("{first}{}{stop}", letters.as_str())
 }
 
-/// Writes a text so that Markdown shows it as it is: names that look like code are marked as code.
-pub fn plain(text: &str) -> String {
-    let is_paired = text.matches('`').count().is_multiple_of(2);
-    let text = if is_paired { text.to_owned() } else { text.replace('`', "'") };
-    let mut in_code = false;
-    let words = text.split_whitespace().map(|word| {
-        let ticks = word.matches('`').count();
-        let shown = if in_code || ticks > 0 { word.to_owned() } else { escaped(word) };
-        in_code ^= ticks % 2 == 1;
-        shown
-    });
-    words.collect::<Vec<_>>().join(" ")
-}
-
-fn escaped(word: &str) -> String {
-    let core = word.trim_matches(|letter: char| !letter.is_alphanumeric());
-    if looks_like_code(core) {
-        return word.replacen(core, &format!("`{core}`"), 1);
-    }
-    let special = |letter: char| matches!(letter, '[' | ']' | '<' | '>' | '*' | '_' | '\\' | '#');
-    word.chars().fold(String::new(), |mut shown, letter| {
-        if special(letter) {
-            shown.push('\\');
-        }
-        shown.push(letter);
-        shown
-    })
-}
-
-/// Tests for `snake_case`, `CamelCase` and paths.
-fn looks_like_code(word: &str) -> bool {
-    let bytes = word.as_bytes();
-    let camel = bytes.windows(2).any(|pair| pair[0].is_ascii_lowercase() && pair[1].is_ascii_uppercase());
-    camel || word.contains('_') || word.contains("::")
-}
-
-/// Breaks a paragraph into lines, but never before a word that would begin a list.
+/// Breaks a paragraph into lines, but never before a word that would begin a list or anything else than words.
 fn wrapped(paragraph: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in paragraph.split(' ').filter(|word| !word.is_empty()) {
         let fits = |line: &String| line.is_empty() || line.chars().count() + 1 + word.chars().count() <= WIDTH;
         match lines.last_mut() {
             Some(line) if line.is_empty() => line.push_str(word),
-            Some(line) if fits(line) || begins_list(word) => {
+            Some(line) if fits(line) || begins_block(word) => {
                 line.push(' ');
                 line.push_str(word);
             }
@@ -141,10 +108,11 @@ fn wrapped(paragraph: &str) -> Vec<String> {
     lines
 }
 
-fn begins_list(word: &str) -> bool {
+/// Tests for marks of Markdown at the start of a line, which count in the midst of code as well.
+fn begins_block(word: &str) -> bool {
     let numbered = word.trim_end_matches(['.', ')']);
-    word.starts_with(['-', '+', '*', '#', '>', '|', '=', '~'])
-        || (numbered.len() < word.len() && numbered.bytes().all(|byte| byte.is_ascii_digit()))
+    let is_number = numbered.len() < word.len() && numbered.bytes().all(|byte| byte.is_ascii_digit());
+    is_number || word.starts_with(|mark: char| mark.is_ascii_punctuation() && !"\\`\"'(".contains(mark))
 }
 
 #[cfg(test)]
@@ -152,16 +120,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_become_code_and_markdown_is_shown_as_it_is() {
-        assert_eq!(plain("see set_group, or [1] in CamelCase"), "see `set_group`, or \\[1\\] in `CamelCase`");
-        assert_eq!(plain("wait after `set group now` once"), "wait after `set group now` once");
-        assert_eq!(plain("a stray ` of set_group"), "a stray ' of `set_group`");
-    }
-
-    #[test]
-    fn no_line_begins_a_list() {
+    fn no_line_begins_a_list_or_a_footnote() {
         let lines = wrapped(&format!("{} - and 12. so", "x".repeat(WIDTH)));
         assert_eq!(lines, [format!("{} -", "x".repeat(WIDTH)), "and 12. so".to_owned()]);
+        let lines = wrapped(&format!("`{} [^1]: x`", "x".repeat(WIDTH)));
+        assert_eq!(lines, [format!("`{} [^1]:", "x".repeat(WIDTH)), "x`".to_owned()]);
     }
 
     #[test]

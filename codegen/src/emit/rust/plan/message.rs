@@ -99,7 +99,7 @@ impl Planner<'_> {
         Message {
             home: home.clone(),
             paragraphs: doc::paragraphs(protocol, &known.doc, &sentence, None),
-            title: known.doc.title.clone().unwrap_or_else(|| known.name.replace('_', " ")),
+            title: doc::plain_title(&known.doc, &known.name),
             constants: self.constants(known),
             exchanges: known.exchanges.ids().map(|exchange| self.exchange(id, exchange, &constants)).collect(),
             signals,

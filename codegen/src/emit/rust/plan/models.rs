@@ -63,7 +63,7 @@ impl Models {
     pub fn new(protocol: &Protocol, float: Float) -> Self {
         let mut variants = Pool::default();
         let rows = protocol.models.map(|model| {
-            let title = model.doc.title.as_ref().map_or_else(String::new, |title| format!(": {}", doc::plain(title)));
+            let title = model.doc.title.as_ref().map_or_else(String::new, |title| format!(": {}", title.in_rust_doc()));
             let sentence = doc::sentence_of(&format!("`{}`{title}", model.name));
             Model {
                 variant: variants.take(model_variant(&model.name), "_"),

@@ -9,6 +9,7 @@ use super::naming::{ident, screaming, variants};
 use super::place::Written;
 use super::types::Types;
 use crate::model::{self, Message, Numeral, PartId, Protocol, Severity, Signal, Table};
+use crate::text::code;
 
 /// Named values.
 pub struct Enumeration {
@@ -119,7 +120,7 @@ impl StatusBit {
             constructor: ident(bit.severity.map_or("new", severity_name)),
             number: Literal::u8_unsuffixed(bit.bit),
             name: bit.name.clone(),
-            title: bit.doc.title.clone().unwrap_or_else(|| bit.name.replace('_', " ")),
+            title: doc::plain_title(&bit.doc, &bit.name),
         }
     }
 }
@@ -130,7 +131,7 @@ fn bit_sentence(bit: &model::StatusBit) -> String {
     let remarks =
         [("Set when", &bit.set_when), ("Cleared when", &bit.clear_when), ("Effect:", &bit.effect), ("LED:", &bit.led)];
     let remarks =
-        remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", doc::plain(remark.as_ref()?))));
+        remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", remark.as_ref()?.in_rust_doc())));
     let sentences = std::iter::once(format!("{title}: bit {}{severity}", bit.bit)).chain(remarks);
     sentences.map(|text| doc::sentence_of(&text)).collect::<Vec<_>>().join(" ")
 }
@@ -206,7 +207,7 @@ impl Packed {
         let sentence = doc::sentence_of(&doc::title(titled, &signal.name));
         Some(Self {
             name: name.clone(),
-            comment: Comment::line(format!("{sentence} Written as `{}`.", format(pieces, parts))),
+            comment: Comment::line(format!("{sentence} Written as {}.", code(&format(pieces, parts)))),
             bytes: Literal::u8_unsuffixed(signal.place.width() / 8),
             parts: parts.iter().map(|part| PackedPart::new(protocol, part, signal)).collect(),
             pieces: pieces.iter().map(|piece| Piece::new(piece, parts)).collect(),
