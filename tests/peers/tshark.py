@@ -10,6 +10,7 @@ import collections
 import glob
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -18,6 +19,10 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PEERS = os.path.join(ROOT, "tests", "peers")
+# A spec with some of everything.
+SPEC = os.path.join(PEERS, "tshark.yaml")
+# Protocols that Wireshark has itself.
+TAKEN_NAMES = ("can", "j1939", "frame")
 # Random frames of all protocols together, of each protocol at least, and of each feature of the language.
 OF_ALL_PROTOCOLS, OF_A_PROTOCOL, OF_A_FEATURE = 100_000, 10_000, 1_000
 # What a frame has to do with others, which `canspec decode` does not say.
@@ -81,6 +86,15 @@ class Bench:
 
     def random_log(self, spec, count):
         return self.log(self.run(self.frames, "any", spec, str(count), "227").splitlines())
+
+    def copy(self, change):
+        """Returns a changed copy of the spec that has some of everything, without its examples."""
+        with open(SPEC, encoding="utf-8") as file:
+            text, _ = file.read().split("\nexamples:\n")
+        path = self.path("copy.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(change(text))
+        return path
 
     def log(self, lines):
         path = self.path("bus.log")
@@ -170,7 +184,7 @@ def refusal(line):
 
 def expected(line, dissector):
     """Returns the fields that tshark must show of a decoded line."""
-    of, groups = f"{line['protocol']}.", dissector.groups
+    of, groups = f"{dissector.protocol}.", dissector.groups
     numbers = [(groups["identifier"], line["identifier"]), (groups["selector"], line["selectors"])]
     fields = {f"{group}.{name}": str(value) for group, values in numbers for name, value in values.items()}
     fields[f"{of}identifier"] = str(int(line["id"], 16))
@@ -239,10 +253,10 @@ def difference(line, row, dissector):
     return None
 
 
-def compare(bench, spec, log, dissected=None, model=None, by_heuristic=False):
-    """Compares a log frame by frame; `dissected` is the spec of the dissector, if it is another one."""
+def compare(bench, spec, log, dissected=None, model=None, by_heuristic=False, shown_as=None):
+    """Compares a log frame by frame; `dissected` is the spec of the dissector, and `shown_as` its name, if they differ."""
     lines = bench.decoded(spec, log, model)
-    protocol = lines[0]["protocol"]
+    protocol = shown_as or lines[0]["protocol"]
     dissector = Dissector(bench, dissected or spec, protocol)
     options = ["-o", f"{protocol}.model:{model}"] if model else []
     options += [] if by_heuristic else ["-d", f"can.subdissector,{protocol}"]
@@ -377,20 +391,29 @@ def compare_links(bench):
     return wrong
 
 
+def compare_taken_names(bench):
+    """Compares by copies of a spec whose protocol is called as one of Wireshark's own."""
+    wrong = 0
+    for name in TAKEN_NAMES:
+        spec = bench.copy(lambda text: re.sub("^protocol: .*$", f"protocol: {name}", text, flags=re.MULTILINE))
+        lines, _, differences, seconds = compare(
+            bench, spec, bench.random_log(spec, OF_A_FEATURE), shown_as=f"canspec_{name}"
+        )
+        wrong += report("tshark.yaml", f"as protocol {name}", lines, differences, seconds)
+    return wrong
+
+
 def find_mistakes(bench):
     """Dissects by wrong copies of a spec; each must be noticed."""
-    spec = os.path.join(PEERS, "tshark.yaml")
-    log = bench.random_log(spec, OF_A_FEATURE)
-    with open(spec, encoding="utf-8") as file:
-        text, _ = file.read().split("\nexamples:\n")
+    log = bench.random_log(SPEC, OF_A_FEATURE)
     missed = 0
     for name, (before, after) in MISTAKES.items():
-        if text.count(before) != 1:
-            sys.exit(f"{before!r} stands {text.count(before)} times in {spec}")
-        copy = bench.path("copy.yaml")
-        with open(copy, "w", encoding="utf-8") as file:
-            file.write(text.replace(before, after))
-        lines, _, differences, _ = compare(bench, spec, log, dissected=copy)
+        def mistaken(text):
+            if text.count(before) != 1:
+                sys.exit(f"{before!r} stands {text.count(before)} times in {SPEC}")
+            return text.replace(before, after)
+
+        lines, _, differences, _ = compare(bench, SPEC, log, dissected=bench.copy(mistaken))
         print(f"{name:20} {'must be found':26} {len(lines):6} frames, {len(differences):6} differ")
         missed += not differences
     return missed
@@ -416,7 +439,8 @@ def main():
         else:
             print("SKIPPED: there is no lua5.4, so the dissectors run in tshark's version of Lua alone;")
             print("SKIPPED: `apt-get install --no-install-recommends lua5.4` installs it.")
-        wrong += compare_captures(bench) + compare_edges(bench) + compare_links(bench) + find_mistakes(bench)
+        wrong += compare_captures(bench) + compare_edges(bench) + compare_links(bench) + compare_taken_names(bench)
+        wrong += find_mistakes(bench)
     return 1 if wrong else 0
 
 

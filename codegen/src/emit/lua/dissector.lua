@@ -1,6 +1,15 @@
 -- The dissector: fields, the tree of a frame, and how Wireshark finds it.
 
-local proto = Proto(protocol.name, string.upper(protocol.name) .. ": " .. protocol.title)
+-- Returns the protocol for Wireshark and its name, which begins filters; names that Wireshark has itself are taken.
+local function new_proto()
+  local about = string.upper(protocol.name) .. ": " .. protocol.title
+  local is_free, proto = pcall(Proto, protocol.name, about)
+  if is_free then return proto, protocol.name end
+  local name = "canspec_" .. protocol.name
+  return Proto(name, about), name
+end
+
+local proto, proto_name = new_proto()
 
 local fields, experts = {}, {}
 
@@ -14,7 +23,7 @@ local function group(name)
   for _, message in ipairs(protocol.messages) do
     if message.name == name then return group(name .. "_") end
   end
-  return protocol.name .. "." .. name .. "."
+  return proto_name .. "." .. name .. "."
 end
 
 local function title(item)
@@ -50,13 +59,13 @@ end
 
 local known = {}
 for _, name in ipairs({ "message", "access", "kind", "addressing", "answers", "reserved", "problem" }) do
-  known[name] = define(ProtoField.string(protocol.name .. "." .. name, name))
+  known[name] = define(ProtoField.string(proto_name .. "." .. name, name))
 end
-known.request_in = define(ProtoField.framenum(protocol.name .. ".request_in", "Request in", base.NONE, frametype.REQUEST))
-known.response_in = define(ProtoField.framenum(protocol.name .. ".response_in", "Response in", base.NONE, frametype.RESPONSE))
-known.response_time = define(ProtoField.relative_time(protocol.name .. ".response_time", "Response time"))
+known.request_in = define(ProtoField.framenum(proto_name .. ".request_in", "Request in", base.NONE, frametype.REQUEST))
+known.response_in = define(ProtoField.framenum(proto_name .. ".response_in", "Response in", base.NONE, frametype.RESPONSE))
+known.response_time = define(ProtoField.relative_time(proto_name .. ".response_time", "Response time"))
 
-known.identifier = define(ProtoField.uint32(protocol.name .. ".identifier", "identifier", base.HEX))
+known.identifier = define(ProtoField.uint32(proto_name .. ".identifier", "identifier", base.HEX))
 
 -- Names of values of up to 32 bits can stand in the field itself.
 for _, field in ipairs(protocol.identifier.fields) do
@@ -73,7 +82,7 @@ for _, selector in ipairs(protocol.selectors) do
 end
 for _, message in ipairs(protocol.messages) do
   for _, signal in ipairs(message.signals) do
-    define_signal(signal, protocol.name .. "." .. message.name .. ".")
+    define_signal(signal, proto_name .. "." .. message.name .. ".")
   end
 end
 
