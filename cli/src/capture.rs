@@ -1,5 +1,7 @@
 //! Captures in the pcapng format, which Wireshark reads.
 
+use std::collections::HashMap;
+use std::collections::hash_map;
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Form, Frame};
@@ -26,7 +28,8 @@ const FD: u8 = 4;
 
 /// A capture that is being written; each channel of the log is an interface.
 pub struct Capture {
-    channels: Vec<Option<String>>,
+    /// Numbers of the interfaces.
+    channels: HashMap<Option<String>, u32>,
 }
 
 impl Capture {
@@ -40,7 +43,7 @@ impl Capture {
         let head = [&BYTE_ORDER.to_le_bytes()[..], &1_u16.to_le_bytes(), &0_u16.to_le_bytes(), &length_unknown];
         block(out, SECTION, &head.concat())?;
         out.flush()?;
-        Ok(Self { channels: Vec::new() })
+        Ok(Self { channels: HashMap::new() })
     }
 
     /// Writes a frame; one without a stamp is of the time 0, and further digits than those of nanoseconds are cut off.
@@ -67,15 +70,15 @@ impl Capture {
 
     /// Returns the number of the channel's interface, which is written when it is first needed.
     fn interface(&mut self, out: &mut impl Write, channel: Option<&str>) -> io::Result<u32> {
-        let known = self.channels.iter().position(|known| known.as_deref() == channel);
-        let index = known.unwrap_or(self.channels.len());
-        if known.is_none() {
-            self.channels.push(channel.map(str::to_owned));
-            let head = [SOCKETCAN.to_le_bytes(), [0; 2], [0; 2], [0; 2]].concat();
-            let name = channel.map_or_else(Vec::new, |name| option(NAME, name.as_bytes()));
-            block(out, INTERFACE, &[head, name, option(RESOLUTION, &[PLACES]), vec![0; 4]].concat())?;
-        }
-        Ok(u32::try_from(index).unwrap_or(u32::MAX))
+        let next = u32::try_from(self.channels.len()).unwrap_or(u32::MAX);
+        let entry = match self.channels.entry(channel.map(str::to_owned)) {
+            hash_map::Entry::Occupied(known) => return Ok(*known.get()),
+            hash_map::Entry::Vacant(entry) => entry,
+        };
+        let head = [SOCKETCAN.to_le_bytes(), [0; 2], [0; 2], [0; 2]].concat();
+        let name = channel.map_or_else(Vec::new, |name| option(NAME, name.as_bytes()));
+        block(out, INTERFACE, &[head, name, option(RESOLUTION, &[PLACES]), vec![0; 4]].concat())?;
+        Ok(*entry.insert(next))
     }
 }
 

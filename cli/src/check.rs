@@ -10,8 +10,9 @@ use canspec_specs::SPECS;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::failure::{Failure, Finish, tell};
+use crate::failure::{Failure, Finish, draw};
 use crate::line::Members;
+use crate::output::output;
 
 /// Check specs and the examples of their documents.
 ///
@@ -50,7 +51,7 @@ enum Style {
 impl Check {
     /// Checks the specs one after the other.
     pub fn run(&self) -> Result<Finish, Failure> {
-        let mut out = io::stdout().lock();
+        let mut out = output()?;
         let mut finish = Finish::Done;
         for (diagnostics, summary) in self.outcomes() {
             self.report(&diagnostics)?;
@@ -65,19 +66,18 @@ impl Check {
     /// Compiles the specs, each when it is its turn.
     fn outcomes(&self) -> Box<dyn Iterator<Item = (Diagnostics, Object)> + '_> {
         if self.specs.is_empty() {
-            return Box::new(
-                SPECS.iter().map(|spec| self.outcome(spec.file, Source::new(spec.file, spec.text.into()))),
-            );
+            return Box::new(SPECS.iter().map(|spec| self.outcome(Source::new(spec.file, spec.text.into()))));
         }
-        Box::new(self.specs.iter().map(|path| self.outcome(&path.display().to_string(), Source::read(path))))
+        Box::new(self.specs.iter().map(|path| self.outcome(Source::read(path))))
     }
 
     /// Compiles a source; of one that cannot be read only the name is known.
-    fn outcome(&self, name: &str, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
+    fn outcome(&self, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
         match source.map(|source| compile_with_examples(source, self.min_example_coverage)) {
             Ok(Outcome { diagnostics, summary, .. }) => (diagnostics, summary.into()),
             Err(diagnostics) => {
-                let object = Object { spec: name.to_owned(), errors: diagnostics.errors(), ..Object::default() };
+                let spec = diagnostics.source().name().to_owned();
+                let object = Object { spec, errors: diagnostics.errors(), ..Object::default() };
                 (diagnostics, object)
             }
         }
@@ -90,7 +90,7 @@ impl Check {
             Style::Json => json_lines(diagnostics)?,
         };
         if !text.trim_end().is_empty() {
-            tell(text.trim_end());
+            draw(&text);
         }
         Ok(())
     }

@@ -6,6 +6,8 @@ use std::io::{self, Write};
 const WIDTH: usize = 140;
 /// The last column is never narrower.
 const NARROWEST: usize = 40;
+/// A column is never wider for a cell, which then moves the rest of its own row alone.
+const WIDEST: usize = 80;
 const GAP: &str = "  ";
 
 /// The widths of all columns but the last.
@@ -22,7 +24,7 @@ impl Columns {
     /// Makes room for these cells.
     pub fn widen(&mut self, cells: &[&str]) {
         for (width, cell) in self.0.iter_mut().zip(cells) {
-            *width = (*width).max(cell.chars().count());
+            *width = (*width).max(cell.chars().count()).min(WIDEST);
         }
     }
 
@@ -122,6 +124,14 @@ mod tests {
     fn columns_are_as_wide_as_their_widest_cell() {
         let text = written(&[row(["1", "x"], &["a", "b"]), row(["22", "longer"], &[])]);
         assert_eq!(text, "A   NAME    REST\n1   x       a b\n22  longer\n");
+    }
+
+    #[test]
+    fn a_cell_that_is_too_wide_moves_its_own_row_alone() {
+        let wide = "w".repeat(WIDEST + 9);
+        let text = written(&[row([&wide, "x"], &["a"]), row(["1", "x"], &["a"])]);
+        let blank = " ".repeat(WIDEST - 1);
+        assert_eq!(text, format!("A{blank}  NAME  REST\n{wide}  x     a\n1{blank}  x     a\n"));
     }
 
     #[test]

@@ -8,7 +8,8 @@ use canspec_codegen::files::{self, File, State};
 use canspec_codegen::{Builder, Generated, generate};
 use clap::{Args, ValueEnum};
 
-use crate::failure::{Failure, Finish, tell};
+use crate::failure::{Failure, Finish, draw, shown, tell};
+use crate::output::output;
 use crate::protocols;
 
 /// Compile specs to Rust.
@@ -72,7 +73,7 @@ impl Compile {
         }
         let generated = self.compiled()?;
         for one in generated.iter().filter(|one| !one.warnings.is_empty()) {
-            tell(one.warnings.render(true).trim_end());
+            draw(&one.warnings.render(true));
         }
         self.deliver(&generated)
     }
@@ -105,7 +106,7 @@ impl Compile {
 }
 
 fn print(generated: &[Generated]) -> Result<Finish, Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = output()?;
     for one in generated {
         out.write_all(one.code.as_bytes())?;
     }
@@ -122,7 +123,7 @@ fn compare(files: &[File]) -> io::Result<Finish> {
             State::Missing => "is missing",
             State::NotOurs => return Err(file.not_ours()),
         };
-        tell(format_args!("canspec: {} {what}; the same call without `--check` writes it", file.path().display()));
+        tell(format_args!("canspec: {} {what}; the same call without `--check` writes it", shown(file.path())));
         finish = Finish::Errors;
     }
     Ok(finish)

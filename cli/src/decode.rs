@@ -9,11 +9,12 @@ use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
 use crate::capture::Capture;
-use crate::failure::{Failure, Finish};
+use crate::failure::{Failure, Finish, shown};
 use crate::input::Input;
 use crate::line::{self, Origin};
 use crate::log::{self, Entry};
 use crate::model::Model;
+use crate::output::output;
 use crate::protocols::Several;
 use crate::table::Table;
 
@@ -64,10 +65,10 @@ impl Decode {
     }
 
     fn capture(&self, path: &Path) -> Result<Finish, Failure> {
-        let failure = |error: io::Error| Failure::input(&path.display().to_string(), &error);
+        let failure = |error: io::Error| Failure::input(path, &error);
         let log = Input::open(self.file.as_deref())?;
         if log.is_at(path) {
-            let why = format!("{} is the log itself; name another file for the capture", path.display());
+            let why = format!("{} is the log itself; name another file for the capture", shown(path));
             return Err(Failure::Call(why));
         }
         let mut out = BufWriter::new(File::create(path).map_err(failure)?);
@@ -84,7 +85,7 @@ impl Decode {
         let models = self.model.find(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
         let mut printer = self.printer(&protocols);
-        let out = BufWriter::new(io::stdout().lock());
+        let out = BufWriter::new(output()?);
         Input::open(self.file.as_deref())?.each(out, |out, line| {
             let entry = line.text.and_then(log::read)?;
             Ok(entry.map_or(Ok(()), |entry| printer.frame(out, &devices, line.number, &entry)))

@@ -1,6 +1,6 @@
 //! `canspec encode`.
 
-use std::io::{self, BufWriter};
+use std::io::BufWriter;
 use std::path::Path;
 
 use canspec_codegen::interpret::{self, Frame, Target};
@@ -12,6 +12,7 @@ use crate::input::Input;
 use crate::line::Content;
 use crate::log;
 use crate::model::Model;
+use crate::output::output;
 use crate::protocols::One;
 
 /// Make a request, or turn decoded lines back into frames.
@@ -91,7 +92,7 @@ impl Encode {
         let target = Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string()))?;
         let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
         let frames = frames.map_err(|refusal| Failure::Input(refusal.to_string()))?;
-        let mut out = io::stdout().lock();
+        let mut out = output()?;
         frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
         Ok(Finish::Done)
     }
@@ -99,7 +100,7 @@ impl Encode {
 
 /// Turns decoded lines into a log.
 fn lines(protocol: &Protocol, model: Option<ModelId>, file: Option<&Path>) -> Result<Finish, Failure> {
-    let out = BufWriter::new(io::stdout().lock());
+    let out = BufWriter::new(output()?);
     Input::open(file)?.each(out, |out, line| {
         let made = line.text.and_then(|text| read(protocol, model, text))?;
         Ok(made.map_or(Ok(()), |(content, frame)| {

@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::columns::{self, Row};
 use crate::failure::{Failure, Finish};
 use crate::log;
+use crate::output::output;
 use crate::protocols::One;
 
 /// List the example frames of a protocol's document.
@@ -35,7 +36,7 @@ impl Examples {
     /// Writes the frames that the document prints.
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocol = self.protocol.load()?;
-        let mut out = BufWriter::new(io::stdout().lock());
+        let mut out = BufWriter::new(output()?);
         let documented = protocol.examples.iter().filter(|example| !example.ours);
         match self.format {
             Format::Text => {

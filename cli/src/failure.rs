@@ -2,9 +2,11 @@
 
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use canspec_codegen::diagnostic::Diagnostics;
+use canspec_codegen::source::forbidden;
 
 /// How a command ends that was carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +43,8 @@ pub enum Failure {
 
 impl Failure {
     /// Makes the failure of a file that cannot be read or written.
-    pub fn input(name: &str, error: &impl Display) -> Self {
-        Self::Input(format!("{name}: {error}"))
+    pub fn input(path: &Path, error: &impl Display) -> Self {
+        Self::Input(format!("{}: {error}", shown(path)))
     }
 
     /// Tells standard error what happened, and the caller by the exit status.
@@ -51,8 +53,8 @@ impl Failure {
             Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => return ExitCode::SUCCESS,
             Self::Output(error) => tell(format_args!("canspec: standard output: {error}")),
             Self::Call(why) | Self::Input(why) => tell(format_args!("canspec: {why}")),
-            Self::Spec(diagnostics) => tell(diagnostics.render(true).trim_end()),
-            Self::Specs(refused) => refused.iter().for_each(|one| tell(one.render(true).trim_end())),
+            Self::Spec(diagnostics) => draw(&diagnostics.render(true)),
+            Self::Specs(refused) => refused.iter().for_each(|one| draw(&one.render(true))),
         }
         ExitCode::from(if matches!(self, Self::Call(_)) { 2 } else { 1 })
     }
@@ -64,7 +66,34 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Writes a line to standard error, in colour on a terminal only; where that is closed nobody wants to know.
-pub fn tell(line: impl Display) {
-    let _ = writeln!(anstream::stderr(), "{line}");
+/// Writes lines to standard error, without what could steer a terminal.
+pub fn tell(text: impl Display) {
+    draw(&text.to_string().lines().map(escaped).collect::<Vec<_>>().join("\n"));
+}
+
+/// Writes to standard error what is drawn for a terminal, in colour there only; where that is closed nobody wants to know.
+pub fn draw(text: &str) {
+    let _ = writeln!(anstream::stderr(), "{}", text.trim_end());
+}
+
+/// Returns the name of a file in one line.
+pub fn shown(path: &Path) -> String {
+    escaped(&path.display().to_string())
+}
+
+/// Escapes what could begin a line, steer a terminal, or cannot be seen.
+pub fn escaped(text: &str) -> String {
+    let acts = |letter: char| letter.is_control() || forbidden(letter).is_some();
+    let escape = |letter: char| if acts(letter) { letter.escape_default().to_string() } else { letter.into() };
+    text.chars().map(escape).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::escaped;
+
+    #[test]
+    fn a_complaint_does_not_steer_the_terminal() {
+        assert_eq!(escaped("a\u{1b}[2J°\u{7f}\n\u{202E}"), "a\\u{1b}[2J°\\u{7f}\\n\\u{202e}");
+    }
 }

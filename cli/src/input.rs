@@ -2,12 +2,15 @@
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::failure::{Failure, Finish, tell};
+use crate::failure::{Failure, Finish, escaped, shown, tell};
 
 /// Longer lines are unreadable.
 const LONGEST: usize = 1 << 16;
+
+/// Some editors put it before the first line.
+const BYTE_ORDER_MARK: &[u8] = "\u{FEFF}".as_bytes();
 
 /// What a file has in common with itself alone, whatever path leads to it: its device and number.
 #[cfg(unix)]
@@ -30,7 +33,7 @@ fn identity(path: &Path) -> Option<Identity> {
 
 /// A text to be read line by line.
 pub struct Input {
-    name: String,
+    name: PathBuf,
     /// Which file it is, if it is one.
     file: Option<Identity>,
     reader: BufReader<Box<dyn Read>>,
@@ -54,11 +57,13 @@ impl Input {
     /// Where the file cannot be opened.
     pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
         match path.filter(|path| *path != Path::new("-")) {
-            None => Ok(Self { file: identity(Path::new("/dev/stdin")), ..Self::new("<stdin>", Box::new(io::stdin())) }),
+            None => Ok(Self {
+                file: identity(Path::new("/dev/stdin")),
+                ..Self::new(Path::new("<stdin>"), Box::new(io::stdin()))
+            }),
             Some(path) => {
-                let name = path.display().to_string();
-                let file = File::open(path).map_err(|error| Failure::input(&name, &error))?;
-                Ok(Self { file: identity(path), ..Self::new(&name, Box::new(file)) })
+                let file = File::open(path).map_err(|error| Failure::input(path, &error))?;
+                Ok(Self { file: identity(path), ..Self::new(path, Box::new(file)) })
             }
         }
     }
@@ -68,7 +73,7 @@ impl Input {
         self.file.is_some() && self.file == identity(path)
     }
 
-    fn new(name: &str, reader: Box<dyn Read>) -> Self {
+    fn new(name: &Path, reader: Box<dyn Read>) -> Self {
         let reader = BufReader::with_capacity(LONGEST, reader);
         Self { name: name.to_owned(), file: None, reader, number: 0, line: Vec::new() }
     }
@@ -82,6 +87,9 @@ impl Input {
         self.line.clear();
         let more = self.fill().map_err(|error| Failure::input(&self.name, &error))?;
         self.number += 1;
+        if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
+            self.line.drain(..BYTE_ORDER_MARK.len());
+        }
         Ok(more.then(|| Line { number: self.number, text: self.text() }))
     }
 
@@ -137,14 +145,8 @@ impl Input {
 
     /// Says on standard error what is wrong with the line read last.
     fn complain(&self, why: &str) {
-        tell(format_args!("{}:{}: {}", self.name, self.number, without_controls(why)));
+        tell(format_args!("{}:{}: {}", shown(&self.name), self.number, escaped(why)));
     }
-}
-
-/// Escapes what could steer a terminal.
-fn without_controls(text: &str) -> String {
-    let escape = |letter: char| if letter.is_control() { letter.escape_default().to_string() } else { letter.into() };
-    text.chars().map(escape).collect()
 }
 
 #[cfg(test)]
@@ -153,7 +155,7 @@ mod tests {
 
     /// Reads all lines of a text.
     fn lines(text: Vec<u8>) -> Vec<(usize, Result<String, String>)> {
-        let mut input = Input::new("test", Box::new(io::Cursor::new(text)));
+        let mut input = Input::new(Path::new("test"), Box::new(io::Cursor::new(text)));
         let mut lines = Vec::new();
         while let Ok(Some(Line { number, text })) = input.next_line() {
             lines.push((number, text.map(str::to_owned)));
@@ -190,8 +192,8 @@ mod tests {
     }
 
     #[test]
-    fn a_complaint_does_not_steer_the_terminal() {
-        assert_eq!(without_controls("a\u{1b}[2J°\u{7f}"), "a\\u{1b}[2J°\\u{7f}");
+    fn a_byte_order_mark_belongs_to_no_line() {
+        assert_eq!(lines("\u{FEFF}a\n\u{FEFF}b".into()), [good(1, "a"), good(2, "\u{FEFF}b")]);
     }
 
     #[test]

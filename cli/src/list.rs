@@ -11,6 +11,7 @@ use clap::Args;
 
 use crate::columns::{self, Row};
 use crate::failure::{Failure, Finish};
+use crate::output::output;
 use crate::protocols;
 
 /// List the built-in protocols, or the messages of one.
@@ -28,7 +29,7 @@ pub struct List {
 impl List {
     /// Writes what there is.
     pub fn run(&self) -> Result<Finish, Failure> {
-        let mut out = BufWriter::new(io::stdout().lock());
+        let mut out = BufWriter::new(output()?);
         match (self.protocol.as_deref(), self.spec.as_deref()) {
             (None, None) => built_in(&mut out)?,
             (name, path) => messages(&mut out, &protocols::load(protocols::choose(name, path)?)?)?,

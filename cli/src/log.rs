@@ -3,12 +3,15 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Form, Frame};
+use canspec_codegen::source::forbidden;
 use serde_json::value::RawValue;
 
 /// Set in the printed identifier of an error frame.
 const ERROR_FLAG: u32 = 1 << 29;
 const LARGEST_EXTENDED: u32 = 0x1FFF_FFFF;
 const LARGEST_STANDARD: u32 = 0x7FF;
+/// Characters of the name of an interface, which has 15 on Linux, and of a stamp.
+const LONGEST_NAME: usize = 64;
 /// Data bytes of a classic and of an FD frame.
 const CLASSIC: usize = 8;
 const FLEXIBLE: usize = 64;
@@ -50,10 +53,25 @@ pub fn read(line: &str) -> Result<Option<Entry<'_>>, String> {
 fn stamp(word: &str) -> Result<Box<RawValue>, String> {
     let refusal = || format!("the stamp {} is no number in parentheses", quoted(word));
     let seconds = word.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(refusal)?;
+    short("stamp", word, LONGEST_NAME + "()".len())?;
     let number = without_leading_zeros(seconds);
-    let numeric = number.starts_with(|first: char| first == '-' || first.is_ascii_digit());
-    let value = RawValue::from_string(number.to_owned()).ok().filter(|_| numeric);
-    value.ok_or_else(refusal)
+    let value = RawValue::from_string(number.to_owned()).ok().filter(|value| is_number(value));
+    let value = value.ok_or_else(refusal)?;
+    if is_finite(&value) {
+        Ok(value)
+    } else {
+        Err(format!("the stamp {} is larger than any number of JSON", quoted(word)))
+    }
+}
+
+/// Tests whether JSON is a number.
+pub fn is_number(value: &RawValue) -> bool {
+    value.get().starts_with(|first: char| first == '-' || first.is_ascii_digit())
+}
+
+/// Tests whether a number is one for readers of JSON that know doubles alone.
+pub fn is_finite(number: &RawValue) -> bool {
+    number.get().parse().is_ok_and(f64::is_finite)
 }
 
 /// candump fills up seconds with zeros, which JSON does not allow.
@@ -67,14 +85,27 @@ fn without_leading_zeros(number: &str) -> &str {
     }
 }
 
-fn channel(word: &str) -> Result<&str, String> {
-    if is_channel(word) { Ok(word) } else { Err(format!("the channel {} is no name", quoted(word))) }
+/// Returns the name of an interface if it can stand in a log line.
+///
+/// # Errors
+///
+/// Says why it cannot.
+pub fn channel(name: &str) -> Result<&str, String> {
+    let plain = |letter: char| !letter.is_whitespace() && forbidden(letter).is_none() && letter != '#';
+    if name.is_empty() || name.starts_with('(') || !name.chars().all(plain) {
+        return Err(format!("the channel {} is no name", quoted(name)));
+    }
+    short("channel", name, LONGEST_NAME)?;
+    Ok(name)
 }
 
-/// Tests whether a text can stand in a log line as the name of an interface.
-pub fn is_channel(text: &str) -> bool {
-    let plain = |letter: char| !letter.is_ascii_whitespace() && !letter.is_control() && letter != '#';
-    !text.is_empty() && !text.starts_with('(') && text.chars().all(plain)
+/// Refuses what is longer than anybody writes it.
+fn short(what: &str, text: &str, most: usize) -> Result<(), String> {
+    let count = text.chars().count();
+    if count > most {
+        return Err(format!("the {what} {} has {count} characters, more than {most}", quoted(text)));
+    }
+    Ok(())
 }
 
 /// Reads `ID#DATA`, and the forms of remote, error and FD frames.

@@ -17,6 +17,7 @@ mod line;
 mod list;
 mod log;
 mod model;
+mod output;
 mod protocols;
 mod rules;
 mod schema;
@@ -27,6 +28,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use failure::{Failure, Finish, tell};
+use output::output;
 
 /// CAN protocols described once in YAML: check them, compile them to Rust, decode and encode logs by them.
 #[derive(Parser)]
@@ -79,7 +81,8 @@ fn main() -> ExitCode {
 /// Shows what is wrong with the call, or the help that was asked for.
 fn refuse(refusal: &clap::Error) -> ExitCode {
     if !refusal.use_stderr() {
-        return refusal.print().map_or_else(|error| Failure::from(error).report(), |()| ExitCode::SUCCESS);
+        let printed = output().and_then(|_| refusal.print());
+        return printed.map_or_else(|error| Failure::from(error).report(), |()| ExitCode::SUCCESS);
     }
     let text = refusal.render().to_string();
     tell(text.strip_prefix("error").map_or(text.clone(), |text| format!("canspec{text}")).trim_end());

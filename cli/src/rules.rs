@@ -7,6 +7,7 @@ use canspec_codegen::rules::{self, RULES};
 use clap::Args;
 
 use crate::failure::{Failure, Finish};
+use crate::output::output;
 
 /// Explain the rules that a spec must keep.
 ///
@@ -22,7 +23,7 @@ pub struct Rules {
 impl Rules {
     /// Writes the document of a rule, or the list of rules.
     pub fn run(&self) -> Result<Finish, Failure> {
-        let mut out = io::stdout().lock();
+        let mut out = output()?;
         match &self.rule {
             None => list(&mut out)?,
             Some(name) => {

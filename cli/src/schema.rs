@@ -1,10 +1,11 @@
 //! `canspec schema`.
 
-use std::io::{self, Write};
+use std::io::Write;
 
 use clap::Args;
 
 use crate::failure::{Failure, Finish};
+use crate::output::output;
 
 /// Print the JSON Schema of the language, for an editor.
 #[derive(Args)]
@@ -21,7 +22,7 @@ An editor with a YAML language server finds it by the first line of a spec:
 impl Schema {
     /// Writes the schema.
     pub fn run() -> Result<Finish, Failure> {
-        io::stdout().lock().write_all(canspec_codegen::schema::schema().as_bytes())?;
+        output()?.write_all(canspec_codegen::schema::schema().as_bytes())?;
         Ok(Finish::Done)
     }
 }

@@ -9,8 +9,8 @@ use std::ops::Range;
 use std::path::Path;
 use std::string::FromUtf8Error;
 
-pub use text::Source;
-pub(crate) use text::{forbidden, visible};
+pub(crate) use text::visible;
+pub use text::{Source, forbidden};
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use text::BYTE_ORDER_MARK;

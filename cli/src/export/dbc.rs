@@ -1,6 +1,6 @@
 //! `canspec export dbc`.
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::ops::RangeInclusive;
 
 use canspec_codegen::emit::{self, Dropped};
@@ -9,6 +9,7 @@ use canspec_codegen::number::Rational;
 use clap::Args;
 
 use crate::failure::{Failure, Finish, tell};
+use crate::output::output;
 use crate::protocols::One;
 
 /// Export a protocol as a DBC.
@@ -46,7 +47,7 @@ impl Dbc {
         let dbc = emit::dbc(&protocol, self.nodes.clone());
         dbc.dropped.iter().for_each(|dropped| tell(format_args!("canspec: warning: {}", self.advised(dropped))));
         let text = if self.report { report(&dbc) } else { dbc.text };
-        io::stdout().lock().write_all(text.as_bytes())?;
+        output()?.write_all(text.as_bytes())?;
         Ok(Finish::Done)
     }
 }

@@ -1,11 +1,12 @@
 //! `canspec export wireshark`.
 
-use std::io::{self, Write};
+use std::io::Write;
 
 use canspec_codegen::emit;
 use clap::Args;
 
 use crate::failure::{Failure, Finish};
+use crate::output::output;
 use crate::protocols::One;
 
 /// Export a protocol as a Wireshark dissector in Lua.
@@ -26,7 +27,7 @@ impl Wireshark {
     /// Writes the dissector.
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocol = self.protocol.load()?;
-        io::stdout().lock().write_all(emit::wireshark(&protocol).as_bytes())?;
+        output()?.write_all(emit::wireshark(&protocol).as_bytes())?;
         Ok(Finish::Done)
     }
 }

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::failure::{Failure, Finish, tell};
+use crate::output::output;
 use names::snake_case;
 use spec::Spec;
 
@@ -56,14 +57,13 @@ impl Dbc {
 
     /// Writes the spec; a file that somebody may have worked on is left alone.
     fn write(&self, text: &str) -> Result<(), Failure> {
-        let Some(path) = &self.out else { return Ok(io::stdout().lock().write_all(text.as_bytes())?) };
+        let Some(path) = &self.out else { return Ok(output()?.write_all(text.as_bytes())?) };
         let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
         written.map_err(|error| {
-            let path = path.display().to_string();
             if error.kind() == io::ErrorKind::AlreadyExists {
-                return Failure::input(&path, &"there is such a file already; name a new one");
+                return Failure::input(path, &"there is such a file already; name a new one");
             }
-            Failure::input(&path, &error)
+            Failure::input(path, &error)
         })
     }
 }

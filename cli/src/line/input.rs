@@ -128,12 +128,12 @@ fn reserved(digits: &str) -> Result<Vec<u8>, String> {
 }
 
 fn stamp(time: Box<RawValue>) -> Result<Box<RawValue>, String> {
-    let numeric = time.get().starts_with(|first: char| first == '-' || first.is_ascii_digit());
-    if numeric { Ok(time) } else { Err(format!("`time` is a number or null, not {}", time.get())) }
+    let is_time = log::is_number(&time) && log::is_finite(&time);
+    if is_time { Ok(time) } else { Err(format!("`time` is a number or null, not {}", time.get())) }
 }
 
 fn channel(name: String) -> Result<String, String> {
-    if log::is_channel(&name) { Ok(name) } else { Err(format!("`channel` is no name: {name:?}")) }
+    log::channel(&name).map(str::to_owned)
 }
 
 #[derive(Deserialize)]
@@ -341,7 +341,7 @@ mod tests {
             (line(r#","signals":{"s":{"raw":1},"s":{"raw":1}}"#), "duplicate field `s` (column 84)"),
             (line(r#","signals":{},"kind":"answer""#), r#"`kind` is request, reply or report, not "answer""#),
             (line(r#","signals":{},"time":"now""#), r#"`time` is a number or null, not "now""#),
-            (line(r#","signals":{},"channel":"can 0""#), r#"`channel` is no name: "can 0""#),
+            (line(r#","signals":{},"channel":"can 0""#), "the channel `can 0` is no name"),
             (
                 line(r#","signals":{},"reserved":"0G""#),
                 r#"`reserved` is an even number of hexadecimal digits, at most 16, not "0G""#,

@@ -71,8 +71,8 @@ impl Source {
     }
 }
 
-/// Names what a character is if a spec may not hold it.
-pub(crate) fn forbidden(character: char) -> Option<&'static str> {
+/// Names what a character is if a spec may not hold it, nor the name of a file or a channel.
+pub fn forbidden(character: char) -> Option<&'static str> {
     match character {
         '\t' | '\n' => None,
         '\r' => Some("carriage return without a line feed"),

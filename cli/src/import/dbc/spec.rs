@@ -1,5 +1,7 @@
 //! What a first spec consists of.
 
+use canspec_codegen::source::forbidden;
+
 use super::places::BitRange;
 
 /// A spec with reports only.
@@ -41,13 +43,8 @@ pub struct Field {
     pub decide: Vec<String>,
 }
 
-/// Returns a text in one line of characters that can be seen.
+/// Returns a text in one line of characters that a spec may hold.
 pub fn one_line(text: &str) -> String {
-    let seen = text.split(|letter: char| letter.is_whitespace() || letter.is_control() || is_break(letter));
+    let seen = text.split(|letter: char| letter.is_whitespace() || forbidden(letter).is_some());
     seen.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
-}
-
-/// Tests for what some readers of YAML take for the end of a line, and for a byte-order mark.
-fn is_break(letter: char) -> bool {
-    matches!(letter, '\u{2028}' | '\u{2029}' | '\u{FEFF}')
 }

@@ -1,0 +1,42 @@
+//! Standard output.
+
+use std::io::{self, StdoutLock};
+
+/// Returns standard output.
+///
+/// # Errors
+///
+/// It was closed before the command began. The standard library puts `/dev/null` in its place, which takes everything.
+pub fn output() -> io::Result<StdoutLock<'static>> {
+    if closed::at_start() { Err(io::Error::other("it is closed")) } else { Ok(io::stdout().lock()) }
+}
+
+#[cfg(target_os = "linux")]
+mod closed {
+    use std::path::Path;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    static CLOSED: AtomicBool = AtomicBool::new(false);
+
+    /// Runs before the standard library opens what is closed.
+    #[used]
+    #[expect(unsafe_code, reason = "nothing else runs that early")]
+    #[unsafe(link_section = ".init_array")]
+    static LOOK: extern "C" fn() = look;
+
+    extern "C" fn look() {
+        let files = Path::new("/proc/self/fd");
+        CLOSED.store(files.exists() && !files.join("1").is_symlink(), Ordering::Relaxed);
+    }
+
+    pub fn at_start() -> bool {
+        CLOSED.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod closed {
+    pub fn at_start() -> bool {
+        false
+    }
+}
