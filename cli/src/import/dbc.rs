@@ -1,5 +1,6 @@
 //! `canspec import dbc`.
 
+mod index;
 mod limits;
 mod messages;
 mod names;

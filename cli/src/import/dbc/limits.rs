@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use can_dbc::{AttributeValue, Comment, Dbc, MessageId};
 
+use super::index::Index;
 use super::spec::one_line;
 
 /// Says what the file holds beside messages and signals, by kind.
@@ -21,7 +22,15 @@ pub fn beside_messages(dbc: &Dbc) -> Vec<String> {
         .into_iter()
         .filter(|(_, names)| !names.is_empty())
         .map(|(what, names)| format!("{what}: {}", names.into_iter().map(one_line).collect::<Vec<_>>().join(", ")));
-    lists.chain(comments).collect()
+    lists.chain(comments).chain(senders(dbc)).collect()
+}
+
+/// Says which messages come from further nodes.
+fn senders(dbc: &Dbc) -> impl Iterator<Item = String> {
+    dbc.message_transmitters.iter().filter(|known| !known.transmitter.is_empty()).map(|known| {
+        let id = known.message_id.raw() & !(1 << 31);
+        format!("further senders of 0x{id:X}: {}", one_line(&known.transmitter.join(", ")))
+    })
 }
 
 /// Returns the names of the attributes that have values, but for the one that is imported.
@@ -30,13 +39,15 @@ fn attributes(dbc: &Dbc) -> BTreeSet<&str> {
     let of_signals = dbc.attribute_values_signal.iter().map(|value| value.name.as_str());
     let of_nodes = dbc.attribute_values_node.iter().map(|value| value.name.as_str());
     let of_file = dbc.attribute_values_database.iter().map(|value| value.name.as_str());
-    let all = of_messages.chain(of_signals).chain(of_nodes).chain(of_file);
+    let of_variables = dbc.attribute_values_env.iter().map(|value| value.name.as_str());
+    let of_relations = dbc.relation_attribute_values.iter().map(|value| value.name.as_str());
+    let all = of_messages.chain(of_signals).chain(of_nodes).chain(of_file).chain(of_variables).chain(of_relations);
     all.filter(|name| *name != "GenMsgCycleTime").collect()
 }
 
 /// Tests whether an identifier stands for a parameter group of J1939, from any source at any priority.
-pub fn is_parameter_group(dbc: &Dbc, id: MessageId) -> bool {
-    match dbc.resolved_message_attribute(id, "VFrameFormat") {
+pub fn is_parameter_group(index: &Index, id: MessageId) -> bool {
+    match index.attribute(id, "VFrameFormat") {
         Some(AttributeValue::Uint(3)) => true,
         Some(AttributeValue::String(format)) => format == "J1939PG",
         _ => false,
@@ -44,8 +55,8 @@ pub fn is_parameter_group(dbc: &Dbc, id: MessageId) -> bool {
 }
 
 /// Returns every how many milliseconds a message is sent.
-pub fn cycle(dbc: &Dbc, id: MessageId) -> Option<u64> {
-    match dbc.resolved_message_attribute(id, "GenMsgCycleTime") {
+pub fn cycle(index: &Index, id: MessageId) -> Option<u64> {
+    match index.attribute(id, "GenMsgCycleTime") {
         Some(AttributeValue::Uint(time)) => Some(*time).filter(|time| (1..=86_400_000).contains(time)),
         _ => None,
     }

@@ -1,9 +1,10 @@
 //! Messages of a DBC as messages of a spec.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use can_dbc::{Dbc, Message as Source, MessageId, Signal};
 
+use super::index::Index;
 use super::limits::{beside_messages, cycle, is_parameter_group};
 use super::names::{Names, snake_case, type_name};
 use super::places::BitRange;
@@ -20,12 +21,14 @@ const LONGEST: u64 = 8;
 
 /// Makes a spec of a DBC.
 pub fn spec(dbc: &Dbc, file: &str, protocol: &str) -> Spec {
-    let mut importer = Importer { dbc, names: Names::default(), limits: Vec::new() };
+    let index = Index::new(dbc);
+    let mut importer = Importer { dbc, index: &index, names: Names::default(), limits: Limits::default() };
     let extended = is_extended(dbc);
     let sources = importer.sources(extended);
     let messages: Vec<Message> = sources.into_iter().flat_map(|source| importer.messages(source)).collect();
     let version = Some(one_line(&dbc.version.0)).filter(|version| !version.is_empty());
-    let mut limits = importer.limits;
+    let mut limits = importer.limits.all;
+    limits.extend(index.astray(dbc));
     limits.extend(beside_messages(dbc));
     Spec {
         file: one_line(file),
@@ -61,17 +64,25 @@ fn identifier(id: MessageId) -> u32 {
     }
 }
 
+/// What is said about the DBC, each thing once.
+#[derive(Default)]
+struct Limits {
+    all: Vec<String>,
+    known: HashSet<String>,
+}
+
 struct Importer<'a> {
     dbc: &'a Dbc,
+    index: &'a Index<'a>,
     /// Names of messages and of what has named values, which become types.
     names: Names,
-    limits: Vec<String>,
+    limits: Limits,
 }
 
 impl<'a> Importer<'a> {
     fn limit(&mut self, limit: String) {
-        if !self.limits.contains(&limit) {
-            self.limits.push(limit);
+        if self.limits.known.insert(limit.clone()) {
+            self.limits.all.push(limit);
         }
     }
 
@@ -100,12 +111,12 @@ impl<'a> Importer<'a> {
 
     /// Makes a message for each value of the multiplexors.
     fn messages(&mut self, source: &'a Source) -> Vec<Message> {
-        let found = variants(self.dbc, source);
+        let found = variants(self.index, source);
         let variants = found.unwrap_or_else(|why| {
             self.limit(format!("message `{}`: {why}", source.name));
             Vec::new()
         });
-        if is_parameter_group(self.dbc, source.id) {
+        if is_parameter_group(self.index, source.id) {
             self.limit(format!("message `{}`: it comes from any source at any priority", source.name));
         }
         variants.iter().filter_map(|variant| self.message(source, variant)).collect()
@@ -123,11 +134,11 @@ impl<'a> Importer<'a> {
         let fields = self.fields(source, variant, &name, length)?;
         Some(Message {
             title: if title.eq_ignore_ascii_case(&name) { String::new() } else { title },
-            note: one_line(self.dbc.message_comment(source.id).unwrap_or_default()),
+            note: one_line(self.index.comment(source.id, None)),
             sender: source.transmitter.as_deref().map(one_line),
             id: identifier(source.id),
             length,
-            cycle: cycle(self.dbc, source.id),
+            cycle: cycle(self.index, source.id),
             fields,
             name,
         })
@@ -136,7 +147,7 @@ impl<'a> Importer<'a> {
     /// Returns what a value of a multiplexor is called in a title, and in a name.
     fn label(&self, source: &Source, index: usize, value: u64) -> (String, String) {
         let signal = &source.signals[index].name;
-        let named = self.dbc.value_descriptions_for_signal(source.id, signal).unwrap_or_default();
+        let named = self.index.values(source.id, signal);
         let known = named.iter().find(|named| u64::try_from(named.id) == Ok(value));
         match known.map(|known| one_line(&known.description)).filter(|text| !text.is_empty()) {
             Some(text) => (format!("{signal} = {value} ({text})"), snake_case(&text, &value.to_string())),
@@ -166,7 +177,7 @@ impl<'a> Importer<'a> {
 
     fn field<'s>(&mut self, frame: &mut Draft<'s>, source: &Source, signal: &'s Signal) -> Result<Field, String> {
         let place = frame.place(signal)?;
-        let Translated { mut keys, unit, is_named, decide, lost } = meaning(self.dbc, frame.id, signal)?;
+        let Translated { mut keys, unit, is_named, decide, lost } = meaning(self.index, frame.id, signal)?;
         frame.take(place, &signal.name)?;
         for lost in lost {
             self.limit(format!("signal `{}.{}`: {lost}", source.name, signal.name));
@@ -184,7 +195,7 @@ impl<'a> Importer<'a> {
             Some(symbol) => format!("{} in {}", signal.name, one_line(symbol)),
             None => signal.name.clone(),
         };
-        let note = one_line(self.dbc.signal_comment(frame.id, &signal.name).unwrap_or_default());
+        let note = one_line(self.index.comment(frame.id, Some(&signal.name)));
         keys.extend((!title.eq_ignore_ascii_case(&name)).then(|| ("title", quoted(&title))));
         keys.extend((!note.is_empty()).then(|| ("note", quoted(&note))));
         Ok(Field { name, place, is_constant: false, keys, decide })

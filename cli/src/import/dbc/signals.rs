@@ -1,11 +1,12 @@
 //! What the number of a signal means.
 
-use can_dbc::{Dbc, MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
+use can_dbc::{MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
 use canspec_codegen::check::has_exact_steps;
 use canspec_codegen::model::{Linear, Numeral, Unit};
 use canspec_codegen::multiples::{prefixed, respelled};
 use canspec_codegen::number::Rational;
 
+use super::index::Index;
 use super::names::{Names, snake_case, type_name};
 use super::spec::one_line;
 use super::yaml::{map, quoted};
@@ -29,9 +30,9 @@ type Range = (Rational, Rational);
 type Named<'a> = (i64, &'a str);
 
 /// Returns what a signal means, or why a spec cannot say it.
-pub fn meaning(dbc: &Dbc, id: MessageId, signal: &Signal) -> Result<Translated, String> {
-    let format = dbc.extended_value_type_for_signal(id, &signal.name);
-    let named = dbc.value_descriptions_for_signal(id, &signal.name).unwrap_or_default();
+pub fn meaning(index: &Index, id: MessageId, signal: &Signal) -> Result<Translated, String> {
+    let format = index.format(id, &signal.name);
+    let named = index.values(id, &signal.name);
     let named: Vec<Named> = named.iter().map(|value| (value.id, value.description.as_str())).collect();
     match format {
         None | Some(SignalExtendedValueType::SignedOrUnsignedInteger) => number(signal, &named),

@@ -1,8 +1,10 @@
 //! Multiplexors: which signals a message has, by their values.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use can_dbc::{Dbc, Message, MultiplexIndicator};
+use can_dbc::{Message, MessageId, MultiplexIndicator, Signal};
+
+use super::index::Index;
 
 /// The frames of a message in which each multiplexor has one value.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -14,39 +16,62 @@ pub struct Variant {
 }
 
 /// Where a signal hangs: at nothing, or at some values of a multiplexor.
-type Parent = Option<(usize, Vec<(u64, u64)>)>;
+type Parent = Option<(usize, Ranges)>;
+
+/// First and last values.
+type Ranges = Vec<(u64, u64)>;
 
 /// More messages of one identifier nobody reads.
 const MOST: usize = 256;
 
+/// More multiplexors do not fit into the bits of a frame.
+const DEEPEST: usize = 64;
+
 /// Returns the variants of a message, or why they cannot be listed.
-pub fn variants(dbc: &Dbc, message: &Message) -> Result<Vec<Variant>, String> {
-    let parents = (0..message.signals.len()).map(|index| parent(dbc, message, index)).collect::<Result<Vec<_>, _>>()?;
-    let tree = Tree { parents };
+pub fn variants(index: &Index, message: &Message) -> Result<Vec<Variant>, String> {
+    let signals = message.signals.iter().enumerate();
+    let only = signals.clone().find(|(_, signal)| signal.multiplexer_indicator == MultiplexIndicator::Multiplexor);
+    let context = Context {
+        index,
+        message: message.id,
+        places: signals.clone().rev().map(|(place, signal)| (signal.name.as_str(), place)).collect(),
+        only: only.map(|(place, _)| place),
+    };
+    let parents = signals.map(|(_, signal)| context.parent(signal)).collect::<Result<Vec<_>, _>>()?;
+    let mut tree = Tree::default();
+    parents.into_iter().enumerate().for_each(|(signal, parent)| tree.add(signal, parent));
     let mut found = Vec::new();
-    tree.expand(Variant::default(), tree.under(None), &mut found)?;
+    tree.expand(Variant::default(), tree.free.clone(), &mut found)?;
     Ok(found)
 }
 
-/// Returns the multiplexor of a signal, by the extended multiplexing of the file or else by the only multiplexor.
-fn parent(dbc: &Dbc, message: &Message, index: usize) -> Result<Parent, String> {
-    let signal = &message.signals[index];
-    let position = |name: &str| message.signals.iter().position(|other| other.name == name);
-    let missing = || format!("the multiplexor of `{}` is missing", signal.name);
-    let mut extended = dbc.extended_multiplex.iter();
-    if let Some(known) = extended.find(|known| known.message_id == message.id && known.signal_name == signal.name) {
-        let values = known.mappings.iter().map(|values| (values.min_value, values.max_value)).collect();
-        return Ok(Some((position(&known.multiplexor_signal_name).ok_or_else(missing)?, values)));
-    }
-    let value = match signal.multiplexer_indicator {
-        MultiplexIndicator::MultiplexedSignal(value) | MultiplexIndicator::MultiplexorAndMultiplexedSignal(value) => {
-            value
+/// Where the multiplexors of a message are found.
+struct Context<'a> {
+    index: &'a Index<'a>,
+    message: MessageId,
+    /// Places of the signals, by name.
+    places: HashMap<&'a str, usize>,
+    /// The only multiplexor.
+    only: Option<usize>,
+}
+
+impl Context<'_> {
+    /// Returns the multiplexor of a signal, by the extended multiplexing of the file or else by the only multiplexor.
+    fn parent(&self, signal: &Signal) -> Result<Parent, String> {
+        let missing = || format!("the multiplexor of `{}` is missing", signal.name);
+        if let Some(known) = self.index.multiplexor(self.message, &signal.name) {
+            let values = known.mappings.iter().map(|values| (values.min_value, values.max_value)).collect();
+            let place = self.places.get(known.multiplexor_signal_name.as_str());
+            return Ok(Some((*place.ok_or_else(missing)?, values)));
         }
-        MultiplexIndicator::Multiplexor | MultiplexIndicator::Plain => return Ok(None),
-    };
-    let mut signals = message.signals.iter();
-    let only = signals.position(|other| other.multiplexer_indicator == MultiplexIndicator::Multiplexor);
-    Ok(Some((only.ok_or_else(missing)?, vec![(value, value)])))
+        match signal.multiplexer_indicator {
+            MultiplexIndicator::MultiplexedSignal(value)
+            | MultiplexIndicator::MultiplexorAndMultiplexedSignal(value) => {
+                Ok(Some((self.only.ok_or_else(missing)?, vec![(value, value)])))
+            }
+            MultiplexIndicator::Multiplexor | MultiplexIndicator::Plain => Ok(None),
+        }
+    }
 }
 
 fn too_many() -> String {
@@ -54,27 +79,37 @@ fn too_many() -> String {
 }
 
 /// What hangs where.
+#[derive(Default)]
 struct Tree {
-    parents: Vec<Parent>,
+    /// Signals that hang at nothing.
+    free: Vec<usize>,
+    /// Signals that hang at a multiplexor, and at which of its values.
+    below: HashMap<usize, Vec<(usize, Ranges)>>,
 }
 
 impl Tree {
-    /// Returns the signals at a value of a multiplexor, or those that hang at nothing.
-    fn under(&self, at: Option<(usize, u64)>) -> Vec<usize> {
-        let hangs = |parent: &Parent| match (parent, at) {
-            (Some((multiplexor, values)), Some((known, value))) => {
-                *multiplexor == known && values.iter().any(|(first, last)| (*first..=*last).contains(&value))
-            }
-            (parent, at) => parent.is_none() && at.is_none(),
-        };
-        self.parents.iter().enumerate().filter(|(_, parent)| hangs(parent)).map(|(index, _)| index).collect()
+    fn add(&mut self, signal: usize, parent: Parent) {
+        match parent {
+            None => self.free.push(signal),
+            Some((multiplexor, values)) => self.below.entry(multiplexor).or_default().push((signal, values)),
+        }
+    }
+
+    /// Returns the signals that hang at a multiplexor.
+    fn below(&self, multiplexor: usize) -> &[(usize, Ranges)] {
+        self.below.get(&multiplexor).map_or(&[], Vec::as_slice)
+    }
+
+    /// Returns the signals at a value of a multiplexor.
+    fn at(&self, multiplexor: usize, value: u64) -> impl Iterator<Item = usize> {
+        let hangs = move |values: &Ranges| values.iter().any(|(first, last)| (*first..=*last).contains(&value));
+        self.below(multiplexor).iter().filter(move |(_, values)| hangs(values)).map(|(signal, _)| *signal)
     }
 
     /// Returns the values at which a signal has others hanging.
     fn values(&self, multiplexor: usize) -> Result<BTreeSet<u64>, String> {
-        let parents = self.parents.iter().flatten().filter(|(known, _)| *known == multiplexor);
         let mut found = BTreeSet::new();
-        for (first, last) in parents.flat_map(|(_, values)| values) {
+        for (first, last) in self.below(multiplexor).iter().flat_map(|(_, values)| values) {
             found.extend((*first..=*last).take(MOST + 1));
         }
         if found.len() > MOST { Err(too_many()) } else { Ok(found) }
@@ -82,6 +117,9 @@ impl Tree {
 
     /// Adds to a variant what is still to be looked at, one variant for each value of a multiplexor.
     fn expand(&self, mut variant: Variant, left: Vec<usize>, found: &mut Vec<Variant>) -> Result<(), String> {
+        if variant.constants.len() > DEEPEST {
+            return Err(format!("more than {DEEPEST} of its multiplexors depend on each other"));
+        }
         let mut left = left.into_iter();
         while let Some(index) = left.next() {
             let values = self.values(index)?;
@@ -92,7 +130,7 @@ impl Tree {
             for value in values {
                 let constants = variant.constants.iter().map(|(index, value)| (*index, *value)).chain([(index, value)]);
                 let variant = Variant { constants: constants.collect(), signals: variant.signals.clone() };
-                let left = left.clone().chain(self.under(Some((index, value)))).collect();
+                let left = left.clone().chain(self.at(index, value)).collect();
                 self.expand(variant, left, found)?;
             }
             return Ok(());
@@ -104,6 +142,8 @@ impl Tree {
 
 #[cfg(test)]
 mod tests {
+    use can_dbc::Dbc;
+
     use super::*;
 
     /// Returns constants and signals of each variant, by name.
@@ -115,7 +155,7 @@ mod tests {
             let constants = variant.constants.iter().map(|(index, value)| format!("{}={value}", name(index)));
             constants.chain(variant.signals.iter().map(name)).collect::<Vec<_>>().join(" ")
         };
-        variants(&dbc, &dbc.messages[0]).map(|found| found.iter().map(shown).collect())
+        variants(&Index::new(&dbc), &dbc.messages[0]).map(|found| found.iter().map(shown).collect())
     }
 
     fn signal(name: &str, start: u8) -> String {
@@ -146,5 +186,9 @@ mod tests {
         let many = named(&signals, "SG_MUL_VAL_ 1 a q 0-4000000000;");
         assert_eq!(many, Err("its multiplexors have more than 256 values".to_owned()));
         assert_eq!(named(&signal("a m0", 16), ""), Err("the multiplexor of `a` is missing".to_owned()));
+        let chain = (1..20_000).map(|at| signal(&format!("s{at} m1M"), 0)).collect::<String>();
+        let below = (1..20_000).map(|at| format!("SG_MUL_VAL_ 1 s{at} s{} 1-1;\n", at - 1)).collect::<String>();
+        let deep = named(&(signal("s0 M", 0) + &chain), &below);
+        assert_eq!(deep, Err("more than 64 of its multiplexors depend on each other".to_owned()));
     }
 }
