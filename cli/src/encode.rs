@@ -1,6 +1,6 @@
 //! `canspec encode`.
 
-use std::io::BufWriter;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use canspec_codegen::interpret::{self, Frame, Target};
@@ -98,15 +98,21 @@ impl Encode {
     }
 }
 
+/// Turns a decoded line into one of a log.
+pub fn line(protocol: &Protocol, model: Option<ModelId>, text: &str) -> Result<Option<String>, String> {
+    let Some((content, frame)) = read(protocol, model, text)? else { return Ok(None) };
+    let mut out = Vec::new();
+    let time = content.time.as_ref().map(|time| time.get());
+    log::write(&mut out, time, content.channel.as_deref(), &frame).map_err(|error| error.to_string())?;
+    String::from_utf8(out).map(Some).map_err(|error| error.to_string())
+}
+
 /// Turns decoded lines into a log.
 fn lines(protocol: &Protocol, model: Option<ModelId>, file: Option<&Path>) -> Result<Finish, Failure> {
     let out = BufWriter::new(output()?);
     Input::open(file)?.each(out, |out, line| {
-        let made = line.text.and_then(|text| read(protocol, model, text))?;
-        Ok(made.map_or(Ok(()), |(content, frame)| {
-            let time = content.time.as_ref().map(|time| time.get());
-            log::write(out, time, content.channel.as_deref(), &frame)
-        }))
+        let made = line.text.and_then(|text| self::line(protocol, model, text))?;
+        Ok(made.map_or(Ok(()), |made| out.write_all(made.as_bytes())))
     })
 }
 

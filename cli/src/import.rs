@@ -19,6 +19,11 @@ enum Source {
     Dbc(dbc::Dbc),
 }
 
+/// Makes a spec of a DBC in memory.
+pub fn imported(bytes: Vec<u8>) -> Result<String, String> {
+    dbc::imported(bytes)
+}
+
 impl Import {
     /// Writes the spec.
     pub fn run(&self) -> Result<Finish, Failure> {

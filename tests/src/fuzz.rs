@@ -3,9 +3,12 @@
 //! libFuzzer runs them from `tests/fuzz`, the ordinary tests for a few seconds from `tests/tests/fuzz.rs`.
 
 mod change;
+mod dbc;
 mod emitted;
 mod frames;
 mod front_end;
+mod lines;
+mod logs;
 mod names;
 mod specs;
 
@@ -34,8 +37,14 @@ pub const FRONT_END: Target =
 /// Takes any bytes for a frame and a value of one of the protocols.
 pub const FRAMES: Target = Target { name: "frames", run: frames::run, seeds: frames::seeds, mutated: frames::mutated };
 
+/// Takes any bytes for a log, of candump or of JSON lines.
+pub const LOGS: Target = Target { name: "logs", run: logs::run, seeds: lines::logs, mutated: lines::mutated };
+
+/// Takes any bytes for a DBC.
+pub const DBC: Target = Target { name: "dbc", run: dbc::run, seeds: lines::dbcs, mutated: lines::mutated };
+
 /// All targets.
-pub const TARGETS: [Target; 2] = [FRONT_END, FRAMES];
+pub const TARGETS: [Target; 4] = [FRONT_END, FRAMES, LOGS, DBC];
 
 /// Returns the inputs that were once found to break a target; one without a folder has none.
 pub fn regressions(target: &Target) -> Vec<PathBuf> {

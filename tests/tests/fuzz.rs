@@ -5,10 +5,12 @@ use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use canspec::files::{decoded, imported};
 use canspec_codegen::compile;
 use canspec_codegen::source::Source;
 use canspec_codegen::syntax::parse;
-use canspec_tests::fuzz::{FRAMES, FRONT_END, TARGETS, Target, regressions};
+use canspec_tests::fuzz::{DBC, FRAMES, FRONT_END, LOGS, TARGETS, Target, regressions};
+use canspec_tests::protocol;
 use fastrand::Rng;
 
 /// Longest time that an input may take, on a slow and busy machine.
@@ -47,12 +49,32 @@ fn whatever_a_frame_holds_both_engines_say_the_same_of_it() {
 }
 
 #[test]
+fn whatever_a_log_says_it_is_refused_or_shown_in_all_forms() {
+    inputs(LOGS).take(1_000).for_each(|input| run(&LOGS, &input));
+}
+
+#[test]
+fn whatever_a_dbc_says_it_is_refused_or_a_spec_that_is_right() {
+    inputs(DBC).take(1_000).for_each(|input| run(&DBC, &input));
+}
+
+#[test]
 fn what_once_broke_a_target_does_so_no_more() {
     for target in TARGETS {
         for path in regressions(&target) {
             run(&target, &fs::read(&path).expect("the file can be read"));
         }
     }
+}
+
+#[test]
+fn of_the_changed_lines_and_files_enough_are_read() {
+    let infy = protocol(Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/infy.yaml"));
+    let logs: Vec<u8> = inputs(LOGS).take(200).flat_map(|log| log.into_iter().chain(*b"\n")).collect();
+    let lines: Vec<_> = logs.split(|byte| *byte == b'\n').filter_map(|line| str::from_utf8(line).ok()).collect();
+    let shown = lines.iter().filter(|line| matches!(decoded(&infy, line), Ok(Some(_)))).count();
+    let imported = inputs(DBC).take(400).filter(|dbc| imported(dbc.clone()).is_ok()).count();
+    assert!(shown * 2 > lines.len() && imported >= 100, "{shown} of {} lines, {imported} of 400", lines.len());
 }
 
 #[test]

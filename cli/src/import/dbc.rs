@@ -69,6 +69,12 @@ impl Dbc {
     }
 }
 
+/// Makes a spec of a DBC in memory.
+pub fn imported(bytes: Vec<u8>) -> Result<String, String> {
+    let dbc = read::parse(bytes).map_err(|refusal| refusal.why)?;
+    Ok(messages::spec(&dbc, "a.dbc", "a").to_string())
+}
+
 fn summary(spec: &Spec, messages: usize) -> String {
     let lost = match spec.limits.len() {
         0 => "nothing is left out".to_owned(),

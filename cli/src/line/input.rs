@@ -90,7 +90,7 @@ impl Object {
             signals,
             reserved: self.reserved.as_deref().map(reserved).transpose()?.unwrap_or_default(),
         };
-        let (time, channel) = (self.time.map(stamp).transpose()?, self.channel.map(channel).transpose()?);
+        let (time, channel) = (self.time.map(stamp).transpose()?, self.channel.as_deref().map(channel).transpose()?);
         Ok(Content { time, channel, protocol: self.protocol, frame, units })
     }
 }
@@ -132,8 +132,8 @@ fn stamp(time: Box<RawValue>) -> Result<Box<RawValue>, String> {
     if is_time { Ok(time) } else { Err(format!("`time` is a number or null, not {}", time.get())) }
 }
 
-fn channel(name: String) -> Result<String, String> {
-    log::channel(&name).map(str::to_owned)
+fn channel(name: &str) -> Result<String, String> {
+    log::channel(name).map(str::to_owned)
 }
 
 #[derive(Deserialize)]

@@ -29,17 +29,18 @@ const DEEPEST: usize = 64;
 
 /// Returns the variants of a message, or why they cannot be listed.
 pub fn variants(index: &Index, message: &Message) -> Result<Vec<Variant>, String> {
-    let signals = message.signals.iter().enumerate();
-    let only = signals.clone().find(|(_, signal)| signal.multiplexer_indicator == MultiplexIndicator::Multiplexor);
+    let mut signals = message.signals.iter();
+    let places = message.signals.iter().enumerate().rev().map(|(place, signal)| (signal.name.as_str(), place));
     let context = Context {
         index,
         message: message.id,
-        places: signals.clone().rev().map(|(place, signal)| (signal.name.as_str(), place)).collect(),
-        only: only.map(|(place, _)| place),
+        places: places.collect(),
+        only: signals.position(|signal| signal.multiplexer_indicator == MultiplexIndicator::Multiplexor),
     };
-    let parents = signals.map(|(_, signal)| context.parent(signal)).collect::<Result<Vec<_>, _>>()?;
     let mut tree = Tree::default();
-    parents.into_iter().enumerate().for_each(|(signal, parent)| tree.add(signal, parent));
+    for (place, signal) in message.signals.iter().enumerate() {
+        tree.add(place, context.parent(signal)?);
+    }
     let mut found = Vec::new();
     tree.expand(Variant::default(), tree.free.clone(), &mut found)?;
     Ok(found)
@@ -187,8 +188,8 @@ mod tests {
         assert_eq!(many, Err("its multiplexors have more than 256 values".to_owned()));
         assert_eq!(named(&signal("a m0", 16), ""), Err("the multiplexor of `a` is missing".to_owned()));
         let chain = (1..20_000).map(|at| signal(&format!("s{at} m1M"), 0)).collect::<String>();
-        let below = (1..20_000).map(|at| format!("SG_MUL_VAL_ 1 s{at} s{} 1-1;\n", at - 1)).collect::<String>();
-        let deep = named(&(signal("s0 M", 0) + &chain), &below);
+        let below: Vec<_> = (1..20_000).map(|at| format!("SG_MUL_VAL_ 1 s{at} s{} 1-1;", at - 1)).collect();
+        let deep = named(&(signal("s0 M", 0) + &chain), &below.join("\n"));
         assert_eq!(deep, Err("more than 64 of its multiplexors depend on each other".to_owned()));
     }
 }

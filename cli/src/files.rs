@@ -1,0 +1,58 @@
+//! What becomes of logs and DBC files, in memory.
+
+use canspec_codegen::interpret::decode;
+use canspec_codegen::model::Protocol;
+
+use crate::capture::Capture;
+use crate::encode;
+use crate::import;
+use crate::line::{self, Origin};
+use crate::log;
+use crate::table::Table;
+
+/// What becomes of a line of a log.
+pub struct Shown {
+    /// The JSON object.
+    pub json: String,
+    /// A table with the frame alone.
+    pub table: String,
+    /// A capture with the frame alone, or why there is none.
+    pub capture: Result<Vec<u8>, String>,
+}
+
+/// Decodes a line of a log, `None` of a blank one.
+///
+/// # Errors
+///
+/// Says why the line is unreadable.
+pub fn decoded(protocol: &Protocol, line: &str) -> Result<Option<Shown>, String> {
+    let Some(entry) = log::read(line)? else { return Ok(None) };
+    let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
+    let origin = Origin { line: 1, time, channel, frame, protocol };
+    let decoded = decode(protocol, None, frame);
+    let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+    let unwritten = |error: std::io::Error| error.to_string();
+    line::write(&mut json, &origin, &decoded).map_err(unwritten)?;
+    Table::new(std::slice::from_ref(protocol)).write(&mut table, &origin, &decoded).map_err(unwritten)?;
+    let capture = Capture::begin(&mut bytes).map_err(unwritten)?.frame(&mut bytes, &entry);
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
+    Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))
+}
+
+/// Makes the line of a log from a JSON object, `None` from a blank line.
+///
+/// # Errors
+///
+/// Says why there is no such frame.
+pub fn encoded(protocol: &Protocol, json: &str) -> Result<Option<String>, String> {
+    encode::line(protocol, None, json)
+}
+
+/// Makes a spec of a DBC.
+///
+/// # Errors
+///
+/// The bytes are none.
+pub fn imported(bytes: Vec<u8>) -> Result<String, String> {
+    import::imported(bytes)
+}

@@ -1,0 +1,94 @@
+//! The command `canspec`: checks CAN protocol specs, compiles them to Rust, decodes and encodes logs.
+//!
+//! It is a library as well, so that tests reach what reads logs and DBC files.
+
+#![warn(clippy::wildcard_enum_match_arm)]
+
+mod capture;
+mod check;
+mod columns;
+mod compile;
+mod decode;
+mod encode;
+mod examples;
+mod export;
+mod failure;
+pub mod files;
+mod import;
+mod input;
+mod line;
+mod list;
+mod log;
+mod model;
+mod output;
+mod protocols;
+mod rules;
+mod schema;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::{Failure, Finish, tell};
+use output::output;
+
+/// CAN protocols described once in YAML: check them, compile them to Rust, decode and encode logs by them.
+#[derive(Parser)]
+#[command(name = "canspec", version, after_long_help = EXIT_STATUS)]
+struct Canspec {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_STATUS: &str = "Exit status: 0 done, 1 the input had errors, 2 the call was wrong.";
+
+#[derive(Subcommand)]
+enum Command {
+    Check(check::Check),
+    Compile(compile::Compile),
+    Decode(decode::Decode),
+    Encode(encode::Encode),
+    Examples(examples::Examples),
+    Export(export::Export),
+    Import(import::Import),
+    List(list::List),
+    Rules(rules::Rules),
+    Schema(schema::Schema),
+}
+
+impl Command {
+    fn run(&self) -> Result<Finish, Failure> {
+        match self {
+            Self::Check(check) => check.run(),
+            Self::Compile(compile) => compile.run(),
+            Self::Decode(decode) => decode.run(),
+            Self::Encode(encode) => encode.run(),
+            Self::Examples(examples) => examples.run(),
+            Self::Export(export) => export.run(),
+            Self::Import(import) => import.run(),
+            Self::List(list) => list.run(),
+            Self::Rules(rules) => rules.run(),
+            Self::Schema(_) => schema::Schema::run(),
+        }
+    }
+}
+
+/// Does what the command line says.
+pub fn main() -> ExitCode {
+    match Canspec::try_parse() {
+        Ok(call) => call.command.run().map_or_else(|failure| failure.report(), ExitCode::from),
+        Err(refusal) => refuse(&refusal),
+    }
+}
+
+/// Shows what is wrong with the call, or the help that was asked for.
+fn refuse(refusal: &clap::Error) -> ExitCode {
+    if !refusal.use_stderr() {
+        let printed = output().and_then(|_| refusal.print());
+        return printed.map_or_else(|error| Failure::from(error).report(), |()| ExitCode::SUCCESS);
+    }
+    let text = refusal.render().to_string();
+    tell(text.strip_prefix("error").map_or(text.clone(), |text| format!("canspec{text}")).trim_end());
+    ExitCode::from(2)
+}
