@@ -51,6 +51,8 @@ struct Resolver<'a> {
 #[derive(Default)]
 struct Tables {
     selectors: Table<SelectorId, model::Selector>,
+    /// Those that the header declares.
+    header: Vec<SelectorId>,
     enumerations: Table<EnumerationId, model::Enumeration>,
     status_words: Table<StatusWordId, model::StatusWord>,
     /// Remarks of words, which are no signals themselves.

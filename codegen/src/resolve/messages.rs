@@ -7,7 +7,7 @@ use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    Message, MessageId, ModelId, Selector, SelectorId, SelectorPlace, Signal, SignalId, Table, Travel,
+    Message, MessageId, ModelId, SelectorPlace, Signal, SignalId, Table, Travel,
 };
 use crate::resolve::rules;
 use crate::syntax::ast;
@@ -234,13 +234,9 @@ impl Resolver<'_> {
 
     /// Tests that a constant field is not called like a field of the header in another place.
     fn check_header_name(&mut self, signal: &Signal) {
-        let header = Path::default().key("header");
-        let in_header = |known: &&Selector| known.doc.path.ancestors().any(|outer| *outer == header);
-        let mut named = self.tables.selectors.iter().filter(|known| known.name == signal.name);
-        let Some(known) = named.find(in_header).filter(|known| known.place != SelectorPlace::Payload(signal.place))
-        else {
-            return;
-        };
+        let mut header = self.tables.header.iter().map(|id| &self.tables.selectors[*id]);
+        let named = header.find(|known| known.name == signal.name);
+        let Some(known) = named.filter(|known| known.place != SelectorPlace::Payload(signal.place)) else { return };
         let text =
             format!("a frame would have two values called `{}`, since the header has a field of that name", known.name);
         let help = "choose another name, or the place of the header's field";
@@ -302,7 +298,7 @@ impl Resolver<'_> {
         let header = constants.iter().any(|constant| constant.in_payload().is_some());
         let fixed = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty() || kinds.contains(&kind));
         constants.extend(fixed.map(|(constant, _)| *constant));
-        let mut selectors = if header { self.header() } else { Vec::new() };
+        let mut selectors = if header { self.tables.header.clone() } else { Vec::new() };
         let payload = constants.iter().filter(|constant| constant.in_payload().is_some());
         selectors.extend(payload.map(|constant| constant.selector));
         selectors.sort_unstable();
@@ -341,16 +337,6 @@ impl Resolver<'_> {
         let frame = self.layout(&bare, Kind::Reply, &choice, &travel, surroundings);
         self.check_constants(path, &frame);
         Some(frame)
-    }
-
-    /// Returns the selectors that the header declares.
-    pub fn header(&self) -> Vec<SelectorId> {
-        let root = Path::default().key("header");
-        let selectors = self.tables.selectors.entries();
-        selectors
-            .filter(|(_, selector)| selector.doc.path.ancestors().any(|outer| *outer == root))
-            .map(|(id, _)| id)
-            .collect()
     }
 
     /// Tests that no selector has two values.

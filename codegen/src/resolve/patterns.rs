@@ -5,7 +5,7 @@ use super::texts::remarks;
 use crate::model::{Constant, FieldId, Foreign, Id, Identifier, Selector, SelectorId, SelectorPlace, Signal};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Key, Pattern};
-use crate::syntax::tree::Path;
+use crate::syntax::tree::{Path, Step};
 
 impl Resolver<'_> {
     /// Makes a selector of every field of the header.
@@ -18,12 +18,13 @@ impl Resolver<'_> {
             let (normal, continues) = self.header_values(&signal).unwrap_or_default();
             let index = self.add_selector(signal, normal);
             self.tables.selectors[index].continues = continues;
+            self.tables.header.push(index);
         }
     }
 
     /// Returns the raw value of a field that is no error, and the one that says that more frames follow.
     fn header_values(&mut self, signal: &Signal) -> Option<(Option<u64>, Option<u64>)> {
-        let field = ast_field(&self.spec.header, &signal.name)?.clone();
+        let field = ast_field(self.spec, &signal.doc.path)?.clone();
         let merged = self.merged(&signal.doc.path, &field)?;
         let mut value = |key: Key, text: &Option<String>| {
             let path = merged.path(self.diagnostics, key);
@@ -123,9 +124,18 @@ impl Resolver<'_> {
     }
 }
 
-/// Finds a field by name, in words too.
-fn ast_field<'a>(fields: &'a ast::Map<ast::Field>, name: &str) -> Option<&'a ast::Field> {
-    fields.get(name).or_else(|| fields.values().find_map(|field| ast_field(&field.fields, name)))
+/// Finds a field by its place, which is in a type if the word around it takes its fields from there.
+fn ast_field<'a>(spec: &'a ast::Spec, path: &Path) -> Option<&'a ast::Field> {
+    let (map, Step::Key(name)) = path.split()? else { return None };
+    let root = Path::default();
+    if *map == root.key("header") {
+        return spec.header.get(name);
+    }
+    if *map == root.key("types") {
+        return spec.types.get(name);
+    }
+    let (word, _) = map.split()?;
+    ast_field(spec, word)?.fields.get(name)
 }
 
 /// Returns every addressing pattern and the key it stands under.

@@ -103,7 +103,7 @@ impl Resolver<'_> {
     /// Returns the header if it says whether more frames follow; every frame of a set has it then.
     fn continuing_header(&self) -> Vec<SelectorId> {
         let is_in_header = self.tables.selectors.iter().any(|selector| selector.continues.is_some());
-        if is_in_header { self.header() } else { Vec::new() }
+        if is_in_header { self.tables.header.clone() } else { Vec::new() }
     }
 
     /// Tests that no selector has one value for the set and another one for its member.

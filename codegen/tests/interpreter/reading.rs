@@ -236,3 +236,25 @@ fn a_frame_of_a_set_is_its_member_by_the_access_of_the_set() {
     assert_eq!(problem(&ovens, "486#03001234"), Some(Problem::UnknownMessage));
     assert_eq!(notes(&ovens, "487#02070000"), ["error_code"]);
 }
+
+#[test]
+fn a_word_of_the_header_that_stands_in_a_type_tells_an_error_reply_and_the_end_of_a_set() {
+    let spec = r#"
+canspec: 1
+protocol: typed_header
+title: Words of types
+document: {title: Made up, version: "1"}
+length: 8
+identifier: {direction: {bits: 10}, command: {bits: 9..4}, node: {bits: 3..0}}
+header: {flags: {bytes: 0, type: flags}}
+types:
+  node: {range: 1..9}
+  flags: {fields: {result: {bits: 7..4, normal: 0}, more: {bits: 3..0, continues: 1}}}
+addressing: {single: {request: {direction: 0, node: node}, one: {direction: 1, node: node}}}
+access: {read: {request: {}, reply: {}, in: [reply], answers: {single: one}}}
+messages: {heat: {section: "1", match: {command: 1, more: 0}, access: [read], value: {bytes: 1}}}
+"#;
+    let protocol = written(spec);
+    assert_eq!(notes(&protocol, "411#2007000000000000"), ["error_code"]);
+    assert_eq!(protocol.continuation().map(|field| field.raw), Some(1));
+}
