@@ -3,6 +3,7 @@
 pub mod bare;
 pub mod engines;
 pub mod fuzz;
+pub mod random_specs;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,194 @@
+//! Examples of frames: random frames, and what the interpreter decodes them to.
+
+use canspec_codegen::interpret::{
+    Content, Decoded, Frame, Problem, Reading, Unrecognised, Value as Meaning, decode, encode,
+};
+use canspec_codegen::model::{Encoding, Kind, ModelId, Protocol, Signal};
+use canspec_codegen::number::Rational;
+use serde_yaml::Value;
+
+use super::draft::Draft;
+use super::names::Scope;
+use super::yaml::{Map, list};
+use crate::{Frames, models};
+
+/// How many random frames are tried.
+const FRAMES: usize = 24;
+
+/// An example, and where it can stand.
+struct Example {
+    map: Map,
+    kind: Kind,
+    /// The message in whose list it can stand, and the one that it names there.
+    of: Option<(String, Option<String>)>,
+    /// The message that it names in a sequence.
+    message: Option<String>,
+}
+
+impl Draft {
+    /// Adds examples to messages, and sequences of them.
+    pub fn add_examples(&mut self, root: &mut Value, protocol: &Protocol) {
+        if protocol.modes.is_empty() || protocol.frames.is_empty() || !self.chance(70) {
+            return;
+        }
+        let examples = self.examples(protocol);
+        let (in_sequence, in_messages): (Vec<_>, Vec<_>) = examples.into_iter().partition(|_| self.chance(35));
+        self.add_to_messages(root, in_messages);
+        self.add_sequence(root, in_sequence);
+    }
+
+    /// Returns examples, in an order in which no reply answers a request.
+    fn examples(&mut self, protocol: &Protocol) -> Vec<Example> {
+        let mut frames = Frames::new(protocol, self.random.u64(..));
+        let models: Vec<_> = models(protocol).take(4).collect();
+        let mut examples = Vec::new();
+        for _ in 0..FRAMES {
+            let (model, frame) = (self.one(&models), frames.next_frame());
+            examples.extend(match decode(protocol, model, &frame) {
+                Ok(decoded) if self.chance(10) => self.cut(protocol, &frame, &decoded),
+                Ok(decoded) => self.example(protocol, model, &frame, &decoded),
+                Err(unrecognised) => self.failing(protocol, &frame, &unrecognised),
+            });
+        }
+        examples.sort_by_key(|example| example.kind == Kind::Request);
+        examples
+    }
+
+    fn example(
+        &mut self,
+        protocol: &Protocol,
+        model: Option<ModelId>,
+        frame: &Frame,
+        decoded: &Decoded,
+    ) -> Option<Example> {
+        let message = &protocol[decoded.message];
+        let comes_back = encode(protocol, model, &Content::of(protocol, decoded)).is_ok();
+        if model.is_none() && !message.models.is_empty() || !comes_back && decoded.notes.is_empty() {
+            return None;
+        }
+        let mut map = Map::of([(decoded.kind.name(), written(frame))]);
+        if !decoded.signals.is_empty() {
+            let means = decoded.signals.iter().map(|reading| means(protocol, &message[reading.signal], reading));
+            let means: Vec<_> = means.collect::<Option<_>>()?;
+            let short = message.signals.len() == 1 && self.random.bool();
+            let names = decoded.signals.iter().map(|reading| message[reading.signal].name.clone());
+            let all = Map::of(names.zip(means.clone()));
+            map.put("means", if short { means[0].clone() } else { all.into() });
+        }
+        if let Some(model) = model {
+            map.put("model", protocol.models[model].name.clone());
+        }
+        if !decoded.notes.is_empty() {
+            map.put("notes", list(decoded.notes.iter().map(|note| note.rule.name())));
+        }
+        self.say_more(&mut map);
+        let name = message.name.clone();
+        let outer = decoded.set.map_or_else(|| name.clone(), |set| protocol[set].name.clone());
+        let inner = decoded.set.map(|_| name.clone());
+        Some(Example { map, kind: decoded.kind, of: Some((outer, inner)), message: Some(name) })
+    }
+
+    /// Returns a frame that lacks its last byte.
+    fn cut(&mut self, protocol: &Protocol, frame: &Frame, decoded: &Decoded) -> Option<Example> {
+        let data = frame.data.split_last().map(|(_, data)| data.to_vec())?;
+        let frame = Frame { data, ..frame.clone() };
+        let why = decode(protocol, None, &frame).err()?;
+        let name = (why.problem == Problem::Length && decoded.set.is_none())
+            .then(|| protocol[decoded.message].name.clone())?;
+        let mut map = Map::of([(decoded.kind.name(), written(&frame)), ("fails", why.problem.name().to_owned())]);
+        self.say_more(&mut map);
+        Some(Example { map, kind: decoded.kind, of: Some((name.clone(), None)), message: Some(name) })
+    }
+
+    fn failing(&mut self, protocol: &Protocol, frame: &Frame, why: &Unrecognised) -> Option<Example> {
+        let problem = why.problem.name();
+        let whole = ["identifier", "foreign", "unknown_message"].contains(&problem);
+        if !whole || frame.extended != protocol.identifier.extended {
+            return None;
+        }
+        let mut map = Map::of([("reply", written(frame)), ("fails", problem.to_owned())]);
+        self.say_more(&mut map);
+        Some(Example { map, kind: Kind::Reply, of: None, message: None })
+    }
+
+    fn say_more(&mut self, map: &mut Map) {
+        if self.chance(50) {
+            map.put("origin", "ours");
+        }
+        if self.chance(20) {
+            let note = self.text();
+            map.put("note", note);
+        }
+        self.refer(map);
+    }
+
+    fn add_to_messages(&mut self, root: &mut Value, examples: Vec<Example>) {
+        for Example { mut map, of, .. } in examples {
+            let Some((outer, inner)) = of else { continue };
+            if let Some(member) = inner {
+                map.put("message", member);
+            }
+            let entry = root["messages"][outer.as_str()]
+                .as_mapping_mut()
+                .map(|message| message.entry("examples".into()).or_insert_with(|| Value::Sequence(Vec::new())));
+            if let Some(Value::Sequence(known)) = entry {
+                known.push(map.into());
+            }
+        }
+    }
+
+    fn add_sequence(&mut self, root: &mut Value, examples: Vec<Example>) {
+        let frames: Vec<_> = examples
+            .into_iter()
+            .map(|Example { mut map, message, .. }| {
+                message.into_iter().for_each(|name| map.put("message", name));
+                map
+            })
+            .collect();
+        if frames.is_empty() {
+            return;
+        }
+        let mut sequence = Map::of([("frames", list(frames))]);
+        self.remark(&mut sequence);
+        let name = self.names.name(&mut Scope::default());
+        if let Some(root) = root.as_mapping_mut() {
+            root.insert("examples".into(), Map::of([(name, sequence)]).into());
+        }
+    }
+}
+
+/// Writes a frame as documents print it.
+fn written(frame: &Frame) -> String {
+    let id = if frame.extended { format!("{:08X}", frame.id) } else { format!("{:03X}", frame.id) };
+    frame.data.iter().fold(format!("{id}#"), |text, byte| format!("{text}{byte:02X}"))
+}
+
+/// Writes what an example says that a signal means; nothing if it has no value.
+fn means(protocol: &Protocol, signal: &Signal, reading: &Reading) -> Option<Value> {
+    let text = match &reading.value {
+        Meaning::None => {
+            signal.encoding.enumeration()?;
+            reading.bits.to_string()
+        }
+        Meaning::Name(text) | Meaning::Text(text) => text.clone(),
+        Meaning::Integer(_) => quantity(signal, Rational::integer(signal.raw_of(reading.bits))),
+        Meaning::Number(_) => quantity(signal, exact(signal, reading.bits)?),
+        Meaning::Status { set, unknown } => {
+            let word = &protocol[signal.encoding.status_word()?];
+            let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.clone());
+            let others = (0..64).filter(|bit| unknown >> bit & 1 == 1).map(|bit| bit.to_string());
+            return Some(list(names.chain(others)));
+        }
+    };
+    Some(text.into())
+}
+
+fn quantity(signal: &Signal, number: Rational) -> String {
+    number.fraction() + &signal.unit_text()
+}
+
+/// Returns the exact value of a scaled number; that of a float is often too long to write.
+fn exact(signal: &Signal, bits: u64) -> Option<Rational> {
+    let Encoding::Number { scale, offset, .. } = &signal.encoding else { return None };
+    Rational::integer(signal.raw_of(bits)).times(*scale)?.plus(*offset)
+}

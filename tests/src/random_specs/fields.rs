@@ -1,0 +1,369 @@
+//! Fields: numbers, floats, texts, named values, status words, packed values and words.
+
+use canspec_codegen::model::Unit;
+use canspec_codegen::number::Rational;
+
+use super::draft::{Draft, Limited};
+use super::names::Scope;
+use super::yaml::{Map, list};
+
+/// Steps of scaled numbers.
+const SCALES: [&str; 10] = ["1/10", "0.1", "1/1000", "1/1024", "0.02", "5", "10", "3/8", "-1/2", "1/3"];
+/// Physical values of raw 0.
+const OFFSETS: [&str; 5] = ["-40", "100", "0xFD", "1/2", "-0.5"];
+/// The widest number that is scaled.
+const SCALED: u8 = 22;
+
+/// Where the fields of a message stand.
+pub struct Site<'a> {
+    /// The first byte that is free, and the length.
+    pub first: u8,
+    pub length: u8,
+    /// The kinds of frames that the message has.
+    pub kinds: &'a [&'static str],
+    /// A field of the identifier or the header that replies can show by the type of a value.
+    pub spare: Option<&'a str>,
+    /// Whether some field is in every frame, and none in requests alone.
+    pub is_member: bool,
+}
+
+/// Limits of a number.
+struct Grid {
+    scale: Rational,
+    offset: Rational,
+    lowest: i128,
+    highest: i128,
+}
+
+impl Grid {
+    /// Writes the physical value of a raw value.
+    fn physical(&self, raw: i128) -> String {
+        let value = Rational::integer(raw).times(self.scale).and_then(|value| value.plus(self.offset));
+        value.expect("the numbers are small").fraction()
+    }
+
+    /// Writes the range between two raw values.
+    fn range(&self, first: i128, last: i128) -> String {
+        let (first, last) = if self.scale < Rational::ZERO { (last, first) } else { (first, last) };
+        format!("{}..{}", self.physical(first), self.physical(last))
+    }
+}
+
+impl Draft {
+    /// Returns the fields of a message.
+    pub fn fields(&mut self, site: &Site) -> Map {
+        let (mut fields, mut scope, mut first) = (Map::default(), Scope::default(), site.first);
+        let mut has_reply = false;
+        while first < site.length {
+            if self.chance(15) && !(site.is_member && fields.is_empty()) {
+                first += 1;
+                continue;
+            }
+            let count = self.random.u8(1..=site.length - first);
+            let field = self.field(first, count, &mut scope, site, &mut has_reply);
+            let name = self.names.plain(&mut scope);
+            fields.put(name, field);
+            first += count;
+        }
+        fields
+    }
+
+    /// Returns a field of so many bytes.
+    pub fn field(&mut self, first: u8, count: u8, scope: &mut Scope, site: &Site, has_reply: &mut bool) -> Map {
+        let place = self.bytes(first, count);
+        if self.chance(12) {
+            let mut packed = self.packed(first, count, scope);
+            self.restrict(&mut packed, site, has_reply);
+            return self.with_types(packed, &[], 8 * count);
+        }
+        let mut field = Map::of([("bytes", place)]);
+        if count <= 4 && self.chance(25) {
+            let parts = self.parts(8 * count, scope);
+            field.put("fields", parts);
+            self.refer(&mut field);
+            return self.with_types(field, &[], 8 * count);
+        }
+        if self.chance(8) && !site.is_member && count < 5 {
+            return self.constant(field, count, site);
+        }
+        self.fill(&mut field, 8 * count);
+        self.restrict(&mut field, site, has_reply);
+        self.with_types(field, &[], 8 * count)
+    }
+
+    fn bytes(&mut self, first: u8, count: u8) -> String {
+        let last = first + count - 1;
+        match (count, self.random.bool()) {
+            (1, _) => first.to_string(),
+            (_, true) => format!("{first}..{last}"),
+            (_, false) => format!("{last}..{first}"),
+        }
+    }
+
+    /// Adds `in` and `reply`.
+    fn restrict(&mut self, field: &mut Map, site: &Site, has_reply: &mut bool) {
+        if !site.is_member && self.chance(8) {
+            let kinds = self.some(site.kinds);
+            field.put("in", list(kinds));
+        }
+        if let Some(spare) = site.spare.filter(|_| !*has_reply && self.chance(12)) {
+            *has_reply = true;
+            let value = self.random.u8(..4);
+            field.put("reply", Map::of([(spare, self.number(value))]));
+        }
+    }
+
+    fn constant(&mut self, mut field: Map, count: u8, site: &Site) -> Map {
+        let value = self.random.u32(..) >> (32 - 8 * u32::from(count));
+        let value = self.number(value);
+        field.put("const", value);
+        if self.chance(20) {
+            let values = self.values(&[0, 1]);
+            field.put("values", values);
+        }
+        if self.chance(20) {
+            let kinds = self.some(site.kinds);
+            field.put("in", list(kinds));
+        }
+        self.remark(&mut field);
+        field
+    }
+
+    /// Returns the fields of a word.
+    fn parts(&mut self, width: u8, scope: &mut Scope) -> Map {
+        let (mut parts, mut low) = (Map::default(), 0);
+        while low < width {
+            let widest = if self.chance(60) { 4 } else { 32 };
+            let bits = self.random.u8(1..=widest.min(width - low));
+            if !self.chance(20) || parts.is_empty() {
+                let (name, part) = (self.names.plain(scope), self.part(low, bits));
+                parts.put(name, part);
+            }
+            low += bits;
+        }
+        parts
+    }
+
+    fn part(&mut self, low: u8, bits: u8) -> Map {
+        let mut part = Map::of([("bits", bits_of(low, bits))]);
+        self.fill(&mut part, bits);
+        self.with_types(part, &[], bits)
+    }
+
+    /// Says what so many bits mean.
+    fn fill(&mut self, field: &mut Map, bits: u8) {
+        let whole: Vec<_> = self.whole.iter().filter(|known| known.bits == bits).cloned().collect();
+        if !whole.is_empty() && self.chance(25) {
+            let known = self.one(&whole);
+            return field.put("type", known.name);
+        }
+        match self.random.u8(..100) {
+            0..=14 => self.named(field, bits),
+            15..=29 => self.status(field, bits),
+            30..=44 if bits == 32 => self.float(field),
+            30..=39 if bits.is_multiple_of(8) => self.ascii(field, bits / 8),
+            40..=44 => return self.limited(field, bits),
+            _ => drop(self.quantity(field, bits)),
+        }
+        self.remark(field);
+    }
+
+    fn named(&mut self, field: &mut Map, bits: u8) {
+        let greatest = u64::MAX >> (64 - bits);
+        let values = self.values(&[0, 1, greatest, greatest / 2, greatest - greatest / 4]);
+        if self.chance(20) {
+            let names: Vec<_> = values.0.values().filter_map(|name| name.as_str().map(str::to_owned)).collect();
+            field.put("default", self.one(&names));
+        }
+        field.put("values", values);
+    }
+
+    /// Names some of some raw values, one at least.
+    fn values(&mut self, raw: &[u64]) -> Map {
+        let raw: std::collections::BTreeSet<_> = self.some(raw).into_iter().collect();
+        let signed: Vec<_> = raw.into_iter().map(i128::from).collect();
+        self.names_of(&signed)
+    }
+
+    fn names_of(&mut self, raw: &[i128]) -> Map {
+        let mut scope = Scope::default();
+        Map::of(raw.iter().map(|raw| (self.number(*raw), self.names.name(&mut scope))).collect::<Vec<_>>())
+    }
+
+    fn status(&mut self, field: &mut Map, bits: u8) {
+        let (mut status, mut scope) = (Map::default(), Scope::default());
+        for bit in 0..bits {
+            if bit == 0 || (status.0.len() < 6 && self.chance(40)) {
+                let (name, known) = (self.names.name(&mut scope), self.status_bit(bit));
+                status.put(name, known);
+            }
+        }
+        field.put("status", status);
+    }
+
+    fn status_bit(&mut self, bit: u8) -> Map {
+        let mut known = Map::of([("bit", bit.to_string())]);
+        if self.chance(40) {
+            known.put("severity", self.one(&["state", "alarm", "fault"]));
+        }
+        for key in ["set_when", "clear_when", "effect", "led"] {
+            if self.chance(15) {
+                let text = self.text();
+                known.put(key, text);
+            }
+        }
+        self.remark(&mut known);
+        known
+    }
+
+    fn float(&mut self, field: &mut Map) {
+        field.put("as", "float");
+        self.unit(field);
+        if self.chance(30) {
+            field.put("range", self.one(&["0..100", "-1/3..20.06", "0.1..0.2", "-1000000..1000000"]));
+            if self.chance(30) {
+                field.put("default", "0.125");
+                field.put("range", "0..1");
+            }
+        }
+    }
+
+    fn unit(&mut self, field: &mut Map) {
+        if self.chance(60) {
+            let symbols: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
+            field.put("unit", self.one(&symbols));
+        }
+    }
+
+    fn ascii(&mut self, field: &mut Map, count: u8) {
+        field.put("as", "text");
+        if self.chance(20) {
+            field.put("default", if count > 1 { "A\"" } else { "\\" });
+        }
+    }
+
+    /// Makes a number, and returns how to write its values and which are allowed.
+    fn quantity(&mut self, field: &mut Map, bits: u8) -> (Grid, i128, i128) {
+        let grid = self.grid(field, bits);
+        self.unit(field);
+        let span = grid.highest - grid.lowest;
+        let first = grid.lowest + self.one(&[0, 1.min(span), span / 4]);
+        let last = grid.highest - self.one(&[0, 1.min(span), span / 4]);
+        let (first, last) = (first.min(last), first.max(last));
+        let has_range = self.chance(45);
+        if has_range {
+            field.put("range", grid.range(first, last));
+        }
+        let is_number = ["unit", "scale", "offset", "range"].iter().any(|key| field.has(key));
+        let edges = [grid.highest, grid.lowest, grid.highest - 1, grid.lowest + 1];
+        let special: Vec<_> = edges.into_iter().filter(|raw| !has_range || !(first..=last).contains(raw)).collect();
+        let special: Vec<_> = special.into_iter().filter(|raw| (grid.lowest..=grid.highest).contains(raw)).collect();
+        if is_number && !special.is_empty() && self.chance(35) {
+            let mut special = self.some(&special);
+            special.sort_unstable();
+            special.dedup();
+            let values = self.names_of(&special);
+            field.put("values", values);
+        }
+        if self.chance(20) {
+            field.put("default", grid.physical(self.one(&[first, last])));
+        }
+        (grid, first, last)
+    }
+
+    fn grid(&mut self, field: &mut Map, bits: u8) -> Grid {
+        let signed = bits > 1 && self.chance(30);
+        if signed {
+            field.put("as", "signed");
+        } else if self.chance(10) {
+            field.put("as", "unsigned");
+        }
+        let mut chosen = |draft: &mut Self, key: &str, of: &[&'static str], percent| {
+            let text = (bits <= SCALED && draft.chance(percent)).then(|| draft.one(of))?;
+            field.put(key, text);
+            Rational::parse(text)
+        };
+        let scale = chosen(self, "scale", &SCALES, 45).unwrap_or(Rational::ONE);
+        let offset = chosen(self, "offset", &OFFSETS, 25).unwrap_or(Rational::ZERO);
+        let half = 1_i128 << (bits - 1);
+        let (lowest, highest) = if signed { (-half, half - 1) } else { (0, 2 * half - 1) };
+        Grid { scale, offset, lowest, highest }
+    }
+
+    /// Makes a number of a type that device models can limit.
+    fn limited(&mut self, field: &mut Map, bits: u8) {
+        let mut keys = Map::default();
+        let (grid, first, last) = self.quantity(&mut keys, bits);
+        if !keys.has("range") {
+            keys.0.remove("values");
+        }
+        keys.0.remove("default");
+        let quarter = (last - first) / 4;
+        let narrowed = [(first, last), (first + quarter, last), (first, last - quarter), (first, first)];
+        let ranges = narrowed.map(|(first, last)| (grid.range(first, last), grid.physical(last)));
+        let name = self.add_type(keys);
+        self.limited.push(Limited { name: name.clone(), ranges: ranges.to_vec() });
+        field.put("type", name);
+    }
+
+    /// Returns a packed value that fills so many bytes.
+    fn packed(&mut self, first: u8, count: u8, scope: &mut Scope) -> Map {
+        let (mut parts, mut format) = (Map::default(), String::new());
+        let mut next = first;
+        while next < first + count {
+            if !format.is_empty() || self.chance(20) {
+                format += self.one(&["-", "/", " ", "\"", "\\", "V", ".", "``", "#"]);
+            }
+            let bytes = self.random.u8(1..=(first + count - next).min(2));
+            let (place, name) = (self.bytes(next, bytes), self.names.plain(scope));
+            let mut part = Map::of([("bytes", place)]);
+            match self.random.u8(..6) {
+                0 => self.packed_word(&mut part, &mut format, bytes, scope),
+                1 | 2 => {
+                    part.put("as", "text");
+                    format += &format!("{{{name}}}");
+                    self.remark(&mut part);
+                }
+                _ => self.packed_number(&mut part, &mut format, &name, 8 * bytes),
+            }
+            let part = self.with_types(part, &[], 0);
+            parts.put(name, part);
+            next += bytes;
+        }
+        let mut packed = Map::of([("format", format)]);
+        packed.put("fields", parts);
+        self.remark(&mut packed);
+        packed
+    }
+
+    fn packed_number(&mut self, part: &mut Map, format: &mut String, name: &str, bits: u8) {
+        let digits = if self.random.bool() { String::new() } else { format!(":{}", self.random.u8(1..=6)) };
+        *format += &format!("{{{name}{digits}}}");
+        if self.chance(40) {
+            let greatest = u32::MAX >> (32 - bits);
+            part.put("range", format!("0..{}", self.random.u32(..=greatest)));
+        }
+        self.remark(part);
+    }
+
+    fn packed_word(&mut self, word: &mut Map, format: &mut String, bytes: u8, scope: &mut Scope) {
+        let mut parts = Map::default();
+        let split = self.random.u8(1..8 * bytes);
+        for (low, bits) in [(split, 8 * bytes - split), (0, split)] {
+            let name = self.names.plain(scope);
+            let mut part = Map::of([("bits", bits_of(low, bits))]);
+            if low == 0 {
+                *format += self.one(&["-", "/", "x"]);
+            }
+            self.packed_number(&mut part, format, &name, bits);
+            parts.put(name, part);
+        }
+        word.put("fields", parts);
+        self.refer(word);
+    }
+}
+
+/// Writes the place of some bits.
+pub fn bits_of(low: u8, bits: u8) -> String {
+    if bits == 1 { low.to_string() } else { format!("{}..{low}", low + bits - 1) }
+}
