@@ -10,8 +10,12 @@ rules! {
     RUST_NAME "rust_name" Check ERROR;
 }
 
+/// The most device models that a byte numbers.
+const MOST_MODELS: usize = 256;
+
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     check_types(protocol, diagnostics);
+    check_count(protocol, diagnostics);
     let module = Doc { path: Path::default().key("protocol"), ..Doc::default() };
     check_names("module", std::iter::once((protocol.name.clone(), protocol.name.as_str(), &module)), diagnostics);
     for message in &protocol.messages {
@@ -31,6 +35,16 @@ fn check_types(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     check_names("type", names, diagnostics);
 }
 
+/// Tests that a byte numbers all device models.
+fn check_count(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    if let Some(first) = protocol.models.iter().nth(MOST_MODELS) {
+        let count = protocol.models.len();
+        let text = format!("there are {count} device models, and Rust numbers them from 0 to {}", MOST_MODELS - 1);
+        let help = "give models that differ in nothing but their item number one name, and list the numbers in `items`";
+        diagnostics.push(Diagnostic::error(&RUST_NAME, first.doc.path.at_key(), text).help(help));
+    }
+}
+
 /// Reports names that are reserved, or equal after conversion.
 fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a Doc)>, diagnostics: &mut Diagnostics) {
     let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
@@ -45,5 +59,29 @@ fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a
             diagnostics.push(diagnostic.other(earlier.path.at_key(), "the other name"));
         }
         seen.push((rust, name, doc));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::source::Source;
+    use crate::{Outcome, compile};
+
+    /// Compiles a spec of so many device models.
+    fn models(count: usize) -> Outcome {
+        let models: Vec<_> = (0..count).map(|number| format!("M{number}: {{section: \"1\"}}")).collect();
+        let spec = format!(
+            "canspec: 1\nprotocol: p\ntitle: T\ndocument: {{title: T, version: V}}\nlength: 8\n\
+             identifier: {{command: {{bits: 10..0}}}}\naccess: {{read: {{request: {{}}}}}}\nmodels: {{{}}}\n",
+            models.join(", ")
+        );
+        compile(Source::new("models.yaml", spec.into()).expect("plain text"))
+    }
+
+    #[test]
+    fn a_byte_numbers_256_device_models_and_no_more() {
+        assert!(models(256).protocol.is_some());
+        let errors = models(257).diagnostics.concise();
+        assert!(errors.contains("error[rust_name]: there are 257 device models, and Rust numbers them from 0 to 255"));
     }
 }

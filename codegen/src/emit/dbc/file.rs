@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
+use super::losses::is_writable;
 use super::names::short;
 use crate::model::Range;
 use crate::number::Rational;
@@ -128,9 +129,12 @@ impl DbcMessage {
     }
 
     fn write_values(&self, out: &mut Formatter<'_>) -> fmt::Result {
-        for (signal, name) in self.signals.iter().zip(self.names()).filter(|(signal, _)| !signal.named.is_empty()) {
-            let values: Vec<_> = signal.named.iter().map(|(raw, text)| format!("{raw} \"{text}\"")).collect();
-            writeln!(out, "VAL_ {} {name} {} ;", self.number(), values.join(" "))?;
+        for (signal, name) in self.signals.iter().zip(self.names()) {
+            let named = signal.named.iter().filter(|(raw, _)| is_writable(*raw));
+            let values: Vec<_> = named.map(|(raw, text)| format!("{raw} \"{text}\"")).collect();
+            if !values.is_empty() {
+                writeln!(out, "VAL_ {} {name} {} ;", self.number(), values.join(" "))?;
+            }
         }
         Ok(())
     }

@@ -13,6 +13,11 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     losses.extend(about(protocol, |signal| {
         (!signal.model_ranges.is_empty()).then_some("has limits that depend on the device model")
     }));
+    losses.extend(about(protocol, |signal| {
+        let named = signal.encoding.enumeration().map_or(&signal.specials, |known| &protocol[known].values);
+        let is_beyond = named.iter().any(|value| !is_writable(value.raw));
+        is_beyond.then_some("names raw values from 2^63 on")
+    }));
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
         losses.push("which request a reply answers, and who answers it".to_owned());
     }
@@ -20,6 +25,11 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
         losses.push("times and procedures of the document, but for the cycles of reports".to_owned());
     }
     losses
+}
+
+/// Tests whether readers of a DBC hold a raw value that has a name: a signed number of 64 bits.
+pub fn is_writable(raw: i128) -> bool {
+    i64::try_from(raw).is_ok()
 }
 
 /// Names the fields of the identifier with bits outside the mask.

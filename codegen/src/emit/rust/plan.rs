@@ -28,6 +28,7 @@ use exchange::{Access, Accesses};
 use identifier::{Base, Identifier};
 use message::Message;
 use models::Models;
+use naming::Pool;
 use recognition::Direction;
 use selector::{InData, Selectors, Source};
 use set::Set;
@@ -79,25 +80,30 @@ pub struct Plan {
 impl Plan {
     /// Settles what the module of a protocol consists of.
     pub fn new(protocol: &Protocol, options: &Options) -> Self {
-        let (types, selectors) = (&Types::new(protocol), selector::selectors(protocol));
-        let (models, accesses) = (Models::new(protocol, options.float), Accesses::new(protocol, &selectors));
+        let (types, mut constants) = (&Types::new(protocol), Pool::of_constants());
+        let selectors = selector::selectors(protocol, &mut constants);
+        let addresses = &address::addresses(protocol, &mut constants);
+        let modes = protocol.modes.iter().map(|known| Mode::new(protocol, addresses, known, &mut constants)).collect();
+        let accesses = Accesses::new(protocol, &selectors, &mut constants);
+        let models = Models::new(protocol, options.float, &mut constants);
         let context = &Context { protocol, types, models: &models, float: options.float };
         let planner = message::Planner { context, selectors: &selectors, accesses: &accesses };
         let messages = protocol.messages.ids().map(|id| planner.message(id)).collect();
         let planner = recognition::Planner { protocol, types, selectors: &selectors, messages: &messages };
         let course = &protocol.recognition;
+        let address_types = protocol.address_types.iter().zip(addresses);
         Self {
             base: Base::new(&protocol.identifier),
             in_data: selector::in_data(protocol, &selectors),
             identifier: Identifier::new(protocol, types),
             continuation: continuation(protocol, &selectors),
             targets: Targets::new(protocol),
-            address_types: protocol.address_types.iter().map(|known| AddressType::new(protocol, known)).collect(),
-            modes: protocol.modes.iter().map(|mode| Mode::new(protocol, mode)).collect(),
+            address_types: address_types.map(|(known, name)| AddressType::new(protocol, name, known)).collect(),
+            modes,
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),
             packed: Packed::all(protocol, types),
-            sets: protocol.messages.ids().map(|id| Set::new(protocol, types, &messages, id)).collect(),
+            sets: protocol.messages.ids().map(|id| Set::new(protocol, types, &messages, addresses, id)).collect(),
             variants: variant::variants(protocol, types),
             requests: planner.direction(&course.requests),
             replies: planner.direction(&course.replies),

@@ -6,7 +6,7 @@ use super::doc::{self, Comment};
 use super::identifier::field_place;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{Pool, camel_case, ident, screaming};
-use crate::model::{self, AddressPattern, Doc, ModeId, Protocol, Table};
+use crate::model::{self, AddressPattern, AddressTypeId, Doc, ModeId, Protocol, Table};
 
 /// A kind of address.
 pub struct AddressType {
@@ -116,13 +116,21 @@ impl Number {
     }
 }
 
+/// The constants of the kinds of addresses.
+pub type Addresses = Table<AddressTypeId, Ident>;
+
+/// Names the constants of the kinds of addresses.
+pub fn addresses(protocol: &Protocol, constants: &mut Pool) -> Addresses {
+    protocol.address_types.map(|known| constants.constant(&format!("{}_ADDRESS", known.name)))
+}
+
 impl AddressType {
     /// Plans a kind of address.
-    pub fn new(protocol: &Protocol, address: &model::AddressType) -> Self {
+    pub fn new(protocol: &Protocol, constant: &Ident, address: &model::AddressType) -> Self {
         let title = doc::title(&address.doc, &address.name);
         let sentence = doc::sentence_of(&format!("{title}: {}", range(address)));
         Self {
-            constant: address_name(&address.name),
+            constant: constant.clone(),
             comment: Comment::item(protocol, &address.doc, &sentence, None),
             name: address.name.clone(),
             first: number(address.first),
@@ -145,43 +153,37 @@ fn number(number: i64) -> TokenStream {
     u32::try_from(number).map_or_else(|_| decimal(number), |number| hexadecimal(number, 8))
 }
 
-/// Names the constant of an address type.
-pub fn address_name(name: &str) -> Ident {
-    ident(&format!("{}_ADDRESS", name.to_ascii_uppercase()))
-}
-
 impl Mode {
     /// Plans a mode.
-    pub fn new(protocol: &Protocol, mode: &model::Mode) -> Self {
+    pub fn new(protocol: &Protocol, addresses: &Addresses, mode: &model::Mode, constants: &mut Pool) -> Self {
         let sentence = doc::sentence_of(&doc::title(&mode.doc, &mode.name));
         let patterns = [&mode.request, &mode.one, &mode.each, &mode.coordinator];
         Self {
-            constant: ident(&format!("{}_MODE", mode.name.to_ascii_uppercase())),
+            constant: constants.constant(&format!("{}_MODE", mode.name)),
             comment: Comment::item(protocol, &mode.doc, &sentence, None),
             name: mode.name.clone(),
-            target: mode.target.map(|id| address_name(&protocol[id].name)),
-            patterns: patterns.map(|known| Some(Pattern::new(protocol, known.as_ref()?))),
+            target: mode.target.map(|id| addresses[id].clone()),
+            patterns: patterns.map(|known| Some(Pattern::new(protocol, addresses, known.as_ref()?))),
         }
     }
 }
 
 impl Pattern {
-    fn new(protocol: &Protocol, pattern: &AddressPattern) -> Self {
+    fn new(protocol: &Protocol, kinds: &Addresses, pattern: &AddressPattern) -> Self {
         let fields = protocol.identifier.fields.iter().filter(|field| pattern.mask & field.mask() != 0);
         let constants =
             fields.map(|field| (screaming(&field.name), hexadecimal(field.get(pattern.value), field.width)));
-        let addresses = pattern.addresses.iter().map(|known| Address::new(protocol, known));
+        let addresses = pattern.addresses.iter().map(|known| Address::new(protocol, kinds, known));
         Self { constants: constants.collect(), addresses: addresses.collect() }
     }
 }
 
 impl Address {
-    fn new(protocol: &Protocol, address: &model::Address) -> Self {
+    fn new(protocol: &Protocol, kinds: &Addresses, address: &model::Address) -> Self {
         let (place, width) = field_place(protocol, address.field);
-        let kind = &protocol[address.address_type];
-        let excluded = address.excluded.iter().filter(|_| !kind.strict);
+        let excluded = address.excluded.iter().filter(|_| !protocol[address.address_type].strict);
         let excluded = excluded.map(|(first, last)| (hexadecimal(*first, width), hexadecimal(*last, width)));
-        Self { place, kind: address_name(&kind.name), excluded: excluded.collect() }
+        Self { place, kind: kinds[address.address_type].clone(), excluded: excluded.collect() }
     }
 }
 
@@ -227,6 +229,10 @@ fn sender(protocol: &Protocol) -> Option<&model::AddressType> {
 impl Sender {
     fn new(sender: &model::AddressType) -> Self {
         let text = format!("Returns the route from another `{}` than the usual one: {}.", sender.name, range(sender));
-        Self { argument: ident(&sender.name), number: Number::of(sender), comment: Comment::line(text) }
+        Self {
+            argument: ident(&sender.name.to_ascii_lowercase()),
+            number: Number::of(sender),
+            comment: Comment::line(text),
+        }
     }
 }

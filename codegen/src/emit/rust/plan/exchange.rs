@@ -5,7 +5,7 @@ use proc_macro2::{Ident, TokenStream};
 use super::doc::{self, Comment};
 use super::literal::decimal;
 use super::models::Models;
-use super::naming::ident;
+use super::naming::{Pool, ident};
 use super::selector::{Filter, Selectors};
 use crate::model::{
     AccessId, Answers, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
@@ -79,8 +79,8 @@ struct Shown {
 
 impl Accesses {
     /// Plans what messages share.
-    pub fn new(protocol: &Protocol, selectors: &Selectors) -> Self {
-        let ways = ways(protocol);
+    pub fn new(protocol: &Protocol, selectors: &Selectors, constants: &mut Pool) -> Self {
+        let ways = ways(protocol, constants);
         let constant = |message: &Message, id: ExchangeId| {
             let (known, frames) = (&message[id], frames(protocol, message, id));
             let is_its = |way: &&Way| (way.access, way.set) == (known.access, known.set) && way.frames == frames;
@@ -99,7 +99,7 @@ impl Accesses {
 }
 
 /// Returns the ways to use each access; several are told apart by number.
-fn ways(protocol: &Protocol) -> Vec<Way> {
+fn ways(protocol: &Protocol, constants: &mut Pool) -> Vec<Way> {
     let mut known: Vec<Way> = Vec::new();
     for (access, of) in protocol.accesses.entries() {
         for (message, id, set) in protocol.messages.iter().flat_map(|message| exchanges(message, access)) {
@@ -107,8 +107,13 @@ fn ways(protocol: &Protocol) -> Vec<Way> {
             let same: Vec<_> = known.iter().filter(|way| way.access == access && way.set == set).collect();
             if same.iter().all(|way| way.frames != frames) {
                 let suffix = if same.is_empty() { String::new() } else { format!("_{}", same.len() + 1) };
-                let name = exchange_name(protocol, &of.name, set).to_ascii_uppercase();
-                known.push(Way { constant: ident(&format!("{name}_ACCESS{suffix}")), access, set, frames });
+                let name = exchange_name(protocol, &of.name, set);
+                known.push(Way {
+                    constant: constants.constant(&format!("{name}_ACCESS{suffix}")),
+                    access,
+                    set,
+                    frames,
+                });
             }
         }
     }

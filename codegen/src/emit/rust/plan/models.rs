@@ -1,7 +1,6 @@
 //! Device models, and the limits that depend on them.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::format_ident;
 
 use super::doc::{self, Comment};
 use super::encoding::whole;
@@ -60,7 +59,7 @@ pub struct Limits {
 
 impl Models {
     /// Plans the device models.
-    pub fn new(protocol: &Protocol, float: Float) -> Self {
+    pub fn new(protocol: &Protocol, float: Float, constants: &mut Pool) -> Self {
         let mut variants = Pool::default();
         let rows = protocol.models.map(|model| {
             let title = model.doc.title.as_ref().map_or_else(String::new, |title| format!(": {}", title.in_rust_doc()));
@@ -74,33 +73,35 @@ impl Models {
         let has_within = protocol.frames.iter().any(|frame| depends_on_model(protocol, frame));
         let mut models = Self { rows, has_within, limits: Vec::new(), sources: Vec::new() };
         for signal in protocol.messages.iter().flat_map(|message| &message.signals) {
-            models.add_limits(protocol, signal, float);
+            models.add_limits(protocol, signal, float, constants);
         }
         models
     }
 
     /// Adds the limits of a signal, unless another has the same.
-    fn add_limits(&mut self, protocol: &Protocol, signal: &Signal, float: Float) {
+    fn add_limits(&mut self, protocol: &Protocol, signal: &Signal, float: Float, constants: &mut Pool) {
         if signal.model_ranges.is_empty() || self.limits_of(protocol, signal).is_some() {
             return;
         }
         let source = Source::new(protocol, signal);
-        let limits = self.limits(signal, &source.ranges, float);
+        let limits = self.limits(signal, &source.ranges, float, constants);
         self.limits.push(limits);
         self.sources.push(source);
     }
 
-    fn limits(&self, signal: &Signal, ranges: &Table<ModelId, Option<Range>>, float: Float) -> Limits {
+    fn limits(
+        &self,
+        signal: &Signal,
+        ranges: &Table<ModelId, Option<Range>>,
+        float: Float,
+        constants: &mut Pool,
+    ) -> Limits {
         let of = type_name(signal).unwrap_or(&signal.name);
-        let mut name = format!("{}_LIMITS", of.to_ascii_uppercase());
-        while self.limits.iter().any(|limits| limits.constant == name) {
-            name.push('_');
-        }
         let (kind, is_whole) = (whole(signal), whole(signal).is_some());
         let ends = |range: Range| ends(range, is_whole, float);
         let rows = ranges.iter().zip(&self.rows).map(|(range, model)| (model.variant.clone(), range.map(ends)));
         Limits {
-            constant: format_ident!("{name}"),
+            constant: constants.constant(&format!("{of}_LIMITS")),
             comment: Comment::line(format!("Limits of `{of}` by device model.")),
             kind: kind.unwrap_or_else(|| physical_type(float)),
             rows: rows.collect(),

@@ -1,5 +1,7 @@
 //! Rust names for the names of a spec; two items never get the same one.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Ident, Span};
 
 use crate::model::Signal;
@@ -84,6 +86,9 @@ const TAKEN: [&str; 76] = [
     "Word",
 ];
 
+/// Constants that every module has.
+const CONSTANTS: [&str; 3] = ["CONTINUATION", "FRAME", "MESSAGES"];
+
 /// Methods and constants that every message has.
 const OF_MESSAGES: [&str; 13] = [
     "RESERVED",
@@ -104,13 +109,18 @@ const OF_MESSAGES: [&str; 13] = [
 /// Gives every name once.
 #[derive(Default)]
 pub struct Pool {
-    taken: Vec<String>,
+    taken: BTreeSet<String>,
 }
 
 impl Pool {
     /// Returns the pool of the types of a module.
     pub fn of_types() -> Self {
         Self::without(TAKEN.into_iter().map(str::to_owned))
+    }
+
+    /// Returns the pool of the constants of a module.
+    pub fn of_constants() -> Self {
+        Self::without(CONSTANTS.into_iter().map(str::to_owned))
     }
 
     /// Returns the pool of a message's methods and constants.
@@ -123,30 +133,34 @@ impl Pool {
         Self { taken: taken.collect() }
     }
 
+    /// Takes the name of a constant for a name of the spec, which can differ from another in case alone.
+    pub fn constant(&mut self, name: &str) -> Ident {
+        self.take(name.to_ascii_uppercase(), "_")
+    }
+
     /// Takes a name, with the suffix if it is taken already, and with as many more as it needs.
     pub fn take(&mut self, name: String, suffix: &str) -> Ident {
         let mut name = name;
         while self.taken.contains(&name) {
             name.push_str(suffix);
         }
-        self.taken.push(name.clone());
+        self.taken.insert(name.clone());
         ident(&name)
     }
 }
 
 /// Tests whether a name is a word of the language, so that nothing can be called so.
 pub fn is_word_of_rust(name: &str) -> bool {
-    syn::parse_str::<Ident>(name).is_err()
+    // `syn` does not know this one, because the edition decides.
+    name == "gen" || syn::parse_str::<Ident>(name).is_err()
 }
 
 /// Makes an identifier; a word of the language becomes a raw identifier.
 pub fn ident(name: &str) -> Ident {
-    match syn::parse_str::<Ident>(name) {
-        Ok(ident) => ident,
-        Err(_) if matches!(name, "self" | "super" | "crate" | "Self" | "_") => {
-            Ident::new(&format!("{name}_"), Span::call_site())
-        }
-        Err(_) => Ident::new_raw(name, Span::call_site()),
+    match name {
+        "self" | "super" | "crate" | "Self" | "_" => Ident::new(&format!("{name}_"), Span::call_site()),
+        _ if is_word_of_rust(name) => Ident::new_raw(name, Span::call_site()),
+        _ => Ident::new(name, Span::call_site()),
     }
 }
 
@@ -185,4 +199,47 @@ pub fn screaming(name: &str) -> Ident {
 /// Names the member of a signal: with the unit behind it, if there is one.
 pub fn member(signal: &Signal) -> String {
     signal.unit.map_or_else(|| signal.name.clone(), |unit| format!("{}_{}", signal.name, unit.suffix))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::{fs, io};
+
+    use super::*;
+
+    /// Returns the names that the prelude in a file of the runtime exports by `pub use`.
+    fn exported(file: &str) -> io::Result<Vec<String>> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../runtime/src").join(file);
+        let text = fs::read_to_string(path)?;
+        let prelude = text.split_once("pub mod prelude").map_or(&*text, |(_, prelude)| prelude);
+        let uses = prelude.split("pub use ").skip(1).filter_map(|rest| rest.split(';').next());
+        let names = uses.flat_map(|list| list.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_'));
+        Ok(names.filter(|name| !name.is_empty()).map(str::to_owned).collect())
+    }
+
+    #[test]
+    fn no_type_is_called_as_what_every_module_takes_from_the_runtime() -> io::Result<()> {
+        let exported = [exported("plumbing.rs")?, exported("prelude.rs")?].concat();
+        let types: Vec<_> =
+            exported.iter().filter(|name| name.starts_with(|first: char| first.is_uppercase())).collect();
+        assert!(types.len() > 35, "{types:?}");
+        let free: Vec<_> = types.into_iter().filter(|name| !TAKEN.contains(&name.as_str())).collect();
+        assert_eq!(free, Vec::<&String>::new());
+        Ok(())
+    }
+
+    #[test]
+    fn names_that_differ_in_case_alone_get_constants_of_their_own() {
+        let mut constants = Pool::of_constants();
+        let names = ["module_ADDRESS", "Module_ADDRESS", "frame"].map(|name| constants.constant(name).to_string());
+        assert_eq!(names, ["MODULE_ADDRESS", "MODULE_ADDRESS_", "FRAME_"]);
+    }
+
+    #[test]
+    fn every_word_of_the_edition_is_one() {
+        assert!(["gen", "type", "async", "self", "try", "yield"].into_iter().all(is_word_of_rust));
+        assert!(!["union", "auto", "raw", "default"].into_iter().any(is_word_of_rust));
+        assert_eq!(["gen", "self", "union"].map(|name| ident(name).to_string()), ["r#gen", "self_", "union"]);
+    }
 }

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 
 use super::doc::{self, Comment};
 use super::literal::hexadecimal;
-use super::naming::{ident, screaming};
+use super::naming::{Pool, screaming};
 use super::place::Written;
 use crate::model::{Constant, FieldId, Protocol, SelectorId, SelectorPlace, Table};
 
@@ -32,7 +32,7 @@ impl Selector {
         hexadecimal(value, self.width)
     }
 
-    fn new(protocol: &Protocol, id: SelectorId) -> Self {
+    fn new(protocol: &Protocol, id: SelectorId, constants: &mut Pool) -> Self {
         match protocol[id].place {
             SelectorPlace::Identifier(field) => {
                 let (rank, known) = ((None, Some(field)), &protocol[field]);
@@ -40,7 +40,7 @@ impl Selector {
             }
             SelectorPlace::Payload(place) => {
                 let rank = (Some(id), None);
-                Self { source: Source::Data(constant_name(protocol, id)), rank, width: place.width() }
+                Self { source: Source::Data(constant(protocol, id, constants)), rank, width: place.width() }
             }
         }
     }
@@ -50,17 +50,17 @@ impl Selector {
 pub type Selectors = Table<SelectorId, Selector>;
 
 /// Returns every selector.
-pub fn selectors(protocol: &Protocol) -> Selectors {
-    protocol.selectors.ids().map(|id| Selector::new(protocol, id)).collect()
+pub fn selectors(protocol: &Protocol, constants: &mut Pool) -> Selectors {
+    protocol.selectors.ids().map(|id| Selector::new(protocol, id, constants)).collect()
 }
 
 /// Names a payload selector's constant; two places under one name are told apart by number.
-fn constant_name(protocol: &Protocol, id: SelectorId) -> Ident {
+fn constant(protocol: &Protocol, id: SelectorId, constants: &mut Pool) -> Ident {
     let name = &protocol[id].name;
     let earlier = protocol.selectors.entries().take_while(|(other, _)| *other < id);
     let earlier = earlier.filter(|(_, known)| known.name == *name).count();
     let suffix = if earlier == 0 { String::new() } else { format!("_{}", earlier + 1) };
-    ident(&format!("{}_SELECTOR{suffix}", name.to_ascii_uppercase()))
+    constants.constant(&format!("{name}_SELECTOR{suffix}"))
 }
 
 /// The constant of a selector in the data.

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::address::address_name;
+use super::address::Addresses;
 use super::doc::{self, Comment};
 use super::exchange::own_modes;
 use super::message::Message;
@@ -64,6 +64,7 @@ struct Planner<'a> {
     protocol: &'a Protocol,
     types: &'a Types,
     messages: &'a Table<MessageId, Message>,
+    addresses: &'a Addresses,
     id: MessageId,
 }
 
@@ -73,10 +74,11 @@ impl Set {
         protocol: &Protocol,
         types: &Types,
         messages: &Table<MessageId, Message>,
+        addresses: &Addresses,
         id: MessageId,
     ) -> Option<Self> {
         let set = protocol[id].set.as_ref()?;
-        Some(Planner { protocol, types, messages, id }.set(set))
+        Some(Planner { protocol, types, messages, addresses, id }.set(set))
     }
 }
 
@@ -131,8 +133,8 @@ impl Planner<'_> {
 
     fn assembly(&self, members: &[Member]) -> Option<Assembly> {
         let (exchange, own) = (self.messages[self.id].exchanges.first()?, self.protocol[self.id].exchanges.first()?);
-        let node = &self.protocol[self.protocol.answering(own)?];
-        let (exchange, node) = (exchange.constant.clone(), address_name(&node.name));
+        let node = self.addresses[self.protocol.answering(own)?].clone();
+        let exchange = exchange.constant.clone();
         Some(Assembly { exchange, node, others: self.others(members) })
     }
 

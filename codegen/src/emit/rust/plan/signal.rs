@@ -1,7 +1,7 @@
 //! Signals: their constants, and the members of the structs that carry their values.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::format_ident;
+use quote::quote;
 
 use super::doc::{self, Comment};
 use super::encoding::Coding;
@@ -68,6 +68,13 @@ pub struct Member {
     pub put: Ident,
 }
 
+/// The names of a signal.
+struct Names {
+    constant: Ident,
+    field: Ident,
+    specials: Vec<Ident>,
+}
+
 /// What the signals of a protocol are planned from.
 pub struct Context<'a> {
     /// The protocol.
@@ -84,15 +91,16 @@ impl Context<'_> {
     /// Plans a message's signals, whose constants are among its members.
     pub fn signals(&self, id: MessageId, members: &mut Pool) -> Table<SignalId, Signal> {
         let (message, mut fields) = (&self.protocol[id], Pool::default());
+        let constants = message.signals.map(|known| members.take(known.name.to_ascii_uppercase(), "_SIGNAL"));
         let signals = message.signals.entries().map(|(signal, known)| {
-            let constant = members.take(known.name.to_ascii_uppercase(), "_SIGNAL");
-            let field = fields.take(member(known), "_");
-            self.signal(
-                message,
-                known,
-                (constant, field),
-                Coding::new(self.protocol, &self.types.words(id, signal), known),
-            )
+            let (constant, field) = (constants[signal].clone(), fields.take(member(known), "_"));
+            let mut named = |special: &NamedValue| {
+                let name = format!("{constant}_{}", special.name.to_ascii_uppercase());
+                members.take(name, "_VALUE")
+            };
+            let specials = known.specials.iter().map(&mut named).collect();
+            let names = Names { constant: constant.clone(), field, specials };
+            self.signal(message, known, names, Coding::new(self.protocol, &self.types.words(id, signal), known))
         });
         signals.collect()
     }
@@ -101,11 +109,11 @@ impl Context<'_> {
         &self,
         message: &Message,
         signal: &model::Signal,
-        (constant, field): (Ident, Ident),
+        Names { constant, field, specials }: Names,
         coding: Coding,
     ) -> Signal {
         let range = signal.hull(self.protocol.models_of(message));
-        let special = |special: &NamedValue| Special::new(&constant, signal, &coding, special, self.float);
+        let special = |(special, name)| Special::new(name, signal, &coding, special, self.float);
         Signal {
             comment: Comment::line(format!("The signal `{}`.", signal.name)),
             name: signal.name.clone(),
@@ -114,7 +122,7 @@ impl Context<'_> {
             physical: coding.physical(self.float),
             limits: range.map(|range| coding.ends(range, self.float)),
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),
-            specials: signal.specials.iter().map(special).collect(),
+            specials: signal.specials.iter().zip(specials).map(special).collect(),
             member: self.member(message, signal, field, &coding, range),
             constant,
             coding,
@@ -138,15 +146,24 @@ impl Context<'_> {
 }
 
 impl Special {
-    fn new(signal: &Ident, known: &model::Signal, coding: &Coding, special: &NamedValue, float: Float) -> Self {
+    fn new(constant: Ident, known: &model::Signal, coding: &Coding, special: &NamedValue, float: Float) -> Self {
         Self {
-            raw: decimal(special.raw),
+            raw: as_signed(special.raw),
             name: special.name.clone(),
-            constant: format_ident!("{signal}_{}", special.name.to_ascii_uppercase()),
+            constant,
             comment: Comment::line(format!("The value of `{}` that stands for `{}`.", known.name, special.name)),
             value: coding.value_of(known, special.raw, float),
         }
     }
+}
+
+/// Writes a raw value as the signed number that has its bits.
+fn as_signed(raw: i128) -> TokenStream {
+    if i64::try_from(raw).is_ok() {
+        return decimal(raw);
+    }
+    let bits = decimal(raw);
+    quote!(u64::cast_signed(#bits))
 }
 
 fn sentence(signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
