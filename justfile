@@ -25,6 +25,10 @@ fuzz target seconds="600":
     cargo run --quiet --bin seeds -- target/fuzz
     cd tests && cargo fuzz run --sanitizer none {{target}} ../target/fuzz/{{target}} -- -max_total_time={{seconds}}
 
+# Compile so many random specs and their Rust, from a seed on.
+random-specs count="10000" first="0":
+    cargo run --quiet --bin random_specs -- {{count}} {{first}}
+
 # The comparison with other people's programs.
 peers:
     .ci/peers

@@ -131,7 +131,7 @@ impl Draft {
         if becomes_type {
             return names.apart(type_scope, letters);
         }
-        if self.random.u8(..3) == 0 { names.of_document(type_scope) } else { names.name(type_scope) }
+        if self.random.bool() { names.of_document(type_scope) } else { names.name(type_scope) }
     }
 
     /// Moves some keys of a field into types, never those that have to stay.

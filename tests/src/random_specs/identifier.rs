@@ -232,8 +232,9 @@ impl Draft {
             keys.put("send", last.to_string());
             keys.put("outside", "refused");
         }
-        if self.chance(10) && offset == 0 && sign == 1 {
-            let example = Map::of([("bytes", format!("{first:02X}")), ("means", first.to_string())]);
+        if self.chance(40) && offset == 0 && sign == 1 {
+            let mut example = Map::of([("bytes", format!("{first:02X}")), ("means", first.to_string())]);
+            self.refer(&mut example);
             keys.put("examples", list([example]));
         }
         self.remark(&mut keys);

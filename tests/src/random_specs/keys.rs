@@ -72,12 +72,15 @@ impl Keys {
         }
     }
 
-    /// Wants the keys of fields where the reference says that they are used; a type has what any field has.
+    /// Wants the keys of fields where the reference says that they are used, with those of what stands after them; a type
+    /// has what any field has.
     fn want_fields(&mut self) {
         for key in Key::ALL.iter().copied() {
-            let places = used_in(key).into_iter().flat_map(places);
-            let wanted = places.map(|place| (place.to_owned(), key.name().to_owned()));
-            self.wanted.extend(wanted.collect::<Vec<_>>());
+            let inside = self.schema["definitions"]["Field"]["properties"][key.name()].clone();
+            for place in used_in(key).into_iter().flat_map(places) {
+                self.wanted.insert((place.to_owned(), key.name().to_owned()));
+                self.want(&inside, &joined(place, key.name()));
+            }
         }
     }
 

@@ -190,12 +190,12 @@ impl Names {
         let hostile = HOSTILE[self.random.usize(..HOSTILE.len())].clone();
         let Some(known) = known else { return hostile };
         match self.random.u8(..16) {
-            0 => known,
-            1 => format!("{known}_{}", ENDINGS[self.random.usize(..ENDINGS.len())]),
-            2 => format!("{known}_{hostile}"),
-            3 => known.replacen('_', "", 1),
-            4 => split(&known, self.random.usize(..known.len())),
-            5 => {
+            0 | 1 => known,
+            2 => format!("{known}_{}", ENDINGS[self.random.usize(..ENDINGS.len())]),
+            3 => format!("{known}_{hostile}"),
+            4 => known.replacen('_', "", 1),
+            5 => split(&known, self.random.usize(..known.len())),
+            6 | 7 => {
                 let other = &self.used[self.random.usize(..self.used.len())];
                 format!("{known}_{other}")
             }
