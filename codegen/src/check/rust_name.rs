@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{camel_case, is_word_of_rust, member};
-use crate::model::{Doc, Protocol};
+use crate::model::{Doc, Id, ModelId, Protocol};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
 
@@ -37,7 +37,7 @@ fn check_types(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Tests that a byte numbers all device models.
 fn check_count(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    if let Some(first) = protocol.models.iter().nth(MOST_MODELS) {
+    if let Some(first) = protocol.models.get(ModelId::new(MOST_MODELS)) {
         let count = protocol.models.len();
         let text = format!("there are {count} device models, and Rust numbers them from 0 to {}", MOST_MODELS - 1);
         let help = "give models that differ in nothing but their item number one name, and list the numbers in `items`";

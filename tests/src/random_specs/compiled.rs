@@ -78,8 +78,9 @@ impl Crate {
     /// Compiles the modules that are left.
     fn check(&self) -> io::Result<Vec<String>> {
         let modules = self.folder.join("modules.rs");
-        let module =
-            |name: &String| format!("/// A protocol.\npub mod {name} {{ include!({:?}); }}\n", self.file(name));
+        let module = |name: &String| {
+            format!("/// A protocol.\npub mod {name} {{ include!(\"{}\"); }}\n", self.file(name).display())
+        };
         fs::write(&modules, self.modules.iter().map(module).collect::<String>())?;
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let manifest = root.join("compiled");

@@ -33,7 +33,7 @@ impl Draft {
         }
         let examples = self.examples(protocol);
         let (in_sequence, in_messages): (Vec<_>, Vec<_>) = examples.into_iter().partition(|_| self.chance(35));
-        self.add_to_messages(root, in_messages);
+        Self::add_to_messages(root, in_messages);
         self.add_sequence(root, in_sequence);
     }
 
@@ -122,7 +122,7 @@ impl Draft {
         self.refer(map);
     }
 
-    fn add_to_messages(&mut self, root: &mut Value, examples: Vec<Example>) {
+    fn add_to_messages(root: &mut Value, examples: Vec<Example>) {
         for Example { mut map, of, .. } in examples {
             let Some((outer, inner)) = of else { continue };
             if let Some(member) = inner {
@@ -141,7 +141,9 @@ impl Draft {
         let frames: Vec<_> = examples
             .into_iter()
             .map(|Example { mut map, message, .. }| {
-                message.into_iter().for_each(|name| map.put("message", name));
+                if let Some(name) = message {
+                    map.put("message", name);
+                }
                 map
             })
             .collect();

@@ -321,7 +321,7 @@ impl Draft {
                 0 => self.packed_word(&mut part, &mut format, bytes, scope),
                 1 | 2 => {
                     part.put("as", "text");
-                    format += &format!("{{{name}}}");
+                    format.extend(["{", name.as_str(), "}"]);
                     self.remark(&mut part);
                 }
                 _ => self.packed_number(&mut part, &mut format, &name, 8 * bytes),
@@ -338,7 +338,7 @@ impl Draft {
 
     fn packed_number(&mut self, part: &mut Map, format: &mut String, name: &str, bits: u8) {
         let digits = if self.random.bool() { String::new() } else { format!(":{}", self.random.u8(1..=6)) };
-        *format += &format!("{{{name}{digits}}}");
+        format.extend(["{", name, digits.as_str(), "}"]);
         if self.chance(40) {
             let greatest = u32::MAX >> (32 - bits);
             part.put("range", format!("0..{}", self.random.u32(..=greatest)));

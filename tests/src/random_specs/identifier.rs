@@ -177,19 +177,19 @@ impl Draft {
         let controller = self.address(0xF0, 0xF8, true);
         let module = self.address(0, 0x3B, false);
         let pattern = |target_is: &str, source_is: &str| Map::of([(&target, target_is), (&source, source_is)]);
-        self.mode(bus, "one", Some(pattern(&module, &controller)), pattern(&controller, &module), true);
+        self.mode(bus, "one", Some(pattern(&module, &controller)), &pattern(&controller, &module), true);
         if self.chance(40) {
             let group = self.address(0x80, 0x9E, false);
-            self.mode(bus, "each", Some(pattern(&group, &controller)), pattern(&controller, &module), true);
+            self.mode(bus, "each", Some(pattern(&group, &controller)), &pattern(&controller, &module), true);
             if self.random.bool() {
-                self.mode(bus, "coordinator", Some(pattern(&group, &controller)), pattern(&controller, &group), true);
+                self.mode(bus, "coordinator", Some(pattern(&group, &controller)), &pattern(&controller, &group), true);
             }
         }
         if self.chance(40) {
-            self.mode(bus, "each", Some(pattern("0x7F", &controller)), pattern(&controller, &module), true);
+            self.mode(bus, "each", Some(pattern("0x7F", &controller)), &pattern(&controller, &module), true);
         }
         if self.chance(40) {
-            self.mode(bus, "one", None, pattern("0xFF", &module), true);
+            self.mode(bus, "one", None, &pattern("0xFF", &module), true);
         }
     }
 
@@ -203,15 +203,15 @@ impl Draft {
         filling.add(&node, field, 4);
         let module = self.address(0, 9, false);
         let pattern = |bit: &str, node_is: &str| Map::of([(&direction, bit), (&node, node_is)]);
-        self.mode(bus, "one", Some(pattern("1", &module)), pattern("0", &module), true);
+        self.mode(bus, "one", Some(pattern("1", &module)), &pattern("0", &module), true);
         if self.chance(40) {
-            self.mode(bus, "each", Some(pattern("1", "0xF")), pattern("0", &module), true);
+            self.mode(bus, "each", Some(pattern("1", "0xF")), &pattern("0", &module), true);
         }
         if self.chance(30) && extended {
-            self.mode(bus, "coordinator", Some(pattern("1", "0xE")), pattern("0", "0xE"), false);
+            self.mode(bus, "coordinator", Some(pattern("1", "0xE")), &pattern("0", "0xE"), false);
         }
         if self.chance(40) {
-            self.mode(bus, "one", None, pattern("0", &module), true);
+            self.mode(bus, "one", None, &pattern("0", &module), true);
         }
     }
 
@@ -243,7 +243,7 @@ impl Draft {
         name
     }
 
-    fn mode(&mut self, bus: &mut Bus, who: &'static str, request: Option<Map>, reply: Map, shows_sender: bool) {
+    fn mode(&mut self, bus: &mut Bus, who: &'static str, request: Option<Map>, reply: &Map, shows_sender: bool) {
         let mut scope = Scope::default();
         bus.modes.iter().for_each(|mode| _ = scope.take(&mode.name));
         let (name, mut mode, mut answers) = (self.names.name(&mut scope), Map::default(), vec![who]);

@@ -102,7 +102,9 @@ impl Keys {
                 }
             }
             Value::Sequence(items) => {
-                items.iter().for_each(|item| self.count(item, &schema["items"], &joined(place, "[]"), addresses));
+                for item in items {
+                    self.count(item, &schema["items"], &joined(place, "[]"), addresses);
+                }
             }
             Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) | Value::Tagged(_) => {}
         }
@@ -128,7 +130,7 @@ fn places(letter: char) -> Vec<&'static str> {
 }
 
 /// Returns the letters in the column "used in" of the reference.
-pub fn used_in(key: Key) -> Vec<char> {
+fn used_in(key: Key) -> Vec<char> {
     let name = format!("`{}`", key.name());
     let (_, text) = REFERENCE.split_once("### Fields").expect("the reference has fields");
     let rows = text.lines().filter_map(|line| line.strip_prefix('|')).map(|line| line.split('|').collect::<Vec<_>>());

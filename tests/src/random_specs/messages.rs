@@ -170,7 +170,9 @@ impl Draft {
         }
         if first.has_command || self.chance(40) {
             let register = self.register(bus, traffic);
-            register.into_iter().for_each(|(name, value)| pattern.put(name, value));
+            if let Some((name, value)) = register {
+                pattern.put(name, value);
+            }
         }
         let mut message = Map::of([("match", pattern)]);
         message.put("access", list(accesses.iter().map(|access| access.name.clone())));
@@ -272,7 +274,9 @@ impl Draft {
         let mut pattern = Map::of([(name, value)]);
         self.add_refusing(bus, traffic, &refuse, pattern.clone());
         let register = self.register(bus, traffic);
-        register.into_iter().for_each(|(name, value)| pattern.put(name, value));
+        if let Some((name, value)) = register {
+            pattern.put(name, value);
+        }
         let mut message = Map::of([("match", pattern)]);
         message.put("access", list([refused]));
         self.content(bus, &mut message, &["request", "reply"], false);

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::io;
-use std::ops::Range;
 use std::path::Path;
 
 use canspec_codegen::emit::Float;
@@ -33,7 +32,7 @@ impl Run {
     /// # Errors
     ///
     /// If files cannot be written, or cargo does not start.
-    pub fn add(&mut self, seeds: Range<u64>, folder: &Path) -> io::Result<()> {
+    pub fn add(&mut self, seeds: impl Iterator<Item = u64>, folder: &Path) -> io::Result<()> {
         let mut modules = Crate::new(folder)?;
         for seed in seeds {
             let spec = Spec::new(seed);

@@ -43,18 +43,17 @@ pub fn list(items: impl IntoIterator<Item = impl Into<Value>>) -> Value {
 
 /// Writes a spec: its maps in lines down to the entries of each key, and what is inside them in flow style.
 pub fn written(spec: &Value) -> String {
-    let mut text = String::new();
-    for (key, value) in spec.as_mapping().into_iter().flatten() {
+    let entry = |(key, value): (&Value, &Value)| {
         let name = key.as_str().unwrap_or_default();
         match value {
             Value::Mapping(entries) if !entries.is_empty() => {
-                text += &format!("{name}:\n");
-                entries.iter().for_each(|(key, value)| text += &format!("  {}: {}\n", flow(key), flow(value)));
+                let lines = entries.iter().map(|(key, value)| format!("  {}: {}\n", flow(key), flow(value)));
+                format!("{name}:\n{}", lines.collect::<String>())
             }
-            _ => text += &format!("{name}: {}\n", flow(value)),
+            _ => format!("{name}: {}\n", flow(value)),
         }
-    }
-    text
+    };
+    spec.as_mapping().into_iter().flatten().map(entry).collect()
 }
 
 /// Writes a value in one line. JSON is YAML.

@@ -83,7 +83,8 @@ impl Plan {
         let (types, mut constants) = (&Types::new(protocol), Pool::of_constants());
         let selectors = selector::selectors(protocol, &mut constants);
         let addresses = &address::addresses(protocol, &mut constants);
-        let modes = protocol.modes.iter().map(|known| Mode::new(protocol, addresses, known, &mut constants)).collect();
+        let mode = |known| Mode::new(protocol, addresses, known, &mut constants);
+        let addressing = protocol.modes.iter().map(mode).collect();
         let accesses = Accesses::new(protocol, &selectors, &mut constants);
         let models = Models::new(protocol, options.float, &mut constants);
         let context = &Context { protocol, types, models: &models, float: options.float };
@@ -99,7 +100,7 @@ impl Plan {
             continuation: continuation(protocol, &selectors),
             targets: Targets::new(protocol),
             address_types: address_types.map(|(known, name)| AddressType::new(protocol, name, known)).collect(),
-            modes,
+            modes: addressing,
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),
             packed: Packed::all(protocol, types),

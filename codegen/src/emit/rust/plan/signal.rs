@@ -99,8 +99,8 @@ impl Context<'_> {
                 members.take(name, "_VALUE")
             };
             let specials = known.specials.iter().map(&mut named).collect();
-            let names = Names { constant: constant.clone(), field, specials };
-            self.signal(message, known, names, Coding::new(self.protocol, &self.types.words(id, signal), known))
+            let coding = Coding::new(self.protocol, &self.types.words(id, signal), known);
+            self.signal(message, known, Names { constant, field, specials }, coding)
         });
         signals.collect()
     }
