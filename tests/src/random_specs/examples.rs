@@ -173,7 +173,7 @@ fn means(protocol: &Protocol, signal: &Signal, reading: &Reading) -> Option<Valu
             reading.bits.to_string()
         }
         Meaning::Name(text) | Meaning::Text(text) => text.clone(),
-        Meaning::Integer(_) => quantity(signal, Rational::integer(signal.raw_of(reading.bits))),
+        Meaning::Integer(value) => quantity(signal, Rational::integer(*value)),
         Meaning::Number(_) => quantity(signal, exact(signal, reading.bits)?),
         Meaning::Status { set, unknown } => {
             let word = &protocol[signal.encoding.status_word()?];

@@ -1,6 +1,6 @@
 //! Fields: numbers, floats, texts, named values, status words, packed values and words.
 
-use canspec_codegen::model::Unit;
+use canspec_codegen::model::{Numeral, Unit};
 use canspec_codegen::number::Rational;
 
 use super::draft::{Draft, Limited};
@@ -29,6 +29,7 @@ pub struct Site<'a> {
 
 /// Limits of a number.
 struct Grid {
+    numeral: Numeral,
     scale: Rational,
     offset: Rational,
     lowest: i128,
@@ -262,7 +263,8 @@ impl Draft {
             let mut special = self.some(&special);
             special.sort_unstable();
             special.dedup();
-            let values = self.names_of(&special);
+            let raw: Vec<_> = special.into_iter().filter_map(|number| grid.numeral.raw(number)).collect();
+            let values = self.names_of(&raw);
             field.put("values", values);
         }
         if self.chance(20) {
@@ -272,11 +274,10 @@ impl Draft {
     }
 
     fn grid(&mut self, field: &mut Map, bits: u8) -> Grid {
-        let signed = bits > 1 && self.chance(30);
-        if signed {
-            field.put("as", "signed");
-        } else if self.chance(10) {
-            field.put("as", "unsigned");
+        let numeral = self.numeral(field, bits);
+        let (lowest, highest) = numeral.limits(bits);
+        if numeral == Numeral::Bcd {
+            return Grid { numeral, scale: Rational::ONE, offset: Rational::ZERO, lowest, highest };
         }
         let mut chosen = |draft: &mut Self, key: &str, of: &[&'static str], percent| {
             let text = (bits <= SCALED && draft.chance(percent)).then(|| draft.one(of))?;
@@ -285,9 +286,25 @@ impl Draft {
         };
         let scale = chosen(self, "scale", &SCALES, 45).unwrap_or(Rational::ONE);
         let offset = chosen(self, "offset", &OFFSETS, 25).unwrap_or(Rational::ZERO);
-        let half = 1_i128 << (bits - 1);
-        let (lowest, highest) = if signed { (-half, half - 1) } else { (0, 2 * half - 1) };
-        Grid { scale, offset, lowest, highest }
+        Grid { numeral, scale, offset, lowest, highest }
+    }
+
+    fn numeral(&mut self, field: &mut Map, bits: u8) -> Numeral {
+        match self.random.u8(..100) {
+            0..10 if bits.is_multiple_of(4) => {
+                field.put("as", "bcd");
+                Numeral::Bcd
+            }
+            10..40 if bits > 1 => {
+                field.put("as", "signed");
+                Numeral::Signed
+            }
+            40..50 => {
+                field.put("as", "unsigned");
+                Numeral::Unsigned
+            }
+            _ => Numeral::Unsigned,
+        }
     }
 
     /// Makes a number of a type that device models can limit.
@@ -339,8 +356,12 @@ impl Draft {
     fn packed_number(&mut self, part: &mut Map, format: &mut String, name: &str, bits: u8) {
         let digits = if self.random.bool() { String::new() } else { format!(":{}", self.random.u8(1..=6)) };
         format.extend(["{", name, digits.as_str(), "}"]);
+        let is_decimal = bits.is_multiple_of(4) && self.chance(20);
+        if is_decimal {
+            part.put("as", "bcd");
+        }
         if self.chance(40) {
-            let greatest = u32::MAX >> (32 - bits);
+            let greatest = if is_decimal { 10_u32.pow(u32::from(bits / 4)) - 1 } else { u32::MAX >> (32 - bits) };
             part.put("range", format!("0..{}", self.random.u32(..=greatest)));
         }
         self.remark(part);
