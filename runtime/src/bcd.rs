@@ -97,10 +97,6 @@ impl<R: Integer> Raw for Bcd<R> {
     fn is_finite(self) -> bool {
         self.number().is_some()
     }
-
-    fn is_within(self, minimum: Self, maximum: Self) -> bool {
-        (minimum.number()..=maximum.number()).contains(&self.number())
-    }
 }
 
 /// Returns the number in decimal digits.
@@ -126,6 +122,7 @@ mod tests {
     use std::string::ToString;
 
     use super::*;
+    use crate::plumbing::{Legend, Piece, Word};
     use crate::{Error, Payload, Place, Signal, WriteSignal};
 
     #[test]
@@ -152,6 +149,23 @@ mod tests {
         assert_eq!(reply.data()[0], 0x2A);
         let refused = DAY.put(odd, &mut Payload::within_limits("date", [0; 8]));
         assert!(matches!(refused, Err(Error::NotFinite { .. })));
+    }
+
+    #[test]
+    fn a_part_of_a_text_takes_no_more_digits_than_it_has_room_for() {
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        struct Week(Bcd<u8>);
+
+        impl Word for Week {
+            type Raw = u64;
+            const LEGEND: Legend<Self> = Legend::Text(1, &[Piece::number::<Bcd<u8>>(Place::byte(0))]);
+            const FROM_RAW: fn(u64) -> Self = |raw| Self(Raw::from_bits(raw));
+            const RAW: fn(Self) -> u64 = |week| week.0.to_bits();
+        }
+
+        let parsed = ["9", "53", "99", "100", "5A"].map(<Week as Word>::parse);
+        let weeks = [Some(0x09), Some(0x53), Some(0x99), None, None];
+        assert_eq!(parsed, weeks.map(|raw| raw.map(|raw| Week(Bcd::from_raw(raw)))));
     }
 
     #[test]
