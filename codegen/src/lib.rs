@@ -3,6 +3,7 @@
 //! [`compile`] runs the stages in order: source, syntax, lint, resolve, check. Each reports all its errors before the next one starts.
 //! The [`model::Protocol`] it returns serves the interpreter ([`interpret`]) and the emitters ([`emit`]).
 
+#![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 
 mod builder;

@@ -4,5 +4,6 @@
 //!
 //! The features `serde`, `defmt` and `arbitrary` give the optional traits to every type; [`canspec_runtime`] says what each of them does.
 #![no_std]
+#![forbid(unsafe_code)]
 
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));

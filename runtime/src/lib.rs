@@ -13,6 +13,7 @@
 //! | `defmt` | `defmt::Format` |
 //! | `arbitrary` | `arbitrary::Arbitrary` of messages and frames; the crate `arbitrary` needs the standard library |
 #![no_std]
+#![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 
 #[cfg(test)]
