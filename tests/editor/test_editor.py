@@ -72,7 +72,7 @@ def documented(heading):
     return {key for cells in rows(heading) for key in re.findall(r"`(\w+)`", cells[0])}
 
 
-def words(key):
+def choices(key):
     """Returns the words among which a key of a field chooses."""
     [choice] = [cells[2] for cells in rows("Fields") if cells[0].strip() == f"`{key}`"]
     return set(re.findall(r"`(\w+)`", choice))
@@ -142,7 +142,7 @@ class Completion(unittest.TestCase):
         answers = {"one", "each", "coordinator", "nobody"}
         for line, written, words in [
             (TYPE, "  alarms: {status: {fan_fault: {bit: 3, severity: ¦}}}", {"state", "alarm", "fault"}),
-            (TYPE, "  current: {as: ¦}", words("as")),
+            (TYPE, "  current: {as: ¦}", choices("as")),
             (TYPE, "  group: {outside: ¦}", {"refused"}),
             (SIGNAL, "      current: {bytes: 2, in: [¦]}", kinds),
             (ACCESS, "  read: {in: [¦]}", kinds),
