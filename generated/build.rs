@@ -1,4 +1,4 @@
-//! Compiles every spec of `specs/`.
+//! Compiles every spec of `canspec-specs`.
 
 use canspec_codegen::emit::Switch::Gated;
 

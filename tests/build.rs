@@ -1,5 +1,6 @@
-//! Generates codecs of the feature specs, of made-up devices and of whole protocols that do not ship, each also with every option, and a
-//! list of every protocol, those that ship included.
+//! Generates codecs of the feature specs, of made-up devices and of whole protocols that do not
+//! ship. Each is also generated with every option. A list names every protocol, including those
+//! that ship.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

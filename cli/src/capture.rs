@@ -11,7 +11,7 @@ use crate::log::Entry;
 const SECTION: u32 = 0x0A0D_0D0A;
 const INTERFACE: u32 = 1;
 const ENHANCED_PACKET: u32 = 6;
-/// Tells the reader the order of the bytes, here the little end first.
+/// Tells the reader the byte order: little endian.
 const BYTE_ORDER: u32 = 0x1A2B_3C4D;
 /// `LINKTYPE_CAN_SOCKETCAN`.
 const SOCKETCAN: u16 = 227;
@@ -19,11 +19,11 @@ const SOCKETCAN: u16 = 227;
 const NAME: u16 = 2;
 const RESOLUTION: u16 = 9;
 const PLACES: u8 = 9;
-/// Bits beside the identifier.
+/// The flag of a 29-bit identifier.
 const EXTENDED: u32 = 1 << 31;
 const REMOTE: u32 = 1 << 30;
 const ERROR: u32 = 1 << 29;
-/// Marks an FD frame beside the flags that the log has.
+/// The flag of an FD frame. The flags of the log come in addition.
 const FD: u8 = 4;
 
 /// A capture that is being written; each channel of the log is an interface.
@@ -33,7 +33,7 @@ pub struct Capture {
 }
 
 impl Capture {
-    /// Begins a capture, which can be read from then on.
+    /// Begins a capture. It can be read from then on.
     ///
     /// # Errors
     ///
@@ -46,7 +46,7 @@ impl Capture {
         Ok(Self { channels: HashMap::new() })
     }
 
-    /// Writes a frame; one without a stamp is of the time 0, and further digits than those of nanoseconds are cut off.
+    /// Writes a frame. Without a stamp its time is 0. Digits after the nanoseconds are cut off.
     ///
     /// # Errors
     ///
@@ -68,7 +68,7 @@ impl Capture {
         block(out, ENHANCED_PACKET, &[head, bytes].concat())
     }
 
-    /// Returns the number of the channel's interface, which is written when it is first needed.
+    /// Returns the number of the channel's interface. The interface is written on its first use.
     fn interface(&mut self, out: &mut impl Write, channel: Option<&str>) -> io::Result<u32> {
         let next = u32::try_from(self.channels.len()).unwrap_or(u32::MAX);
         let entry = match self.channels.entry(channel.map(str::to_owned)) {
@@ -82,7 +82,8 @@ impl Capture {
     }
 }
 
-/// Writes a block, with its length before and after it; at once, so that a buffer is not passed on in the middle of it.
+/// Writes a block, with its length before and after it. It writes all at once, so that no buffer is
+/// flushed inside a block.
 fn block(out: &mut impl Write, kind: u32, body: &[u8]) -> io::Result<()> {
     let body = padded(body);
     let total = length(&body).saturating_add(12).to_le_bytes();
@@ -110,7 +111,7 @@ fn half(number: u64) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
-/// Returns a frame as Linux has it: identifier with its flags, length, flags of FD, data.
+/// Returns a frame in the format of Linux: identifier with its flags, length, flags of FD, data.
 fn socketcan(frame: &Frame, digit: u8) -> Vec<u8> {
     let count = u8::try_from(frame.data.len()).unwrap_or(u8::MAX);
     let width = if frame.extended { EXTENDED } else { 0 };
@@ -123,7 +124,7 @@ fn socketcan(frame: &Frame, digit: u8) -> Vec<u8> {
     [&(frame.id | bits).to_be_bytes()[..], &[count, flags, 0, 0], &frame.data].concat()
 }
 
-/// Returns a decimal number of seconds in nanoseconds, without ever making it a floating-point number.
+/// Converts a decimal number of seconds to nanoseconds, without floating-point numbers.
 fn nanoseconds(seconds: &str) -> Option<u64> {
     let (mantissa, exponent) = seconds.split_once(['e', 'E']).unwrap_or((seconds, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));

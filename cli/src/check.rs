@@ -16,18 +16,18 @@ use crate::output::output;
 
 /// Check specs and the examples of their documents.
 ///
-/// Without files, all built-in specs. What is wrong goes to standard error with its place; a summary of each spec goes
-/// to standard output.
+/// Without files, it checks all built-in specs. Mistakes go to standard error, with their places. A
+/// summary of each spec goes to standard output.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec check protocol.yaml")]
 pub struct Check {
-    /// Summaries as text, or as a JSON object a spec.
+    /// Summaries as text, or as one JSON object for each spec.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// What is wrong with the text underlined, in a line each, or as a JSON object each.
+    /// Mistakes with the text underlined, one in a line, or each as a JSON object.
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Style::Human)]
     message_format: Style,
-    /// Of a hundred messages so many must have an example.
+    /// Percentage of the messages that must have an example.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
     min_example_coverage: Option<u8>,
     /// The spec files.
@@ -49,7 +49,7 @@ enum Style {
 }
 
 impl Check {
-    /// Checks the specs one after the other.
+    /// Checks the specs one after another.
     pub fn run(&self) -> Result<Finish, Failure> {
         let mut out = output()?;
         let mut finish = Finish::Done;
@@ -63,7 +63,7 @@ impl Check {
         Ok(finish)
     }
 
-    /// Compiles the specs, each when it is its turn.
+    /// Compiles each spec when it is its turn.
     fn outcomes(&self) -> Box<dyn Iterator<Item = (Diagnostics, Object)> + '_> {
         if self.specs.is_empty() {
             return Box::new(SPECS.iter().map(|spec| self.outcome(Source::new(spec.file, spec.text.into()))));
@@ -71,7 +71,7 @@ impl Check {
         Box::new(self.specs.iter().map(|path| self.outcome(Source::read(path))))
     }
 
-    /// Compiles a source; of one that cannot be read only the name is known.
+    /// Compiles a source. If it cannot be read, only its name is known.
     fn outcome(&self, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
         match source.map(|source| compile_with_examples(source, self.min_example_coverage)) {
             Ok(Outcome { diagnostics, summary, .. }) => (diagnostics, summary.into()),
@@ -114,7 +114,7 @@ fn json_lines(diagnostics: &Diagnostics) -> io::Result<String> {
     Ok(lines.join("\n"))
 }
 
-/// Sums a spec up in a line; of one with errors there is nothing to say but how many.
+/// Sums a spec up in a line. If it has errors, the line only counts them.
 fn sentence(summary: &Object) -> String {
     let Object { spec, errors, warnings, .. } = summary;
     match (errors, warnings) {

@@ -1,4 +1,4 @@
-//! Plain text in aligned columns, the last of which is wrapped.
+//! Plain text in aligned columns. The last column is wrapped.
 
 use std::io::{self, Write};
 

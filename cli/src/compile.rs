@@ -14,18 +14,18 @@ use crate::protocols;
 
 /// Compile specs to Rust.
 ///
-/// Nothing is written if a spec has errors, and a file that would not change is left alone. So is one that canspec did
-/// not generate, which is an error.
+/// Nothing is written if a spec has errors. A file that would not change is left alone. A file that
+/// canspec did not generate is left alone, too, and is an error.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Compile {
-    /// The spec files; more than one need `--out`.
+    /// The spec files; several need `--out`.
     #[arg(value_name = "SPEC", required_unless_present = "protocol", conflicts_with = "protocol")]
     specs: Vec<PathBuf>,
     /// A built-in protocol instead of files.
     #[arg(long, value_name = "NAME")]
     protocol: Option<String>,
-    /// Folder for a `PROTOCOL.rs` of each spec; standard output without it.
+    /// Folder for the `PROTOCOL.rs` of each spec; standard output without it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write nothing; exit with status 1 if a file of `--out` is missing or would change.
@@ -37,10 +37,10 @@ pub struct Compile {
     /// Implement the traits of serde: `always`, `never`, or if the crate has this feature.
     #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
     serde: Switch,
-    /// Implement `defmt::Format`: likewise.
+    /// Implement `defmt::Format`: `always`, `never`, or if the crate has this feature.
     #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
     defmt: Switch,
-    /// Implement `arbitrary::Arbitrary`: likewise.
+    /// Implement `arbitrary::Arbitrary`: `always`, `never`, or if the crate has this feature.
     #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
     arbitrary: Switch,
 }
@@ -113,7 +113,7 @@ fn print(generated: &[Generated]) -> Result<Finish, Failure> {
     Ok(Finish::Done)
 }
 
-/// Tells which files are not what would be written.
+/// Tells which files differ from what would be written.
 fn compare(files: &[File]) -> io::Result<Finish> {
     let mut finish = Finish::Done;
     for file in files {
@@ -129,7 +129,7 @@ fn compare(files: &[File]) -> io::Result<Finish> {
     Ok(finish)
 }
 
-/// Reads when a trait is implemented.
+/// Reads whether and when a trait is implemented.
 fn switch(text: &str) -> Result<Switch, String> {
     match text {
         "always" => Ok(Switch::Always),

@@ -18,10 +18,10 @@ use crate::output::output;
 use crate::protocols::Several;
 use crate::table::Table;
 
-/// Decode a candump log.
+/// Decode a log of a CAN bus.
 ///
-/// The log has lines in the form `(SECONDS) CHANNEL ID#DATA`, as `candump -L` prints them and `candump -l` stores
-/// them; stamp and channel may be missing. Unreadable lines are reported and skipped.
+/// The log is one of candump, of an SLCAN adapter, of Vector's programs (ASC), or a table in CSV. The lines show
+/// which. Unreadable lines are reported and skipped.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Decode {

@@ -17,7 +17,7 @@ use crate::protocols::One;
 
 /// Make a request, or turn decoded lines back into frames.
 ///
-/// A request is named by its message, preceded by the access where the message has several; its signals are set as
+/// A request is named by its message, preceded by the access where the message has several. Its signals are set as
 /// NAME=VALUE, with a unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become
 /// a log again.
 #[derive(Args)]

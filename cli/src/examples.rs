@@ -15,13 +15,14 @@ use crate::protocols::One;
 
 /// List the example frames of a protocol's document.
 ///
-/// Each is shown with its section, and with what decoding it must give: `ok`, or the failure that an erratum explains.
+/// Each is shown with its section and the result that decoding must give: `ok`, or a failure that
+/// an erratum explains.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec examples --protocol NAME --format jsonl")]
 pub struct Examples {
     #[command(flatten)]
     protocol: One,
-    /// A table, or a JSON object a frame.
+    /// A table, or one JSON object for each frame.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -70,11 +71,11 @@ fn errata(example: &Example) -> impl Iterator<Item = &str> {
 #[derive(Serialize)]
 struct Object<'a> {
     id: String,
-    /// `None` where the document prints an identifier alone.
+    /// `None` if the document prints only an identifier.
     data: Option<String>,
     section: Option<&'a Text>,
     expect: &'static str,
-    /// Errata by name, one behind the other.
+    /// Names of errata, one after another.
     erratum: Option<String>,
 }
 

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::source::forbidden;
 
-/// How a command ends that was carried out.
+/// How a command ends if it was carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
     /// All was well.
@@ -71,7 +71,8 @@ pub fn tell(text: impl Display) {
     draw(&text.to_string().lines().map(escaped).collect::<Vec<_>>().join("\n"));
 }
 
-/// Writes to standard error what is drawn for a terminal, in colour there only; where that is closed nobody wants to know.
+/// Writes a drawing to standard error, in colour only on a terminal. It ignores a closed standard
+/// error.
 pub fn draw(text: &str) {
     let _ = writeln!(anstream::stderr(), "{}", text.trim_end());
 }
@@ -81,7 +82,7 @@ pub fn shown(path: &Path) -> String {
     escaped(&path.display().to_string())
 }
 
-/// Escapes what could begin a line, steer a terminal, or cannot be seen.
+/// Escapes characters that begin a line, steer a terminal, or cannot be seen.
 pub fn escaped(text: &str) -> String {
     let acts = |letter: char| letter.is_control() || forbidden(letter).is_some();
     let escape = |letter: char| if acts(letter) { letter.escape_default().to_string() } else { letter.into() };

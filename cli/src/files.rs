@@ -1,4 +1,4 @@
-//! What becomes of logs and DBC files, in memory.
+//! Reads logs and DBC files in memory.
 
 use canspec_codegen::interpret::decode;
 use canspec_codegen::model::Protocol;
@@ -10,13 +10,13 @@ use crate::line::{self, Origin};
 use crate::log;
 use crate::table::Table;
 
-/// What becomes of a line of a log.
+/// A decoded line of a log.
 pub struct Shown {
     /// The JSON object.
     pub json: String,
-    /// A table with the frame alone.
+    /// A table with only the frame.
     pub table: String,
-    /// A capture with the frame alone, or why there is none.
+    /// A capture with only the frame, or why there is none.
     pub capture: Result<Vec<u8>, String>,
 }
 
@@ -39,7 +39,7 @@ pub fn decoded(protocol: &Protocol, line: &str) -> Result<Option<Shown>, String>
     Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))
 }
 
-/// Makes the line of a log from a JSON object, `None` from a blank line.
+/// Makes the line of a log from a JSON object. A blank line gives `None`.
 ///
 /// # Errors
 ///
@@ -52,7 +52,7 @@ pub fn encoded(protocol: &Protocol, json: &str) -> Result<Option<String>, String
 ///
 /// # Errors
 ///
-/// The bytes are none.
+/// The bytes are no DBC.
 pub fn imported(bytes: Vec<u8>) -> Result<String, String> {
     import::imported(bytes)
 }

@@ -1,6 +1,7 @@
-//! The command `canspec`: checks CAN protocol specs, compiles them to Rust, decodes and encodes logs.
+//! The command `canspec` checks CAN protocol specs, compiles them to Rust, and decodes and encodes
+//! logs.
 //!
-//! It is a library as well, so that tests reach what reads logs and DBC files.
+//! It is also a library, so that tests can reach the readers of logs and DBC files.
 
 #![warn(clippy::wildcard_enum_match_arm)]
 
@@ -74,7 +75,7 @@ impl Command {
     }
 }
 
-/// Does what the command line says.
+/// Runs the command line.
 pub fn main() -> ExitCode {
     match Canspec::try_parse() {
         Ok(call) => call.command.run().map_or_else(|failure| failure.report(), ExitCode::from),
@@ -82,7 +83,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Shows what is wrong with the call, or the help that was asked for.
+/// Shows what is wrong with the call, or the requested help.
 fn refuse(refusal: &clap::Error) -> ExitCode {
     if !refusal.use_stderr() {
         let printed = output().and_then(|_| refusal.print());

@@ -1,4 +1,4 @@
-//! The JSON object of a frame: what `decode` writes and `encode` reads.
+//! The JSON object of a frame, which `decode` writes and `encode` reads.
 
 mod input;
 mod output;

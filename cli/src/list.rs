@@ -27,7 +27,7 @@ pub struct List {
 }
 
 impl List {
-    /// Writes what there is.
+    /// Writes the list.
     pub fn run(&self) -> Result<Finish, Failure> {
         let mut out = BufWriter::new(output()?);
         match (self.protocol.as_deref(), self.spec.as_deref()) {
@@ -112,13 +112,14 @@ fn document(document: &Document) -> String {
     format!("{}, {}{date}", document.title.for_people(), document.version.for_people())
 }
 
-/// Returns the selectors whose constants choose a message whatever its access.
+/// Returns the selectors whose constants choose a message, whatever its access.
 fn selectors(protocol: &Protocol) -> Vec<SelectorId> {
     let chooses = |id: &SelectorId| protocol.messages.iter().any(|message| constant(protocol, message, *id).is_some());
     protocol.selectors.ids().filter(chooses).collect()
 }
 
-/// Returns the value that a selector has in every frame of a message, but for those of sets if it has accesses of its own.
+/// Returns the value that a selector has in every frame of a message. If the message has accesses
+/// of its own, frames of sets do not count.
 fn constant(protocol: &Protocol, message: &Message, selector: SelectorId) -> Option<u64> {
     let has_own = protocol.frames_of(message).any(|frame| frame.set.is_none());
     let own = protocol.frames_of(message).filter(|frame| frame.set.is_none() || !has_own);
@@ -161,7 +162,7 @@ fn members(protocol: &Protocol, message: &Message) -> Vec<String> {
     members.map(|member| protocol.messages[*member].name.clone()).collect()
 }
 
-/// Returns the signal of a message that is nothing but a value, as a register is.
+/// Returns the signal of a message that has only a value, like a register.
 fn value(message: &Message) -> Option<&Signal> {
     message.signals.first().filter(|signal| message.signals.len() == 1 && signal.name == "value")
 }
@@ -174,7 +175,7 @@ fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: 
     Row { cells, last: titled(title(&signal.doc), meaning(protocol, signal)), separator: ", " }
 }
 
-/// Puts a title before the first item.
+/// Writes a title before the first item.
 fn titled(title: Option<&str>, mut items: Vec<String>) -> Vec<String> {
     match (title, items.first_mut()) {
         (Some(title), Some(first)) => *first = format!("{title}: {first}"),

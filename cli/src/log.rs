@@ -1,4 +1,4 @@
-//! The log format of candump: `(SECONDS) CHANNEL ID#DATA`.
+//! Logs of several programs, told apart by their lines.
 
 use std::io::{self, Write};
 

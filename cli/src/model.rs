@@ -1,4 +1,4 @@
-//! Choosing a device model.
+//! Chooses a device model.
 
 use canspec_codegen::model::{DeviceModel, ModelId, Protocol};
 use clap::Args;
@@ -8,7 +8,7 @@ use crate::failure::Failure;
 /// Chooses a device model.
 #[derive(Args)]
 pub struct Model {
-    /// The device model, by name or item number: its layouts and limits count.
+    /// Device model, by name or item number, whose layouts and limits count.
     #[arg(long = "model", value_name = "NAME")]
     name: Option<String>,
 }

@@ -6,7 +6,8 @@ use std::io::{self, StdoutLock};
 ///
 /// # Errors
 ///
-/// It was closed before the command began. The standard library puts `/dev/null` in its place, which takes everything.
+/// It was closed before the command began. The standard library would replace it by `/dev/null`,
+/// which takes everything.
 pub fn output() -> io::Result<StdoutLock<'static>> {
     if closed::at_start() { Err(io::Error::other("it is closed")) } else { Ok(io::stdout().lock()) }
 }
@@ -18,7 +19,7 @@ mod closed {
 
     static CLOSED: AtomicBool = AtomicBool::new(false);
 
-    /// Runs before the standard library opens what is closed.
+    /// Runs before the standard library replaces a closed standard output.
     #[used]
     #[expect(unsafe_code, reason = "nothing else runs that early")]
     #[unsafe(link_section = ".init_array")]

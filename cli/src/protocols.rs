@@ -1,4 +1,4 @@
-//! Finding a spec by its built-in name or its file, and compiling it.
+//! Finds a spec by its built-in name or its file, and compiles it.
 
 use std::path::{Path, PathBuf};
 
@@ -29,14 +29,14 @@ impl One {
     }
 }
 
-/// Chooses protocols in the order in which they are tried.
+/// Chooses protocols, in the order in which they are tried.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 pub struct Several {
-    /// A built-in protocol; repeated, the first one that recognises a frame wins.
+    /// A built-in protocol; repeatable, and the first one that recognises a frame wins.
     #[arg(long, value_name = "NAME")]
     protocol: Vec<String>,
-    /// A spec file.
+    /// A spec file; repeatable, and tried before the built-in protocols.
     #[arg(long, value_name = "FILE")]
     spec: Option<PathBuf>,
 }
@@ -78,13 +78,13 @@ fn built_in(name: &str) -> Result<Source, Failure> {
     text(spec)
 }
 
-/// Compiles a spec, or fails with all that is wrong with it.
+/// Compiles a spec, or fails with all its mistakes.
 pub fn load(source: Source) -> Result<Protocol, Failure> {
     let Outcome { protocol, diagnostics, .. } = compile(source);
     protocol.filter(|_| !diagnostics.has_errors()).ok_or_else(|| Failure::Spec(Box::new(diagnostics)))
 }
 
-/// Says what could be meant by a name.
+/// Says which names could be meant.
 fn unknown(name: &str, specs: &[Spec]) -> String {
     let names: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
     let help = match nearest(name, names.iter().copied()) {

@@ -11,7 +11,8 @@ use crate::output::output;
 
 /// Explain the rules that a spec must keep.
 ///
-/// With a rule that an error names, why it exists, an example, and what to write instead; without, all of them in a line each.
+/// With the name of a rule, it says why the rule exists, shows an example, and says what to write
+/// instead. Without a name, it lists all rules.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec rules overlap")]
 pub struct Rules {

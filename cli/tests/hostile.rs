@@ -33,7 +33,7 @@ access: {read: {request: {}, reply: {}}}
 
 type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
-/// What a file holds: a start, and then something so many times.
+/// The content of a file: a start, and then a text that is repeated `times` times.
 struct Content<'a> {
     start: &'a [u8],
     repeated: &'a str,
@@ -86,7 +86,7 @@ fn complaint(path: &Path) -> Result<String> {
     Ok(first)
 }
 
-/// Checks files of these contents, of which the first complaint must start and end as said.
+/// Checks files with these contents. The first complaint must have the given place and message.
 fn check(files: &[(&str, Content, &str, &str)]) -> Result {
     let folder = tempfile::tempdir()?;
     for (name, content, place, message) in files {

@@ -8,14 +8,16 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-/// A log, how it is decoded, the commands or registers that it uses, the lines whose request is outside the limits, and those that no
-/// model takes though none is chosen, so that there is no note. The protocol is built in or a file.
+/// A log, its protocol, and what is expected of it. The protocol is built in or a file.
 struct Session {
     name: &'static str,
     protocol: &'static str,
     model: Option<&'static str>,
+    /// Commands or registers that the log uses.
     commands: &'static [u64],
+    /// Lines whose request is outside the limits.
     out_of_range: &'static [u64],
+    /// Lines that no model takes. They get no note, because no model is chosen.
     beyond_every_model: &'static [u64],
 }
 

@@ -16,7 +16,7 @@ use crate::files;
 pub use generated::{Generated, generate};
 use inputs::Inputs;
 
-/// Compiles specs into `OUT_DIR`, where the crate includes them.
+/// Compiles specs into `OUT_DIR`. The crate includes them from there.
 ///
 /// ```no_run
 /// // build.rs
@@ -35,7 +35,7 @@ use inputs::Inputs;
 /// include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 /// ```
 ///
-/// A wrong spec stops the build: each diagnostic is an error of cargo, and nothing is written.
+/// A wrong spec stops the build: cargo shows each diagnostic as an error, and nothing is written.
 #[derive(Clone, Debug, Default)]
 pub struct Builder {
     folders: Vec<PathBuf>,
@@ -50,33 +50,35 @@ impl Builder {
         Self::default()
     }
 
-    /// Adds one spec, by its path from the crate's root; a file that is added twice counts once.
+    /// Adds one spec, by its path from the crate's root. A file that is added twice counts once.
     #[must_use]
     pub fn spec(mut self, path: impl Into<PathBuf>) -> Self {
         self.specs.push(path.into());
         self
     }
 
-    /// Adds every `*.yaml` of a folder, by its path from the crate's root; a folder without any is fine.
+    /// Adds every `*.yaml` of a folder, by the folder's path from the crate's root. The folder may
+    /// have none.
     ///
-    /// Hidden files do not count, nor do folders in the folder. A `*.yml` is an error that asks for another name.
+    /// It skips hidden files, and folders in the folder. A `*.yml` is an error that asks for
+    /// another name.
     #[must_use]
     pub fn folder(mut self, path: impl Into<PathBuf>) -> Self {
         self.folders.push(path.into());
         self
     }
 
-    /// Sets where to write instead of `OUT_DIR`, by the path from the crate's root.
+    /// Sets a folder to write to instead of `OUT_DIR`, by its path from the crate's root.
     ///
-    /// A builder needs a folder of its own: it replaces the `protocols.rs` there, and removes the protocols that were listed
-    /// in it and are gone. A file that it did not generate is neither replaced nor removed: where one is in the way, the
-    /// build fails.
+    /// Each builder needs a folder of its own. It replaces the `protocols.rs` there, and removes
+    /// protocols that the old list names and the new one does not. It never replaces or removes a
+    /// file that it did not generate. If such a file is in the way, the build fails.
     #[must_use]
     pub fn out_dir(self, path: impl Into<PathBuf>) -> Self {
         Self { out_dir: Some(path.into()), ..self }
     }
 
-    /// Sets all that can be chosen about the generated code.
+    /// Sets all options of the generated code.
     #[must_use]
     pub fn options(self, options: Options) -> Self {
         Self { options, ..self }
@@ -112,8 +114,9 @@ impl Builder {
 
     /// Compiles the specs and writes `PROTOCOL.rs` for each and `protocols.rs` for all of them.
     ///
-    /// Errors and warnings are printed for cargo, which fails the build if there is an error. Nothing is written before all
-    /// specs are compiled, and a file that would not change is left alone.
+    /// It prints errors and warnings for cargo, which fails the build if there is an error. It
+    /// writes nothing before all specs are compiled, and never rewrites a file that would not
+    /// change.
     #[expect(clippy::print_stdout, reason = "cargo reads what a build script prints")]
     pub fn build(&self) {
         self.run().iter().for_each(|line| println!("{line}"));
@@ -128,7 +131,7 @@ impl Builder {
         generated::all(self.inputs(), &self.options)
     }
 
-    /// Does what [`Builder::build`] does, and returns what cargo should be told.
+    /// Does the work of [`Builder::build`], and returns the lines for cargo.
     fn run(&self) -> Vec<String> {
         let inputs = self.inputs();
         let mut lines = cargo::rerun(self.folders.iter().chain(&inputs.specs));

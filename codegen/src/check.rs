@@ -1,4 +1,4 @@
-//! The rules of the last stage: what is resolved must also be right.
+//! The rules of the last stage: a resolved spec must also be right.
 
 mod ambiguous;
 mod default_value;
@@ -62,9 +62,9 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 23] = [
     (&stale_allowance::STALE_ALLOWANCE, None),
 ];
 
-/// Applies every rule; the document's examples are run only by a protocol that is otherwise right.
+/// Applies every rule. It runs the document's examples only if the protocol is otherwise right.
 ///
-/// Of a hundred messages so many must have an example, where anybody asks for that.
+/// If `percent` is given, that many of a hundred messages must have an example.
 pub fn check(protocol: &Protocol, percent: Option<u8>, diagnostics: &mut Diagnostics) -> Counts {
     for check in RULES.iter().filter_map(|(_, check)| *check) {
         check(protocol, diagnostics);

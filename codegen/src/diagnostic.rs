@@ -21,6 +21,14 @@ const MOST: usize = 1000;
 
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// What it says is clean, however it is made, so that nothing that it repeats of a spec begins a line:
+///
+/// ```compile_fail
+/// # fn of_a_spec(diagnostic: &mut canspec_codegen::diagnostic::Diagnostic, text: String) {
+/// diagnostic.help = Some(text);
+/// # }
+/// ```
 pub struct Diagnostic {
     /// The rule that is broken.
     pub rule: &'static Rule,

@@ -1,4 +1,4 @@
-//! Emitters: from the checked model to other languages. They cannot fail.
+//! Emitters write the checked model in other languages. They cannot fail.
 
 mod dbc;
 mod lua;

@@ -1,7 +1,8 @@
-//! What bits mean, both ways: a room for each encoding, and one door to all of them.
+//! Turns bits into values and back. Each encoding has a [`Room`], and [`Words::with`] is the door
+//! to all of them.
 //!
-//! The interpreter, the stages that read values in a spec, and the command ask here. A new encoding is a file in this
-//! folder and an arm in [`Words::with`].
+//! The interpreter, the stages that read values in a spec, and the command use it. A new encoding
+//! is a file in this folder and an arm in [`Words::with`].
 
 mod allowed;
 mod float;
@@ -21,7 +22,8 @@ use crate::model::{
 /// A physical value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Unnamed, not finite, or a text that would not give the same bytes.
+    /// A number without a name, one that is not finite, or a text that would not give the same
+    /// bytes.
     None,
     /// An unscaled number.
     Integer(i128),
@@ -43,9 +45,9 @@ pub enum Value {
 /// A value to send.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// The raw value: sign-extended where the signal is signed, or the bit pattern.
+    /// The raw value: sign-extended if the signal is signed, or the bit pattern.
     Raw(i128),
-    /// An unscaled number, or a whole one that is still to be scaled.
+    /// An unscaled number, or a whole number that must still be scaled.
     Integer(i128),
     /// A physical value.
     Number(f64),
@@ -61,7 +63,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// Says what it is, and that something else is wanted.
+    /// Says what the value is, and that something else is wanted.
     fn is_not(&self, wanted: &str) -> String {
         let what = match self {
             Self::Raw(raw) => format!("raw {raw}"),
@@ -74,12 +76,12 @@ impl Input {
     }
 }
 
-/// What every encoding answers about a signal.
+/// The questions that every encoding answers about a signal.
 pub trait Room {
     /// Returns the physical value of raw bits.
     fn value(&self, bits: u64) -> Value;
 
-    /// Returns the raw bits of a value to send, or says what it has to be.
+    /// Returns the raw bits of a value to send, or says what the value must be.
     fn raw(&self, input: &Input, allowed: &Allowed) -> Result<u64, String>;
 
     /// Returns the raw bits of a value as a spec writes it, with its unit if `unit` says so.
@@ -90,14 +92,14 @@ pub trait Room {
         Input::Text(text.to_owned())
     }
 
-    /// Returns what is odd about bits and the value that they have, whatever the range is.
+    /// Returns what is odd about bits and their value, apart from the range.
     fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)>;
 
-    /// Says in a few words how values are made.
+    /// Describes in a few words how bits become values.
     fn description(&self) -> Vec<String>;
 }
 
-/// What encodings refer to.
+/// The tables that encodings refer to.
 #[derive(Clone, Copy)]
 pub struct Words<'a> {
     pub enumerations: &'a Table<EnumerationId, Enumeration>,
@@ -111,7 +113,7 @@ impl<'a> From<&'a Protocol> for Words<'a> {
 }
 
 impl Words<'_> {
-    /// Asks the room of a signal's encoding.
+    /// Calls `ask` with the room of a signal's encoding.
     pub fn with<R>(self, signal: &Signal, ask: impl FnOnce(&dyn Room) -> R) -> R {
         match &signal.encoding {
             Encoding::Number { numeral, scale, offset } => {
@@ -126,12 +128,12 @@ impl Words<'_> {
     }
 }
 
-/// Says in a few words how the values of a signal are made.
+/// Describes in a few words how the bits of a signal become values.
 pub fn description(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     Words::from(protocol).with(signal, |room| room.description())
 }
 
-/// Returns raw bits, which a signal may be too narrow for.
+/// Returns the bits of a raw value, unless the signal is too narrow for it.
 fn bits(signal: &Signal, raw: i128) -> Result<u64, String> {
     signal.bits_of(raw).ok_or_else(|| {
         let (width, (first, last)) = (signal.place.width(), signal.raw_limits());

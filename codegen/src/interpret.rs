@@ -1,4 +1,4 @@
-//! The interpreter: decodes and encodes by the model, at run time.
+//! The interpreter decodes and encodes by the model, at run time.
 
 mod content;
 mod decode;
@@ -36,14 +36,14 @@ impl Frame {
     }
 }
 
-/// Returns bytes filled up with zeros to those of the longest frame; what is longer is cut.
+/// Returns the first eight bytes, filled up with zeros.
 pub(crate) fn padded(bytes: &[u8]) -> [u8; 8] {
     let mut data = [0; 8];
     data.iter_mut().zip(bytes).for_each(|(byte, given)| *byte = *given);
     data
 }
 
-/// What sort of frame it is; only data frames are ever recognised.
+/// What sort of frame it is. Only data frames are ever recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// A classic data frame.
@@ -67,9 +67,9 @@ pub struct Decoded {
     pub access: AccessId,
     /// What the frame is for.
     pub kind: Kind,
-    /// The set of which the frame is one.
+    /// The set that the frame belongs to.
     pub set: Option<MessageId>,
-    /// The addressing mode, if one fits, and who answers by it or sends it.
+    /// The addressing mode, if one fits, and who answers or sends the frame.
     pub addressing: Option<Travel>,
     /// Values of the identifier's fields.
     pub identifier: Table<FieldId, u32>,
@@ -81,23 +81,24 @@ pub struct Decoded {
     pub reserved: [u8; 8],
     /// Data bytes of the frame.
     pub length: usize,
-    /// What the document does not foresee.
+    /// Notes on what the document does not foresee.
     pub notes: Vec<Note>,
 }
 
 impl Decoded {
-    /// Tests whether a module reports an error by this frame, as by refusing a request: its values mean nothing.
+    /// Tests whether a module reports an error by this frame, for instance a refused request. The
+    /// values mean nothing then.
     pub fn is_error_reply(&self) -> bool {
         !self.kind.is_to_module() && self.notes.iter().any(|note| note.rule == NoteRule::ErrorCode)
     }
 }
 
-/// What a frame says of one signal.
+/// What a frame says about one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     /// The signal.
     pub signal: SignalId,
-    /// The bits, as the low bits of a number; not sign-extended.
+    /// The bits, as the low bits of a number without sign extension.
     pub bits: u64,
     /// The physical value.
     pub value: Value,
@@ -113,14 +114,14 @@ pub struct Note {
 }
 
 impl Note {
-    /// Tests whether it is about the value of a signal.
+    /// Tests whether the note is about the value of a signal.
     pub fn is_about_value(&self) -> bool {
         use NoteRule::{NotFinite, OutOfRange, UnknownBit, UnknownValue};
         matches!(self.rule, UnknownValue | UnknownBit | OutOfRange | NotFinite)
     }
 }
 
-/// A frame that is not recognised, as far as it could be split.
+/// A frame that is not recognised, and what could be read from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unrecognised {
     /// Which test failed.
@@ -138,9 +139,9 @@ pub struct Unrecognised {
 pub enum Problem {
     /// A remote, error or FD frame.
     Frame,
-    /// An identifier that belongs to somebody else.
+    /// An identifier that belongs to another device.
     Foreign,
-    /// Width, a fixed bit, or a direction that cannot be known.
+    /// A wrong width or fixed bit, or an unknown direction.
     Identifier,
     /// No message has these constants in the identifier, or in the data bytes.
     UnknownMessage,
@@ -161,14 +162,14 @@ impl Problem {
     }
 }
 
-/// What [`encode()`] makes a frame of: the content of a decoded line.
+/// The content of a decoded line, from which [`encode()`] makes a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Content {
     /// Name of the message.
     pub message: String,
-    /// Name of the access; `None` for whichever fits.
+    /// Name of the access; `None` for any that fits.
     pub access: Option<String>,
-    /// What the frame is for; `None` for whatever identifier and selectors show.
+    /// What the frame is for; `None` for what identifier and selectors show.
     pub kind: Option<Kind>,
     /// Named fields of the identifier and their raw values.
     pub identifier: Vec<(String, u64)>,
@@ -180,7 +181,7 @@ pub struct Content {
     pub reserved: Vec<u8>,
 }
 
-/// Why a frame was not made; names message, signal, value, unit and limits.
+/// Why a frame was not made. It names message, signal, value, unit and limits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal(pub String);
 

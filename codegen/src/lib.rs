@@ -1,7 +1,8 @@
 //! Compiles a CAN device protocol, written once in YAML, into Rust codecs.
 //!
-//! [`compile`] runs the stages in order: source, syntax, lint, resolve, check. Each reports all its errors before the next one starts.
-//! The [`model::Protocol`] it returns serves the interpreter ([`interpret`]) and the emitters ([`emit`]).
+//! [`compile`] runs the stages in order: source, syntax, lint, resolve, check. Each stage reports
+//! all its errors before the next one starts. [`compile`] returns a [`model::Protocol`], which the
+//! interpreter ([`interpret`]) and the emitters ([`emit`]) read.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
@@ -43,7 +44,7 @@ use text::Text;
 pub struct Outcome {
     /// The protocol, if the spec has no errors.
     pub protocol: Option<Protocol>,
-    /// Everything there is to say about the spec.
+    /// All errors and warnings about the spec.
     pub diagnostics: Diagnostics,
     /// What the spec contains, as far as it could be resolved.
     pub summary: Summary,
@@ -54,7 +55,7 @@ pub fn compile(source: Source) -> Outcome {
     compile_with_examples(source, None)
 }
 
-/// Compiles a spec in which of a hundred messages at least so many must have an example.
+/// Compiles a spec. At least `percent` of a hundred messages must have an example.
 pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
     let name = source.name().to_owned();
     let file = name.rsplit(['/', '\\']).next().unwrap_or(&name).to_owned();

@@ -1,6 +1,6 @@
-//! The rules on a spec as it is written, in order: its names, units and numbers must bear each other out.
+//! The rules on a spec as it is written. Its names, units and numbers must agree with each other.
 //!
-//! They come before names are resolved, so that a slip in a definition is shown there, whatever refers to it.
+//! They apply before names are resolved, so a slip in a definition is shown at the definition.
 
 mod order;
 mod quantity;
@@ -13,10 +13,10 @@ use crate::rule::Rule;
 use crate::syntax::tree::Node;
 use table::Table;
 
-/// Looks for breaches of one rule in a spec, of which the maps with names are found already.
+/// Looks for breaches of one rule in a spec and its tables.
 type Lint = fn(&Node, &[Table]) -> Vec<Diagnostic>;
 
-/// The rules on how a spec is written, in order, each with what looks for breaches.
+/// The rules on how a spec is written, in order, each with its test.
 pub(crate) const RULES: [(&Rule, Lint); 4] = [
     (&quantity::QUANTITY, quantity::lint),
     (&spelling::SPELLING, spelling::lint),

@@ -1,4 +1,5 @@
-//! Two entries claim the same bits: the one that does not fit among its neighbours is probably wrong.
+//! Chooses between two entries that claim the same bits. The one that does not fit its neighbours
+//! is probably wrong.
 
 /// The bits that an entry claims, from `first` to `last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +15,7 @@ impl Claim {
         Self { first: bit(mask.leading_zeros()), last: bit(63_u32.saturating_sub(mask.trailing_zeros())) }
     }
 
-    /// Tests whether this is 3, 5, 6 or 7 whole bytes, which numbers rarely have.
+    /// Tests whether the claim is 3, 5, 6 or 7 whole bytes. Numbers rarely have that width.
     fn has_rare_width(self) -> bool {
         self.width().is_multiple_of(8) && !self.width().is_power_of_two()
     }
@@ -24,15 +25,16 @@ impl Claim {
     }
 }
 
-/// Returns which of two claims is probably wrong, `one` or `other`; the claims have the order of the file.
+/// Returns which of two claims is probably wrong, `one` or `other`. The claims are in the order of
+/// the file.
 ///
 /// The first of these tests that tells them apart decides:
 /// - its width is rare;
 /// - it stands out of order;
-/// - it has free bits beside it, and fewer than the other one: it may have been meant for these;
+/// - it has free bits beside it, but fewer than the other one, and may have been meant for them;
 /// - its width is no power of two.
 ///
-/// If no test tells, the later one is wrong.
+/// If no test decides, the later one is wrong.
 pub fn misplaced(claims: &[Claim], one: usize, other: usize) -> usize {
     let (earlier, later) = (one.min(other), one.max(other));
     let free = |index: usize| Neighbours::of(claims, index, None).free(claims);
@@ -50,7 +52,7 @@ pub fn misplaced(claims: &[Claim], one: usize, other: usize) -> usize {
     }
 }
 
-/// The claims around one, by number: the last bit of the one below and the first bit of the one above.
+/// The neighbours of a claim: the last bit of the one below, and the first bit of the one above.
 struct Neighbours {
     below: Option<u8>,
     above: Option<u8>,

@@ -49,7 +49,7 @@ pub struct Protocol {
     pub bit_rates: Vec<u32>,
     /// Layout of the identifier.
     pub identifier: Identifier,
-    /// Fields whose constants choose a message: of the identifier, of the header, of a message.
+    /// Fields whose constants choose a message, in the identifier, the header or a message.
     pub selectors: Table<SelectorId, Selector>,
     /// Named values of signals, selectors and fields of the identifier.
     pub enumerations: Table<EnumerationId, Enumeration>,
@@ -77,20 +77,20 @@ pub struct Protocol {
     pub procedures: Vec<Procedure>,
     /// Examples of whole messages in the order of the spec, then those of the sequences.
     pub examples: Vec<Example>,
-    /// Examples of types: bytes alone, and the value they mean.
+    /// Examples of types: bytes and their value.
     pub value_examples: Vec<ValueExample>,
     /// What the spec says beside the sequences of examples.
     pub sequences: Vec<Doc>,
     /// What the spec says beside the types.
     pub types: Vec<Doc>,
-    /// Remarks of words of fields, which are no signals themselves.
+    /// Remarks of words. Words are no signals themselves.
     pub words: Vec<Doc>,
     /// Departures from the document.
     pub errata: Vec<Erratum>,
 }
 
 impl Protocol {
-    /// Writes a selector's value in as many hexadecimal digits as it has on the bus.
+    /// Writes a selector's value with as many hexadecimal digits as the selector has.
     pub fn selector_value(&self, selector: SelectorId, value: u64) -> String {
         let width = match self[selector].place {
             SelectorPlace::Identifier(field) => self[field].width,
@@ -99,7 +99,7 @@ impl Protocol {
         format!("0x{value:0digits$X}", digits = usize::from(width.div_ceil(4)))
     }
 
-    /// Returns the frames that exist of a message.
+    /// Returns the frames of a message.
     pub fn frames_of<'a>(
         &'a self,
         message: &'a Message,
@@ -122,7 +122,7 @@ impl Protocol {
         patterns.filter_map(|Travel { mode, who }| Some((*mode, self[*mode].pattern(frame.kind, *who)?)))
     }
 
-    /// Returns the identifier of a frame that is sent by an addressing pattern, before its addresses are put in.
+    /// Returns the identifier of a frame in an addressing pattern, before its addresses are put in.
     pub fn base_identifier(&self, frame: &FrameLayout, pattern: &AddressPattern) -> u32 {
         let fields = self.identifier.fields.iter();
         let id = fields.fold(self.identifier.value, |id, field| field.put(id, field.sent()));
@@ -130,7 +130,8 @@ impl Protocol {
         id & !pattern.mask | pattern.value
     }
 
-    /// Returns the short name of a mode's target: the address type that only this mode leaves open, else the mode.
+    /// Returns the short name of a mode's target. It is the address type that only this mode leaves
+    /// open, or else the mode.
     pub fn target_name<'a>(&'a self, mode: &'a Mode) -> &'a str {
         let alone = |known: &AddressTypeId| self.modes.iter().filter(|other| other.target == Some(*known)).count() == 1;
         mode.target.filter(alone).map_or(&mode.name, |known| &self[known].name)

@@ -1,9 +1,9 @@
-//! Units that a document prints and the language writes with a scale: `mV` is 1/1000 V.
+//! Units that a document prints, and the language writes with a scale: `mV` is 1/1000 V.
 
 use crate::model::Unit;
 use crate::number::Rational;
 
-/// Prefixes and what they multiply by, as numerator and denominator.
+/// Prefixes and their factors, as numerator and denominator.
 const PREFIXES: [(&str, i128, i128); 6] =
     [("m", 1, 1_000), ("k", 1_000, 1), ("K", 1_000, 1), ("M", 1_000_000, 1), ("µ", 1, 1_000_000), ("u", 1, 1_000_000)];
 
@@ -13,13 +13,13 @@ const TIMES: [(&str, i128, i128); 4] = [("ms", 1, 1_000), ("s", 1, 1), ("min", 6
 /// Other spellings of units of the language.
 const SPELLINGS: [(&str, &str); 5] = [("C", "°C"), ("degC", "°C"), ("deg C", "°C"), ("℃", "°C"), ("r/min", "rpm")];
 
-/// Returns the unit of the language of which `symbol` is another spelling.
+/// Returns the unit whose other spelling is `symbol`.
 pub fn respelled(symbol: &str) -> Option<Unit> {
     let (_, known) = SPELLINGS.iter().find(|(other, _)| *other == symbol)?;
     Unit::find(known)
 }
 
-/// Returns the unit of the language of which `symbol` is a multiple by a prefix, and the factor.
+/// Returns the unit that `symbol` is a multiple of by a prefix, and the factor.
 pub fn prefixed(symbol: &str) -> Option<(Unit, Rational)> {
     PREFIXES.iter().find_map(|(prefix, numerator, denominator)| {
         let unit = Unit::find(symbol.strip_prefix(prefix)?)?;
@@ -27,7 +27,7 @@ pub fn prefixed(symbol: &str) -> Option<(Unit, Rational)> {
     })
 }
 
-/// Returns how many of `unit` one of `symbol` is, where both measure the same.
+/// Returns how many `unit` one `symbol` is, if both measure the same quantity.
 pub fn factor(symbol: &str, unit: Unit) -> Option<Rational> {
     if respelled(symbol).or_else(|| Unit::find(symbol)) == Some(unit) {
         return Some(Rational::ONE);

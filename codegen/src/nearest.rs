@@ -1,4 +1,4 @@
-//! The name that somebody can have meant.
+//! Finds the name that somebody probably meant.
 
 /// Returns the nearest of the known names, if it differs by at most a third of the letters.
 pub fn nearest<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {

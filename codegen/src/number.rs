@@ -10,7 +10,7 @@ pub struct Rational {
     denominator: i128,
 }
 
-/// What numerators and denominators of a spec stay below, so that every raw value of 64 bits can be written.
+/// Numerators and denominators of a spec stay below this limit. Every raw value of 64 bits does.
 const LIMIT: i128 = 1 << 64;
 
 impl Rational {
@@ -54,7 +54,7 @@ impl Rational {
         (value.numerator.abs() < LIMIT && value.denominator < LIMIT).then_some(value)
     }
 
-    /// Writes the number as a spec writes a scale: the whole part of one as `1/10`.
+    /// Writes the number as a spec writes a scale. A fraction such as `1/10` stays one.
     pub fn fraction(self) -> String {
         match (self.numerator, self.denominator) {
             (1, denominator @ 2..) => format!("1/{denominator}"),
@@ -153,7 +153,8 @@ impl Ord for Rational {
 }
 
 impl fmt::Display for Rational {
-    /// Writes a decimal where it ends, else a fraction; `1/1024` is easier to recognise than its ten digits.
+    /// Writes a finite decimal, else a fraction. `1/1024` is easier to recognise than its ten
+    /// digits.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (mut scaled, mut places) = (*self, 0);
         while scaled.denominator != 1 && places < 18 {

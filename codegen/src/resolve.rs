@@ -1,4 +1,5 @@
-//! From what is written to what is meant: names become references, places become masks, texts become numbers.
+//! Turns what is written into what is meant: names become references, places masks, and texts
+//! numbers.
 
 mod access;
 mod addressing;
@@ -27,9 +28,11 @@ use crate::syntax::ast;
 use crate::syntax::tree::Path;
 use crate::text::Text;
 
-/// Resolves a spec; `file` is its name without folders, and `rules` are those that it can allow.
+/// Resolves a spec. `file` is its name without folders, and `rules` are the rules that it can
+/// allow.
 ///
-/// The protocol is `None` if something it needs is missing. One that is returned beside errors is only good for further checks.
+/// The protocol is `None` if something that it needs is missing. If there are errors, the protocol
+/// is only good for further checks.
 pub fn resolve(
     spec: &ast::Spec,
     file: Text,
@@ -39,7 +42,7 @@ pub fn resolve(
     Resolver { spec, rules, diagnostics, tables: Tables::default() }.protocol(file)
 }
 
-/// What the stage works on.
+/// The state of the stage.
 struct Resolver<'a> {
     spec: &'a ast::Spec,
     rules: &'a [&'static Rule],
@@ -51,20 +54,21 @@ struct Resolver<'a> {
 #[derive(Default)]
 struct Tables {
     selectors: Table<SelectorId, model::Selector>,
-    /// Those that the header declares.
+    /// The selectors that the header declares.
     header: Vec<SelectorId>,
     enumerations: Table<EnumerationId, model::Enumeration>,
     status_words: Table<StatusWordId, model::StatusWord>,
-    /// Remarks of words, which are no signals themselves.
+    /// Remarks of words. Words are no signals themselves.
     words: Vec<model::Doc>,
-    /// Names of fields that were given up because of an error, by message; what examples say of them is not judged.
+    /// Fields that were given up because of an error, by message. What examples say about them is
+    /// not tested.
     given_up: HashMap<String, IndexSet<String>>,
-    /// The same of the header.
+    /// The same for the header.
     given_up_header: Vec<String>,
     /// Types that a field names.
     used_types: HashSet<String>,
     models: Table<ModelId, model::DeviceModel>,
-    /// Fields of the message at hand so far.
+    /// Number of fields in the current message so far.
     fields: usize,
 }
 
@@ -118,7 +122,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns what encodings refer to, as far as it is known.
+    /// Returns the tables that encodings refer to, as far as they are known.
     fn words(&self) -> Words<'_> {
         Words { enumerations: &self.tables.enumerations, status_words: &self.tables.status_words }
     }

@@ -1,16 +1,17 @@
-//! What a rule is. Each stands where it is tested: in a file of its own, or in the file of its stage.
+//! What a rule is. Each rule stands beside its test: in a file of its own, or in the file of its
+//! stage.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// How bad it is.
+/// How severe a breach is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// The spec cannot be used.
     Error,
-    /// The spec can be used, but somebody should look.
+    /// The spec can be used, but somebody should look at it.
     Warning,
 }
 
@@ -30,9 +31,10 @@ pub struct Rule {
     pub name: &'static str,
     /// The stage of the compiler that applies it.
     pub stage: Stage,
-    /// What a breach gives: an error, a warning, or the one or the other.
+    /// The possible results of a breach: an error, a warning, or either.
     pub gives: &'static [Severity],
-    /// What breaks it, why that matters, an example, and what to write instead, in Markdown.
+    /// The rule's document in Markdown: what breaks it, why that matters, an example, and what to
+    /// write instead.
     pub document: &'static str,
 }
 
@@ -42,7 +44,7 @@ impl Rule {
         self.document.lines().next().unwrap_or_default()
     }
 
-    /// Returns what a breach gives: an error, a warning, or one of the two.
+    /// Returns the result of a breach in words: an error, a warning, or either.
     pub fn gives(&self) -> String {
         self.gives.iter().map(Severity::to_string).collect::<Vec<_>>().join(" or ")
     }
@@ -56,18 +58,18 @@ impl PartialEq for Rule {
 
 impl Eq for Rule {}
 
-/// A stage of the compiler that applies rules; it begins when the one before it found no error.
+/// A stage of the compiler that applies rules. It begins if the stage before it found no error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Bytes to text.
+    /// Turns bytes into text.
     Source,
-    /// Text to a tree, and to what is written.
+    /// Turns text into a tree, and the tree into structs.
     Syntax,
-    /// How it is written.
+    /// Looks at how the spec is written.
     Lint,
-    /// What is written to what is meant.
+    /// Turns what is written into what is meant.
     Resolve,
-    /// Whether what is meant is right.
+    /// Tests whether what is meant is right.
     Check,
 }
 
@@ -89,7 +91,7 @@ pub(crate) const ERROR: &[Severity] = &[Severity::Error];
 /// Breaches are warnings.
 pub(crate) const WARNING: &[Severity] = &[Severity::Warning];
 
-/// Breaches are the one or the other.
+/// Breaches are errors or warnings.
 pub(crate) const EITHER: &[Severity] = &[Severity::Error, Severity::Warning];
 
 /// Makes rules of rows `NAME "name" Stage GIVES;`, each with its document.

@@ -1,11 +1,11 @@
-//! The rules that a spec must keep, by id; each has its document in the folder `rules`.
+//! The rules that a spec must keep, by id. Each has its document in the folder `rules`.
 
 use std::sync::LazyLock;
 
 pub use crate::rule::{Rule, Stage};
 use crate::{check, lint, resolve, source, syntax};
 
-/// Every rule, in the order of the stages, and as each stage applies them.
+/// Every rule, in the order of the stages, and within a stage in the order of application.
 pub static RULES: LazyLock<Vec<&'static Rule>> = LazyLock::new(|| {
     let read = [source::rules::RULES, syntax::rules::RULES].concat();
     let lint = lint::RULES.iter().map(|(rule, _)| *rule);
@@ -34,7 +34,8 @@ fn contents() -> String {
 
 fn chapter(rule: &Rule) -> String {
     let Rule { name, document, .. } = rule;
-    // The documents leave the name out, because rustdoc takes what has a `=` for an attribute of its own.
+    // The documents leave the name out, because rustdoc reads a word with `=` as an attribute of
+    // its own.
     let document = document.replace("```yaml fails\n", &format!("```yaml fails={name}\n"));
     format!("\n## `{name}`\n\n{document}")
 }

@@ -1,4 +1,5 @@
-//! The JSON Schema of the language, which editors read; made of the structs that a spec is read into.
+//! The JSON Schema of the language, for editors. It is made from the structs that a spec is read
+//! into.
 
 mod values;
 
@@ -19,13 +20,13 @@ pub fn schema() -> String {
     format!("{schema:#}\n")
 }
 
-/// Says what a spec file holds, rather than what Rust makes of it.
+/// Describes what a spec file holds, not what Rust makes of it.
 fn as_written(schema: &mut Schema) {
     transform_subschemas(&mut as_written, schema);
     schema.remove("default");
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = text.replace('\n', " ");
-        // Editors show the backquotes of a mere `description`.
+        // Editors would show the backquotes of a `description`.
         let text = text.clone();
         schema.insert("markdownDescription".to_owned(), text.into());
     }
@@ -34,7 +35,7 @@ fn as_written(schema: &mut Schema) {
             take_out_null(kinds);
         }
     }
-    // Editors show what is said beside `anyOf`, but not what is said beside `allOf`.
+    // Editors show a description beside `anyOf`, but not one beside `allOf`.
     if let Some(only) = schema.remove("allOf") {
         schema.insert("anyOf".to_owned(), only);
     }
@@ -52,7 +53,7 @@ fn take_out_null(kinds: &mut Value) {
     }
 }
 
-/// Returns the schema of the identifier: fields by name, and the places of bits without one.
+/// Returns the schema of the identifier: fields by name, and the places of bits without a name.
 pub(crate) fn identifier(generator: &mut SchemaGenerator) -> Schema {
     json_schema!({
         "type": "object",

@@ -1,4 +1,4 @@
-//! Bytes to text: size, encoding, and what characters there may be.
+//! Turns bytes into text, and tests size, encoding and characters.
 
 pub(crate) mod rules;
 pub(crate) mod text;
@@ -18,7 +18,7 @@ use text::BYTE_ORDER_MARK;
 /// Largest spec file that is read, in bytes.
 pub const SIZE_LIMIT: usize = 4 << 20;
 
-/// Most forbidden characters that are reported of one file.
+/// Largest number of forbidden characters that are reported for one file.
 const REPORTED_CHARACTERS: usize = 100;
 
 impl Source {
@@ -26,7 +26,8 @@ impl Source {
     ///
     /// # Errors
     ///
-    /// The bytes are more than [`SIZE_LIMIT`], are not UTF-8, or hold a control character other than tab and line end.
+    /// There are more than [`SIZE_LIMIT`] bytes, they are not UTF-8, or hold a control character
+    /// other than tab and line end.
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostics> {
         let name = name.into();
         if bytes.len() > SIZE_LIMIT {
@@ -45,7 +46,8 @@ impl Source {
     ///
     /// # Errors
     ///
-    /// The file does not exist, is a folder, cannot be read, or [`Source::new`] refuses what is in it.
+    /// The file does not exist, is a folder, or cannot be read, or [`Source::new`] refuses its
+    /// content.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let name = path.display().to_string();

@@ -1,4 +1,4 @@
-//! What a spec contains, in numbers.
+//! Counts what a spec contains.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use crate::check::Counts;
 use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;
 
-/// What a spec contains; the fields are those of `canspec check --format json`, in that order.
+/// What a spec contains. These are the fields of `canspec check --format json`, in that order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
     /// The file as it was named.
@@ -35,7 +35,7 @@ pub struct Summary {
     pub errata: usize,
     /// Diagnostics that make the spec unusable.
     pub errors: usize,
-    /// Diagnostics that only ask for a look.
+    /// Diagnostics that only ask somebody to look.
     pub warnings: usize,
 }
 
@@ -60,7 +60,7 @@ impl Summary {
     }
 }
 
-/// Counts the values of each selector; fields of one name in several places are one.
+/// Counts the values of each selector. Fields with one name in several places count as one.
 fn selectors(protocol: &Protocol) -> Vec<(String, usize)> {
     let mut values: IndexMap<&str, BTreeSet<u64>> =
         protocol.selectors.iter().map(|selector| (selector.name.as_str(), BTreeSet::new())).collect();

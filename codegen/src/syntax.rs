@@ -1,4 +1,4 @@
-//! Text to tree to plain structs, in which every leaf is still its text.
+//! Turns text into a tree, and the tree into plain structs whose leaves are still texts.
 
 pub mod ast;
 mod gate;
@@ -9,9 +9,10 @@ pub mod tree;
 use crate::diagnostic::Diagnostics;
 use crate::source::Source;
 
-/// Reads a spec, and reports all that is wrong with its syntax at once; there is a spec only if nothing is.
+/// Reads a spec and reports every mistake in its syntax at once. It returns no spec if there is a
+/// mistake.
 ///
-/// What is returned as diagnostics goes on to the later stages: it knows the text and the tree.
+/// The later stages add to the diagnostics, which hold the text and the tree.
 pub fn parse(source: Source) -> (Option<ast::Spec>, Diagnostics) {
     let (tree, mut problems) = gate::read(&source);
     let spec = tree.as_ref().and_then(|tree| reader::read(tree, &mut problems));

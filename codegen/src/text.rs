@@ -1,6 +1,6 @@
-//! Texts of others: what a spec says in words, and names of files.
+//! Texts written by others: the words in a spec, and names of files.
 //!
-//! A [`Text`] has no way to an output but one that is made for this output, so that nothing in it is ever obeyed.
+//! Each output has its own method to write a [`Text`], so no output ever obeys what is in it.
 
 mod dbc;
 mod lua;
@@ -15,7 +15,7 @@ use crate::source::visible;
 
 /// A text of one line, without characters that act on a terminal, reverse its direction or cannot be seen.
 ///
-/// In JSON it is a string. It cannot be written without saying what for:
+/// In JSON it is a string. It has no `Display`, because each output needs its own method:
 ///
 /// ```compile_fail
 /// let text = canspec_codegen::text::Text::new("A charger");
@@ -26,7 +26,7 @@ use crate::source::visible;
 pub struct Text(String);
 
 impl Text {
-    /// Cleans a text: line ends and tabs become spaces, other characters that have no place in it U+FFFD.
+    /// Cleans a text: line ends and tabs become spaces, and other forbidden characters U+FFFD.
     pub fn new(text: &str) -> Self {
         Self(visible(&text.trim().replace("\r\n", " ").replace(['\n', '\t'], " ")))
     }
@@ -36,7 +36,7 @@ impl Text {
         &self.0
     }
 
-    /// Returns the content of a string in Rust, whose quotes are still to be put around it.
+    /// Returns the content of a string in Rust, without the quotes around it.
     pub fn as_rust_str(&self) -> &str {
         &self.0
     }

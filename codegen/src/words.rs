@@ -1,4 +1,4 @@
-//! The words of the language among which a key chooses.
+//! The words of the language that a key chooses from.
 
 use crate::model::{Numeral, Severity, Who};
 
@@ -22,7 +22,7 @@ pub const NUMBER_FORMATS: [(&str, NumberFormat); 5] = [
 /// What may stand after `outside`.
 pub const OUTSIDE: [&str; 1] = ["refused"];
 
-/// How grave a status bit may be.
+/// The severities of a status bit.
 pub const SEVERITIES: [(&str, Severity); 3] =
     [("state", Severity::State), ("alarm", Severity::Alarm), ("fault", Severity::Fault)];
 
@@ -30,7 +30,7 @@ pub const SEVERITIES: [(&str, Severity); 3] =
 pub const ANSWERS: [(&str, Who); 4] =
     [("one", Who::One), ("each", Who::Each), ("coordinator", Who::Coordinator), ("nobody", Who::Nobody)];
 
-/// Where an example may come from, other than from the document.
+/// Where an example can come from, if not from the document.
 pub const ORIGINS: [&str; 1] = ["ours"];
 
 /// What may be wrong with a document.

@@ -2,7 +2,7 @@
 //!
 //! The modules are generated from the specs when this crate is built; each item names the section of the vendor's document.
 //!
-//! The features `serde`, `defmt` and `arbitrary` give the optional traits to every type; [`canspec_runtime`] says what each of them does.
+//! The features `serde`, `defmt` and `arbitrary` give the optional traits to every type; `canspec_runtime` says what each of them does.
 #![no_std]
 #![forbid(unsafe_code)]
 

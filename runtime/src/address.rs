@@ -1,4 +1,4 @@
-//! Addressing modes: whom a request addresses, and who answers.
+//! Addressing modes: where a request goes, and who answers.
 
 use core::ptr;
 
@@ -17,7 +17,7 @@ pub struct AddressType {
 }
 
 impl AddressType {
-    /// Returns addresses from `first` to `last` that stand in the field as they are.
+    /// Returns addresses from `first` to `last`, which are the values of the field.
     pub const fn new(name: &'static str, first: i32, last: i32) -> Self {
         Self { name, first, last, offset: 0, descending: false, strict: false, default: None }
     }
@@ -28,13 +28,13 @@ impl AddressType {
         Self { offset, ..self }
     }
 
-    /// Lets the field value go down while the number goes up.
+    /// Makes the field value fall while the number rises.
     #[must_use]
     pub const fn descending(self) -> Self {
         Self { descending: true, ..self }
     }
 
-    /// Makes a number outside the range something else, rather than an undocumented address.
+    /// Refuses numbers outside the range. They are then no addresses of this type.
     #[must_use]
     pub const fn strict(self) -> Self {
         Self { strict: true, ..self }
@@ -92,12 +92,12 @@ pub struct Address {
 }
 
 impl Address {
-    /// Returns an address that stands in these bits of the identifier.
+    /// Returns an address in these bits of the identifier.
     pub const fn new(bits: Bits, kind: &'static AddressType) -> Self {
         Self { bits, kind, excluded: &[] }
     }
 
-    /// Adds inclusive ranges of field values that are something else.
+    /// Adds inclusive ranges of field values that are no such address.
     #[must_use]
     pub const fn excluding(self, excluded: &'static [(u32, u32)]) -> Self {
         Self { excluded, ..self }
@@ -147,7 +147,7 @@ impl Pattern {
         self.addresses.iter().any(|address| address.kind.is(kind))
     }
 
-    /// Narrows a filter to the constants, and to those addresses whose number is known.
+    /// Narrows a filter to the constants, and to the addresses whose number is known.
     pub(crate) fn narrow(&self, filter: &Filter, number: impl Fn(&AddressType) -> Option<i32>) -> Filter {
         let add = |(mask, value): (u32, u32), bits: Bits, raw: u32| {
             let field = bits.write(u32::MAX);
@@ -171,11 +171,11 @@ pub struct Mode {
     pub target: Option<&'static AddressType>,
     /// Identifier of the request.
     pub request: Option<Pattern>,
-    /// Identifier of the reply where the module addressed answers.
+    /// Identifier of the reply if the addressed module answers.
     pub one: Option<Pattern>,
-    /// Identifier of the replies where each module addressed answers.
+    /// Identifier of the replies if each addressed module answers.
     pub each: Option<Pattern>,
-    /// Identifier of the reply where one module answers for all.
+    /// Identifier of the reply if one module answers for all.
     pub coordinator: Option<Pattern>,
 }
 
@@ -199,16 +199,17 @@ pub enum Who {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kind {
-    /// Towards a module: reads and sets alike.
+    /// Goes to a module, to read or to set.
     Request,
-    /// Towards the controller, echoes and failures included.
+    /// Goes to the controller, echoes and failures included.
     Reply,
     /// Sent unasked.
     Report,
 }
 
 impl Kind {
-    /// Tests whether such a frame goes towards a module, and so keeps to the limits of what may be sent.
+    /// Tests whether such a frame goes to a module. If it does, it keeps to the limits of what may
+    /// be sent.
     #[must_use]
     pub const fn is_to_module(self) -> bool {
         match self {
@@ -228,7 +229,7 @@ impl Mode {
         }
     }
 
-    /// Returns the patterns of a kind of frame, and who sends such a reply.
+    /// Returns the patterns of a kind of frame, and who sends each reply.
     fn patterns(&self, kind: Kind) -> [(Option<Who>, Option<&Pattern>); 3] {
         match kind {
             Kind::Request => [(None, self.request.as_ref()), (None, None), (None, None)],
@@ -247,7 +248,8 @@ pub struct Addressing {
     pattern: &'static Pattern,
 }
 
-/// How well a mode fits: one that the message has, then documented addresses, then the number of constants.
+/// How well a mode fits. First counts whether the message has it, then documented addresses, then
+/// the number of constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Rank {
     is_offered: bool,
@@ -256,7 +258,7 @@ pub(crate) struct Rank {
 }
 
 impl Addressing {
-    /// Finds the mode that fits best; `answers` says who answers, mode by mode.
+    /// Finds the mode that fits best. `answers` says who answers in each mode.
     pub(crate) fn find(modes: &'static [Mode], answers: &[Option<Who>], kind: Kind, id: u32) -> Option<Self> {
         let fitting = modes.iter().zip(answers).flat_map(|(mode, answer)| {
             mode.patterns(kind).into_iter().filter_map(move |(who, pattern)| {

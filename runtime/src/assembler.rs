@@ -1,10 +1,11 @@
-//! Puts the frames of a set together again, for many nodes at a time.
+//! Puts the frames of sets together, for many nodes at a time.
 //!
-//! An [`Assembler`] is told which nodes were asked, sees every frame of the bus, and says of each frame of its set what
-//! it changes. Frames of two nodes are never mixed: the node is the address that the reply shows.
+//! The caller tells an [`Assembler`] which nodes were asked, and gives it every frame of the bus.
+//! For each frame of its set, the assembler returns what the frame changes. It never mixes frames
+//! of two nodes: the node is the address that the reply shows.
 //!
-//! Time is a number of milliseconds that the caller counts from whenever he likes; it may wrap around. Whoever calls
-//! [`timed_out`](Assembler::timed_out) less than once in 24 days may miss that a node is silent.
+//! Time is a number of milliseconds from any start, and may wrap around. Call
+//! [`timed_out`](Assembler::timed_out) at least once in 24 days, or it may miss a silent node.
 
 use core::fmt;
 
@@ -32,11 +33,11 @@ struct Node<S> {
     number: i32,
     /// When it was asked, or sent its last frame.
     since: u32,
-    /// The greatest place in the order that any member had so far.
+    /// The greatest position of any member so far.
     furthest: usize,
-    /// Members with values, a bit each.
+    /// Members with values, one bit each.
     came: u64,
-    /// Members that were answered with an error, a bit each.
+    /// Members that were answered with an error, one bit each.
     failed: u64,
     set: S,
 }
@@ -44,7 +45,7 @@ struct Node<S> {
 /// What a frame of the set changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress<S> {
-    /// More frames are to come.
+    /// More frames will follow.
     Pending {
         /// Number of the node.
         node: i32,
@@ -69,12 +70,12 @@ pub enum Progress<S> {
         /// What came.
         partial: Partial<S>,
     },
-    /// The node was not asked, or has sent its last frame before. Nothing is kept.
+    /// The node was not asked, or has already sent its last frame. Nothing is kept.
     Unasked {
         /// Number of the node.
         node: i32,
     },
-    /// The assembler listens to everybody, and has no room for this node. Nothing is kept.
+    /// The assembler listens to every node, but has no room for this one. Nothing is kept.
     Full {
         /// Number of the node.
         node: i32,
@@ -84,17 +85,17 @@ pub enum Progress<S> {
 /// What a frame of a set is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// The first member, or one behind all that came; members in between may be late or lost.
+    /// The first member, or one after all that came. Members in between may be late or lost.
     InOrder,
-    /// A member that should have come before another one.
+    /// A member that should have come earlier.
     OutOfOrder,
     /// A member again, with the same values.
     Repeated,
-    /// A member again, with other values, which count from now on.
+    /// A member again, with other values. These count from now on.
     Changed,
-    /// An error reply in place of a member's values; values that came before stay.
+    /// An error reply in place of a member's values. Values that came before stay.
     Failed,
-    /// None of the members: its values are passed over, its end is not.
+    /// No member of the set. Its values are ignored, but it can end the set.
     Unlisted,
 }
 
@@ -105,7 +106,7 @@ pub struct Partial<S> {
     pub node: i32,
     /// The values that came.
     pub set: S,
-    /// Members that did not come at all.
+    /// Members that did not come.
     pub missing: Members,
     /// Members that were answered with an error.
     pub failed: Members,
@@ -152,32 +153,32 @@ enum Said<P> {
 }
 
 impl<S: FrameSet, const N: usize> Assembler<S, N> {
-    /// Returns an assembler of nodes that were [asked](Self::ask); after so many milliseconds of silence a node has timed
-    /// out.
+    /// Returns an assembler for nodes that were [asked](Self::ask). A node times out after
+    /// `patience` milliseconds of silence.
     pub const fn new(patience: u32) -> Self {
         Self { nodes: [None; N], patience, model: None, is_listening: false }
     }
 
-    /// Returns an assembler of every node that sends a frame of the set.
+    /// Returns an assembler for every node that sends a frame of the set.
     ///
-    /// A frame that comes again after the last one then begins another set, which will time out.
+    /// A frame that is repeated after the last one begins another set, which will time out.
     pub const fn listening(patience: u32) -> Self {
         Self { is_listening: true, ..Self::new(patience) }
     }
 
-    /// Takes frames for those of a device model where messages look the same.
+    /// Reads frames as those of a device model if messages look the same.
     #[must_use]
     pub fn for_model(self, model: impl Into<u8>) -> Self {
         Self { model: Some(model.into()), ..self }
     }
 
-    /// Waits for the frames of a node from its beginning, whatever it has sent before.
+    /// Waits for a whole set from a node, whatever the node has sent before.
     ///
-    /// The frames have no number: those of an earlier request that are still on their way are taken for new ones.
+    /// Frames have no number, so late frames of an earlier request count as new ones.
     ///
     /// # Errors
     ///
-    /// Refuses a node for which there is no room.
+    /// Refuses a node if there is no room for it.
     pub fn ask(&mut self, node: impl Into<i32>, now: u32) -> Result<(), Full> {
         let number = node.into();
         let slot = self.slot(number).ok_or(Full)?;
@@ -194,13 +195,14 @@ impl<S: FrameSet, const N: usize> Assembler<S, N> {
         }
     }
 
-    /// Returns what has come of a node so far, if the assembler waits for it.
+    /// Returns what a node has sent so far, if the assembler waits for it.
     pub fn partial(&self, node: impl Into<i32>) -> Option<Partial<S>> {
         let number = node.into();
         self.nodes.iter().flatten().find(|known| known.number == number).map(Node::partial)
     }
 
-    /// Forgets a node that has been silent for too long, and returns what came of it; call it until there is none.
+    /// Forgets a node that has been silent for too long, and returns what it sent. Call this until
+    /// it returns `None`.
     pub fn timed_out(&mut self, now: u32) -> Option<Partial<S>> {
         let patience = self.patience;
         let is_silent = |node: &Node<S>| elapsed(node.since, now).is_some_and(|silence| silence >= patience);
@@ -208,9 +210,11 @@ impl<S: FrameSet, const N: usize> Assembler<S, N> {
         slot.take().map(|node| node.partial())
     }
 
-    /// Takes a frame; `None` says that it is none of this set: another message, another set, a request, or damaged.
+    /// Takes a frame. `None` means that the frame does not belong to this set, is a request, or is
+    /// damaged.
     ///
-    /// Silence counts in [`timed_out`](Self::timed_out) alone: a late frame still counts until that has been called.
+    /// Only [`timed_out`](Self::timed_out) ends the wait. Until it is called, a late frame still
+    /// counts.
     pub fn receive(&mut self, frame: &impl embedded_can::Frame, now: u32) -> Option<Progress<S>> {
         let frame = classic(frame)?;
         let said = self.said(&frame)?;
@@ -236,7 +240,7 @@ impl<S: FrameSet, const N: usize> Assembler<S, N> {
         self.nodes.get_mut(found?)
     }
 
-    /// Returns what a frame says if it is one of this set.
+    /// Returns what a frame says if it belongs to this set.
     fn said(&self, frame: &Frame) -> Option<Said<S::Protocol>> {
         let received = match self.model {
             Some(model) => Received::<S::Protocol>::decode_for(model, frame),
@@ -259,7 +263,7 @@ fn is_of<S: FrameSet>(received: &Received<S::Protocol>) -> bool {
     received.kind() == Kind::Reply && received.exchange().set() == Some(S::EXCHANGE.message())
 }
 
-/// Tests whether a frame that carries no message shows what every frame of the set shows.
+/// Tests whether a frame without a message shows what every frame of the set shows.
 fn is_unlisted<S: FrameSet>(frame: &Frame) -> bool {
     let shows = S::EXCHANGE.filter(Kind::Reply).is_some_and(|filter| filter.matches(frame));
     shows && frame.dlc() == usize::from(S::EXCHANGE.data_length())
@@ -275,7 +279,7 @@ impl<S: FrameSet> Node<S> {
         Self { number, since: now, furthest: 0, came: 0, failed: 0, set: S::default() }
     }
 
-    /// Takes what a frame says; `more` tells whether others follow.
+    /// Takes what a frame says. `more` tells whether other frames follow.
     fn progress(&mut self, said: Said<S::Protocol>, more: bool, now: u32) -> Progress<S> {
         let arrival = self.arrival(said);
         if elapsed(self.since, now).is_some() {
@@ -328,7 +332,8 @@ fn bit(position: usize) -> u64 {
     u32::try_from(position).ok().and_then(|position| 1_u64.checked_shl(position)).unwrap_or(0)
 }
 
-/// Returns the milliseconds since a time; `None` if it lies ahead, as far as that can be told of times that wrap.
+/// Returns the milliseconds since a time, or `None` if it lies ahead. Times wrap, so half of them
+/// count as ahead.
 fn elapsed(since: u32, now: u32) -> Option<u32> {
     u32::try_from(now.wrapping_sub(since).cast_signed()).ok()
 }

@@ -5,7 +5,8 @@ use core::fmt;
 use crate::raw::{Integer, Raw};
 use crate::{Meaning, Number};
 
-/// A number whose decimal digits have four bits each, the first digit highest (BCD); `R` has as many bits.
+/// A number whose decimal digits have four bits each, the first digit highest (BCD). `R` has as
+/// many bits.
 ///
 /// ```
 /// use canspec_runtime::Bcd;
@@ -19,21 +20,21 @@ use crate::{Meaning, Number};
 pub struct Bcd<R>(R);
 
 impl<R: Integer> Bcd<R> {
-    /// Takes a number, or returns `None` for one with more digits than there is room for.
+    /// Takes a number, or returns `None` if it has too many digits.
     pub fn new(number: u64) -> Option<Self> {
         let bits = bits(number)?;
         let raw = R::from_bits(bits);
         (raw.to_bits() == bits).then_some(Self(raw))
     }
 
-    /// Returns the number; `None` if there is a digit above 9.
+    /// Returns the number, or `None` if a digit is above 9.
     pub fn number(self) -> Option<u64> {
         number(self.0.to_bits())
     }
 }
 
 impl<R> Bcd<R> {
-    /// Takes the raw bits, whatever they are.
+    /// Takes any raw bits.
     pub const fn from_raw(raw: R) -> Self {
         Self(raw)
     }
@@ -45,7 +46,7 @@ impl<R> Bcd<R> {
 }
 
 impl<R: Integer> fmt::Display for Bcd<R> {
-    /// Writes the number; bits that are none are written in hexadecimal.
+    /// Writes the number, or the bits in hexadecimal if a digit is above 9.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.number() {
             Some(number) => number.fmt(formatter),
@@ -99,7 +100,7 @@ impl<R: Integer> Raw for Bcd<R> {
     }
 }
 
-/// Returns the number in decimal digits.
+/// Returns the number that the digits stand for.
 pub(crate) fn number(bits: u64) -> Option<u64> {
     let digits = (0..64).step_by(4).rev().map(|shift| bits.wrapping_shr(shift) & 0xF);
     digits
@@ -107,7 +108,7 @@ pub(crate) fn number(bits: u64) -> Option<u64> {
         .try_fold(0_u64, |number, digit| (digit <= 9).then(|| number.wrapping_mul(10).wrapping_add(digit)))
 }
 
-/// Returns the bits of a number; `None` of one that has more than 16 digits.
+/// Returns the bits of a number, or `None` if it has more than 16 digits.
 pub(crate) fn bits(number: u64) -> Option<u64> {
     let (mut bits, mut rest) = (0, number);
     for shift in (0..64).step_by(4) {

@@ -1,4 +1,4 @@
-//! The list of a protocol's messages, for programs that go through it without naming one.
+//! The list of a protocol's messages, for programs that treat all messages alike.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -9,8 +9,8 @@ use crate::{AnySignal, Destination, Error, Exchange, Protocol, Request, Route};
 pub struct Entry<P: 'static> {
     /// What it is, in a few words.
     pub title: &'static str,
-    /// What chooses the message, such as the number of a register: names of fields in identifier or data, and their
-    /// values.
+    /// Names and values of the fields in identifier or data that choose the message, such as a
+    /// register number.
     pub constants: &'static [(&'static str, u64)],
     /// The signals, by first byte.
     pub signals: &'static [&'static dyn AnySignal],
@@ -38,9 +38,11 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
-    /// Builds a request that carries no values, such as a read; `None` if the message has none by this access.
+    /// Builds a request without values, such as a read. Returns `None` if the message has no such
+    /// request by this access.
     ///
-    /// The request knows which frames answer it; what they say, [`Received::decode`](crate::Received::decode) tells.
+    /// The request knows which frames answer it. [`Received::decode`](crate::Received::decode)
+    /// reads their values.
     ///
     /// # Errors
     ///

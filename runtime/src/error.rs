@@ -9,8 +9,8 @@ use crate::Number;
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
-    /// The value, as given or rounded to be sent, lies outside the documented range, or outside what the signal's bits
-    /// can hold.
+    /// The value lies outside the documented range, or does not fit the signal's bits. Both the
+    /// given and the rounded value count.
     Limits {
         /// Name of the message.
         message: &'static str,
@@ -57,7 +57,7 @@ pub enum Error {
         /// Name of the message.
         message: &'static str,
     },
-    /// The message does not travel in this addressing mode, or in no known one.
+    /// The message does not travel in this addressing mode, or the mode is unknown.
     Mode {
         /// Name of the message.
         message: &'static str,

@@ -1,4 +1,4 @@
-//! What a frame must show, as mask and value over identifier and data.
+//! Filters: what a frame must show, as mask and value over identifier and data.
 
 use crate::frame::{padded, raw_id};
 use crate::{Bits, Data, Frame, Place};
@@ -19,7 +19,7 @@ impl Selector {
         Self { name, place, normal: None }
     }
 
-    /// Sets the value of a reply that is no error reply.
+    /// Sets the value that a reply has if it reports no error.
     #[must_use]
     pub const fn normal(self, normal: u64) -> Self {
         Self { normal: Some(normal), ..self }
@@ -29,15 +29,16 @@ impl Selector {
         self.normal.is_none_or(|normal| raw == normal)
     }
 
-    /// Tests whether so many data bytes have the field.
+    /// Tests whether the first `length` data bytes contain the field.
     pub(crate) fn is_within(&self, length: usize) -> bool {
         self.place.mask().iter().skip(length).all(|byte| *byte == 0)
     }
 }
 
-/// What identifier and data of a frame must show, and what is written there when such a frame is built.
+/// What the identifier and the data of a frame must show, and what is written when such a frame is
+/// built.
 ///
-/// Bits of the value outside the mask are written, but anything is accepted in their place.
+/// Bits of the value outside the mask are written, but accepted with any value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Filter {
     extended: bool,
@@ -75,7 +76,7 @@ impl Filter {
         self
     }
 
-    /// Writes into the selectors, where no value is required, what says that a reply is no error reply.
+    /// Writes into the selectors without a required value that the reply reports no error.
     #[must_use]
     pub(crate) const fn accepting(mut self) -> Self {
         let mut selectors = self.selectors;
@@ -89,20 +90,20 @@ impl Filter {
         self
     }
 
-    /// Sets which selectors such frames have in their data.
+    /// Sets the selectors that such frames have in their data.
     #[must_use]
     pub const fn selectors(self, selectors: &'static [Selector]) -> Self {
         Self { selectors, ..self }
     }
 
-    /// Requires these bits of the identifier and leaves the others as they are.
+    /// Requires these bits of the identifier, and does not change the others.
     #[must_use]
     pub const fn id_bits(self, mask: u32, value: u32) -> Self {
         let id_value = (self.id_value & !mask) | (value & mask);
         Self { id_mask: self.id_mask | mask, id_value, ..self }
     }
 
-    /// Requires what `other` requires too; where both do, `other` counts.
+    /// Also requires what `other` requires. If both require a bit, `other` counts.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         let mask = word(other.data_mask);
@@ -145,7 +146,7 @@ impl Filter {
         self.id_mask
     }
 
-    /// Returns what these bits must be: the identifier of a hardware acceptance filter.
+    /// Returns the value of these bits: the identifier of a hardware acceptance filter.
     pub const fn id_value(&self) -> u32 {
         self.id_value & self.id_mask
     }
@@ -165,7 +166,8 @@ impl Filter {
         self.id_value
     }
 
-    /// Returns the frame that shows what the filter asks for, with zeros elsewhere; a reply is no error reply.
+    /// Returns the frame that shows what the filter requires, with zeros elsewhere. A reply reports
+    /// no error.
     pub const fn frame(&self, length: u8) -> Frame {
         Frame::new_raw(self.id_value, self.extended, self.data_value, length)
     }

@@ -29,7 +29,7 @@ impl Frame {
         self.id
     }
 
-    /// Returns the bytes as they are read: eight, of which those beyond the frame's length are 0.
+    /// Returns eight bytes. Those beyond the frame's length are 0.
     pub const fn bytes(&self) -> Data {
         self.data
     }
@@ -116,7 +116,7 @@ pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
     is_classic.then(|| Frame::new_raw(id, extended, padded(frame.data()), length))
 }
 
-/// Returns the first eight of `bytes`, with zeros where there are fewer.
+/// Returns the first eight of `bytes`, filled up with zeros.
 #[inline]
 pub fn padded(bytes: &[u8]) -> Data {
     bytes.first_chunk().copied().unwrap_or_else(|| {

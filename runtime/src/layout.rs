@@ -2,34 +2,35 @@
 
 use crate::{AnySignal, Data, Error, Payload};
 
-/// What a kind of frame carries.
+/// The values that a kind of frame carries.
 pub trait Layout: Sized + 'static {
     /// The signals, by first byte.
     const SIGNALS: &'static [&'static dyn AnySignal];
-    /// Takes the values out of the data of such a frame.
+    /// Reads the values from the data of such a frame.
     const DECODE: Decode<Self>;
-    /// Writes the values into data.
+    /// Writes the values to the data.
     const ENCODE: Encode<Self>;
 
-    /// Takes the values out of the data of such a frame.
+    /// Reads the values from the data of such a frame.
     fn decode(data: &Data) -> Self {
         Self::DECODE(data)
     }
 
-    /// Writes the values into data.
+    /// Writes the values to the data.
     ///
     /// # Errors
     ///
-    /// Refuses what the signals cannot hold, and what lies outside their limits if `payload` keeps to them.
+    /// Refuses values that the signals cannot hold. If `payload` keeps to limits, it also refuses
+    /// values outside them.
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ENCODE(self, payload)
     }
 }
 
-/// As [`Layout::decode`].
+/// The same as [`Layout::decode`].
 pub type Decode<T> = fn(&Data) -> T;
 
-/// As [`Layout::encode`].
+/// The same as [`Layout::encode`].
 pub type Encode<T> = fn(&T, &mut Payload) -> Result<(), Error>;
 
 /// Frames without signals.
@@ -39,14 +40,14 @@ impl Layout for () {
     const ENCODE: Encode<Self> = |(), _| Ok(());
 }
 
-/// What is done with the values of any message.
+/// Something to do with the values of any message.
 ///
-/// Each task has code of its own, so that reading does not link writing.
+/// Each task has code of its own, so a program that only reads does not contain the code to write.
 pub trait Task {
-    /// What comes out.
+    /// The result of the task.
     type Output;
 
-    /// Does it.
+    /// Runs the task.
     fn run<L: Layout>(self, values: &L) -> Self::Output;
 }
 

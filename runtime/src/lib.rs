@@ -1,11 +1,12 @@
-//! What the codecs that canspec generates call: places, scaling, signals, frames, filters and addressing.
+//! The library behind the codecs that canspec generates: places, scaling, signals, frames, filters
+//! and addressing.
 //!
-//! No allocation, no unsafe code, no dependency but [`embedded_can`].
+//! No allocation, no unsafe code, no dependency but [`embedded_can`](https://docs.rs/embedded-can).
 //!
 //! # Features
 //!
-//! None is on by default. Each gives the optional traits to the types of this crate, and lets code generated with the
-//! switch of the same name give them to its own.
+//! No feature is on by default. Each one implements the optional traits for the types of this
+//! crate. Code that was generated with the switch of the same name needs it for its own types.
 //!
 //! | feature | traits |
 //! |---|---|
@@ -85,7 +86,8 @@ pub use text::Text;
 /// }
 /// ```
 ///
-/// The name is that of the protocol in its spec. The file is `OUT_DIR/heater.rs`, where `canspec_codegen::Builder` writes it.
+/// The name is that of the protocol in its spec. `canspec_codegen::Builder` writes the file, here
+/// `OUT_DIR/heater.rs`.
 #[macro_export]
 macro_rules! include_protocol {
     ($name:literal) => {

@@ -5,7 +5,7 @@ use core::fmt::{self, Write};
 use crate::plumbing::{Legend, Raw, Word};
 use crate::{Data, Place, bcd};
 
-/// A piece of a packed value's text; places count from the first byte of the value.
+/// A piece of a packed value's text. Places count from the first byte of the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Piece {
@@ -17,7 +17,7 @@ pub enum Piece {
     Number {
         /// Place of the number.
         place: Place,
-        /// How many digits it has; 0 for as many as it needs.
+        /// Number of digits; 0 for as many as it needs.
         digits: u8,
         /// The smallest and the largest number.
         limits: (u64, u64),
@@ -27,12 +27,12 @@ pub enum Piece {
 }
 
 impl Piece {
-    /// Returns a number that has as many digits as it needs; its raw value has the type `R`.
+    /// Returns a number with as many digits as it needs. Its raw value has the type `R`.
     pub const fn number<R: Raw>(place: Place) -> Self {
         Self::digits::<R>(place, 0)
     }
 
-    /// Returns a number of so many digits, with zeros in front; its raw value has the type `R`.
+    /// Returns a number of `digits` digits, with zeros in front. Its raw value has the type `R`.
     pub const fn digits<R: Raw>(place: Place, digits: u8) -> Self {
         Self::Number { place, digits, limits: (0, place.max()), is_decimal: R::IS_DECIMAL }
     }
@@ -65,7 +65,7 @@ impl Piece {
         }
     }
 
-    /// Takes this piece off the front of a text.
+    /// Reads this piece at the front of a text, and returns the rest.
     fn parse<'t>(&self, text: &'t str, is_last: bool, data: &mut Data) -> Option<&'t str> {
         match *self {
             Self::Literal(literal) => text.strip_prefix(literal),
@@ -91,7 +91,7 @@ impl Piece {
     }
 }
 
-/// Returns how many whole bytes a place has.
+/// Returns the number of whole bytes in a place.
 fn bytes(place: Place) -> usize {
     usize::from(place.width() / 8)
 }
@@ -129,7 +129,7 @@ pub(crate) fn text<W: Word>(value: W) -> Option<PackedText> {
     text.is_exact().then_some(text)
 }
 
-/// Writes the parts of a packed value in the documented form, be the text exact or not.
+/// Writes the parts of a packed value in the documented form, even if the text is not exact.
 pub(crate) fn write<W: Word>(value: W, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
     let Legend::Text(bytes, pieces) = W::LEGEND else { return Ok(()) };
     PackedText { data: left_aligned(value.to_bits(), bytes), pieces }.write(formatter)
@@ -148,12 +148,12 @@ fn parse_data(text: &str, pieces: &[Piece]) -> Option<Data> {
     last.parse(rest, true, &mut data)?.is_empty().then_some(data)
 }
 
-/// Returns a word of so many bytes from its first byte on.
+/// Returns the first `bytes` data bytes from a word.
 pub const fn left_aligned(word: u64, bytes: u8) -> Data {
     word.wrapping_shl(64_u32.wrapping_sub(8 * bytes as u32)).to_be_bytes()
 }
 
-/// Returns the word that stands in the first bytes.
+/// Returns the word in the first `bytes` data bytes.
 pub const fn right_aligned(data: Data, bytes: u8) -> u64 {
     u64::from_be_bytes(data).wrapping_shr(64_u32.wrapping_sub(8 * bytes as u32))
 }

@@ -12,7 +12,7 @@ pub struct Payload {
 }
 
 impl Payload {
-    /// Returns the bytes of a message that takes whatever fits its signals, as in a reply.
+    /// Returns the bytes of a message that takes all values that fit its signals, as in a reply.
     pub const fn new(message: &'static str, data: Data) -> Self {
         Self { message, data, keeps_limits: false, model: None }
     }
@@ -22,7 +22,8 @@ impl Payload {
         Self { message, data, keeps_limits: true, model: None }
     }
 
-    /// Returns the same bytes for a device model, by its number: its limits count in place of those that hold for any.
+    /// Returns the same bytes for a device model, by its number. The model's limits then replace
+    /// the general ones.
     #[must_use]
     pub const fn for_model(self, model: Option<u8>) -> Self {
         Self { model, ..self }

@@ -4,28 +4,28 @@ use crate::plumbing::Scale;
 use crate::raw::{Integer, Raw};
 use crate::{Error, Meaning, Number, Payload, Signal};
 
-/// The type of a signal's physical values and limits; its raw values have the type `R`.
+/// The type of a signal's physical values and limits. Its raw values have the type `R`.
 ///
-/// It is `R` itself where that will do, so that integers are compared as integers. A scale, or a limit with a fraction,
-/// needs a floating-point type.
+/// It is `R` itself if possible, so integers are compared as integers. A scale, or a limit with a
+/// fraction, needs a floating-point type.
 pub trait Physical<R: Raw>: Copy + 'static {
-    /// Returns the physical value of a raw one.
+    /// Returns the physical value of a raw value.
     fn of(raw: R, scale: Option<Scale>) -> Self;
 
     /// Returns the number.
     fn number(self) -> Number;
 
-    /// Tests whether this is neither infinite nor no number at all.
+    /// Tests whether this is a finite number.
     fn is_finite(self) -> bool;
 
-    /// Tests whether this lies inside limits, which are legal, as precisely as raw values can meet them.
+    /// Tests whether this lies inside limits, both legal, as precisely as raw values can meet them.
     fn is_within(self, minimum: Self, maximum: Self) -> bool;
 
     /// Writes the raw value nearest to a number.
     ///
     /// # Errors
     ///
-    /// As [`Signal::put`].
+    /// The same as [`Signal::put`].
     fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error>;
 }
 
@@ -57,12 +57,13 @@ impl<R: Raw + 'static> Physical<R> for R {
 
 /// The type of scaled physical values: `f64`, or `f32` for processors that calculate in single precision only.
 ///
-/// Each calculates in its own precision alone.
+/// Each calculates only in its own precision.
 pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// Returns the physical value of `raw`.
     fn scaled(raw: i64, scale: Scale) -> Self;
 
-    /// Returns the raw value nearest to this physical value, ties away from zero, or `None` for what 64 bits cannot hold.
+    /// Returns the raw value nearest to this physical value, with ties away from zero. It is `None`
+    /// if 64 bits cannot hold it.
     fn raw(self, scale: Scale) -> Option<i64>;
 
     /// Returns the value of this type nearest to a number.
@@ -71,7 +72,7 @@ pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// Returns the number.
     fn number(self) -> Number;
 
-    /// Tests whether this is no number at all.
+    /// Tests whether this is not a number.
     fn is_nan(self) -> bool;
 
     /// Returns a limit as precisely as raw values of the type `R` can meet it.
@@ -79,7 +80,7 @@ pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     fn limit<R: Raw>(self) -> Self;
 }
 
-/// Keeps the types of scaled physical values to the two that the rules on scales know.
+/// Limits the types of scaled physical values to the two that the rules on scales know.
 pub trait Sealed {}
 
 impl Sealed for f32 {}
@@ -190,7 +191,7 @@ scaled! {
     f32, Integer;
 }
 
-/// Writes a number by the scale, or as the raw value that it is.
+/// Writes a number by the scale, or as its own raw value.
 fn write<R: Raw, F: Physical<R> + Scaled>(
     signal: &Signal<R, F>,
     number: Number,

@@ -1,11 +1,11 @@
-//! Where a signal stands: bits of a word, and words of the payload.
+//! Places of signals: bits of a word, and words of the payload.
 
 use crate::plumbing::Raw;
 
-/// The eight data bytes of a classic CAN frame; a shorter frame leaves the last ones 0.
+/// The eight data bytes of a classic CAN frame. A shorter frame leaves the last ones 0.
 pub type Data = [u8; 8];
 
-/// A run of bits in a word of up to 64 bits, bit 0 being the least significant.
+/// A run of bits in a word of up to 64 bits. Bit 0 is the least significant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Bits {
     shift: u8,
@@ -17,7 +17,7 @@ impl Bits {
     ///
     /// # Panics
     ///
-    /// Unless `63 >= high >= low`; a compile error where it initialises a constant.
+    /// Panics unless `63 >= high >= low`. In a constant this is a compile error.
     pub const fn new(high: u8, low: u8) -> Self {
         assert!(high < 64 && low <= high, "bits run from the high one, at most 63, down to the low one");
         Self { shift: low, width: high - low + 1 }
@@ -64,7 +64,7 @@ impl Bits {
         R::from_bits(self.get(id.into()))
     }
 
-    /// Returns an identifier in which only these bits are set, to the low bits of a raw value.
+    /// Returns an identifier with the low bits of a raw value in these bits, and zeros elsewhere.
     #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
     #[inline]
     pub fn write(self, raw: impl Raw) -> u32 {
@@ -132,12 +132,12 @@ pub struct Place {
 }
 
 impl Place {
-    /// Returns the word that runs from byte `first`, its most significant one, to byte `last`:
+    /// Returns the word from byte `first` to byte `last`. Byte `first` is the most significant:
     /// `bytes(4, 7)` is big endian, `bytes(7, 4)` little endian.
     ///
     /// # Panics
     ///
-    /// If a byte is not in `0..=7`; a compile error where it initialises a constant.
+    /// Panics if a byte is not in `0..=7`. In a constant this is a compile error.
     pub const fn bytes(first: u8, last: u8) -> Self {
         assert!(first < 8 && last < 8, "the payload has bytes 0 to 7");
         if first <= last {
@@ -151,16 +151,16 @@ impl Place {
     ///
     /// # Panics
     ///
-    /// If the byte is not in `0..=7`; a compile error where it initialises a constant.
+    /// Panics if the byte is not in `0..=7`. In a constant this is a compile error.
     pub const fn byte(byte: u8) -> Self {
         Self::bytes(byte, byte)
     }
 
-    /// Returns the bits from `high` down to `low` of this word, bit 0 being its least significant.
+    /// Returns the bits from `high` down to `low` of this word. Bit 0 is the least significant.
     ///
     /// # Panics
     ///
-    /// Unless the word has these bits; a compile error where it initialises a constant.
+    /// Panics unless the word has these bits. In a constant this is a compile error.
     #[must_use]
     pub const fn bits(self, high: u8, low: u8) -> Self {
         assert!(high < self.bits.width, "the word has fewer bits");
@@ -168,11 +168,11 @@ impl Place {
         Self { order: self.order, bits: Bits::new(shift + high, shift + low) }
     }
 
-    /// Returns one bit of this word, bit 0 being its least significant.
+    /// Returns one bit of this word. Bit 0 is the least significant.
     ///
     /// # Panics
     ///
-    /// Unless the word has this bit; a compile error where it initialises a constant.
+    /// Panics unless the word has this bit. In a constant this is a compile error.
     #[must_use]
     pub const fn bit(self, bit: u8) -> Self {
         self.bits(bit, bit)
@@ -183,7 +183,7 @@ impl Place {
         self.order
     }
 
-    /// Returns where the bits lie in the eight bytes read in this order.
+    /// Returns the place of the bits in the eight bytes, read in this order.
     pub const fn bits_of_payload(self) -> Bits {
         self.bits
     }
@@ -199,7 +199,7 @@ impl Place {
         self.bits.max()
     }
 
-    /// Returns the payload in which only the bits of this place are set.
+    /// Returns the payload with only the bits of this place set.
     #[inline]
     pub const fn mask(self) -> Data {
         self.order.store(self.bits.mask())
@@ -223,13 +223,13 @@ impl Place {
         R::from_bits(if R::SIGNED { self.get_signed(data).cast_unsigned() } else { self.get(data) })
     }
 
-    /// Writes the low bits of a raw value to this place and leaves the others as they are.
+    /// Writes the low bits of a raw value to this place, and does not change other bits.
     #[inline]
     pub fn write(self, raw: impl Raw, data: &mut Data) {
         self.put(data, raw.to_bits());
     }
 
-    /// Writes the low bits of `raw` to this place and leaves the others as they are.
+    /// Writes the low bits of `raw` to this place, and does not change other bits.
     #[inline]
     pub const fn put(self, data: &mut Data, raw: u64) {
         *data = self.order.store(self.bits.put(self.order.load(*data), raw));
@@ -269,7 +269,7 @@ mod tests {
 
     #[test]
     fn signed_numbers_of_odd_width_cross_byte_borders() {
-        // Bytes 73 AA 0E from the low end make 0x0EAA73, of which bits 23..12 are 0x0EA.
+        // Bytes 73 AA 0E from the low end make 0x0EAA73, whose bits 23..12 are 0x0EA.
         let report = [0x73, 0xAA, 0x0E, 0x6E, 0x28, 0x23, 0x03, 0x11];
         assert_eq!(Place::bytes(7, 0).bits(23, 12).get_signed(&report), 234);
         let minus_two = [0x00, 0xE0, 0xFF, 0, 0, 0, 0, 0];

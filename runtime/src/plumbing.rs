@@ -1,4 +1,5 @@
-//! What generated code calls and nobody else needs; it can change with every release, as generated code does.
+//! Items that only generated code needs. They can change with every release, as generated code
+//! does.
 
 #[cfg(feature = "arbitrary")]
 pub use arbitrary;
@@ -18,7 +19,7 @@ pub use crate::scale::{Scale, nearest};
 pub use crate::set::Continuation;
 pub use crate::word::{Legend, Word};
 
-/// What a generated module takes, beside what it passes on to its users.
+/// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
         Address, Continuation, Decode, Encode, Legend, Pattern, Piece, Recognised, Task, Who, Word, left_aligned,

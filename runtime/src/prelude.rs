@@ -1,4 +1,4 @@
-//! What users of a generated module need to name; every such module passes it on.
+//! Items that users of a generated module need to name. Every such module re-exports them.
 
 pub use crate::{
     Bcd, Data, Error, Failure, Frame, IdentifierFields, Kind, Layout, Meaning, Number, PackedText, Payload, Problem,

@@ -1,4 +1,4 @@
-//! Protocols: what generated code knows, and what it recognises.
+//! Protocols: what generated code knows and recognises.
 
 use core::fmt::{self, Debug};
 
@@ -14,36 +14,37 @@ pub trait Protocol: Copy + Debug + 'static {
     type Identifier: IdentifierFields;
     /// What every frame shows.
     const FRAME: Filter;
-    /// What a reply shows that is no error reply.
+    /// What a reply shows if it reports no error.
     const NORMAL: Filter;
     /// All addressing modes.
     const MODES: &'static [Mode];
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 
-    /// Recognises a frame towards a module by its selectors, whatever its length; where layouts differ, by the number of
-    /// the device model.
+    /// Recognises a frame to a module by its selectors, whatever its length. If layouts differ, the
+    /// number of the device model decides.
     fn request(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         None
     }
 
-    /// Recognises a frame towards the controller by its selectors, whatever its length; where layouts differ, by the
-    /// number of the device model.
+    /// Recognises a frame to the controller by its selectors, whatever its length. If layouts
+    /// differ, the number of the device model decides.
     fn reply(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         None
     }
 
-    /// Returns how many data bytes the requests have whose selectors an identifier shows.
+    /// Returns the numbers of data bytes of the requests whose selectors an identifier shows.
     fn request_lengths(_: u32) -> &'static [u8] {
         &[]
     }
 
-    /// Returns how many data bytes the replies and reports have whose selectors an identifier shows.
+    /// Returns the numbers of data bytes of the replies and reports whose selectors an identifier
+    /// shows.
     fn reply_lengths(_: u32) -> &'static [u8] {
         &[]
     }
 
-    /// Runs a task on what the message carries.
+    /// Runs a task on the values of the message.
     fn run<T: Task>(&self, task: T) -> T::Output;
 }
 
@@ -51,22 +52,22 @@ pub trait Protocol: Copy + Debug + 'static {
 pub trait IdentifierFields: Copy + Debug + PartialEq {
     /// Splits an identifier.
     const FROM_RAW: fn(u32) -> Self;
-    /// Joins the fields; bits that a field cannot hold are dropped.
+    /// Joins the fields. Bits that a field cannot hold are dropped.
     const TO_RAW: fn(Self) -> u32;
 
-    /// Tests whether an identifier belongs to somebody else on the bus.
+    /// Tests whether an identifier belongs to another device on the bus.
     fn is_foreign(_: u32) -> bool {
         false
     }
 
-    /// Tests whether an identifier goes towards a module.
+    /// Tests whether an identifier goes to a module.
     fn is_to_module(id: u32) -> bool;
 
-    /// Tests whether an identifier goes towards the controller.
+    /// Tests whether an identifier goes to the controller.
     fn is_to_controller(id: u32) -> bool;
 }
 
-/// A message out of a frame, and what sort of frame that is.
+/// A message from a frame, and the kind of that frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Recognised<M> {
     pub(crate) exchange: &'static Exchange,
@@ -90,7 +91,8 @@ impl<M: Protocol> Recognised<M> {
         Self { exchange, kind: Kind::Report, message }
     }
 
-    /// Returns the other one if the frame's length, then the device model, and then the addresses fit that one better.
+    /// Returns `other` if it fits the frame better: first by length, then by device model, then by
+    /// addresses.
     #[must_use]
     pub fn or(self, other: Self, frame: &Frame, model: Option<u8>) -> Self {
         if other.rank(frame, model) > self.rank(frame, model) { other } else { self }
@@ -114,7 +116,7 @@ impl<M: Protocol> Recognised<M> {
 pub enum Problem {
     /// It is no classic data frame.
     Frame,
-    /// It belongs to somebody else on the bus.
+    /// It belongs to another device on the bus.
     Foreign,
     /// The identifier has the wrong width or a wrong fixed bit, or does not show its direction.
     Identifier,
@@ -138,7 +140,7 @@ impl fmt::Display for Problem {
 
 impl core::error::Error for Problem {}
 
-/// Tests the identifier, and tells whether it goes towards a module.
+/// Tests the identifier, and tells whether it goes to a module.
 pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
     let id = frame.raw_id();
     let has_width = frame.is_extended() == P::FRAME.is_extended();

@@ -12,7 +12,7 @@ pub trait Raw: Copy + 'static {
     /// Whether the bits are decimal digits of four bits each.
     const IS_DECIMAL: bool = false;
 
-    /// Whether a number in the signal's unit means a raw value.
+    /// Whether a raw value can be given as a number in the signal's unit.
     const IS_NUMBER: bool = false;
 
     /// Takes the low bits of a word, sign-extended if the type is signed.
@@ -24,20 +24,23 @@ pub trait Raw: Copy + 'static {
     /// Returns what the value means.
     fn meaning(&self) -> Meaning<'_>;
 
-    /// Returns the value that means `meaning`, if there is one.
+    /// Returns the value with this meaning, if there is one.
     fn from_meaning(meaning: Meaning<'_>) -> Option<Self>;
 
-    /// Tests whether the bits give the same value; the parts of a packed value can be too large for their places.
+    /// Tests whether the bits give the same value. The parts of a packed value can be too large for
+    /// their places.
     fn is_whole(self) -> bool {
         true
     }
 
-    /// Returns the bits of an integer, which can be too many; `None` if there are none.
+    /// Returns the bits of an integer, or `None` if it has none. They can be more than the place
+    /// holds.
     fn bits_of(integer: i64) -> Option<u64> {
         (Self::SIGNED || integer >= 0).then_some(integer.cast_unsigned())
     }
 
-    /// Returns the bits of the least and the greatest number at a place whose bits are `all`.
+    /// Returns the bits of the least and the greatest number at a place. `all` has all bits of the
+    /// place.
     fn ends(all: u64) -> [u64; 2] {
         let highest = all.wrapping_shr(Self::SIGNED.into());
         [if Self::SIGNED { !highest } else { 0 }, highest]
@@ -48,12 +51,12 @@ pub trait Raw: Copy + 'static {
         if Self::SIGNED { Number::Signed(self.to_bits().cast_signed()) } else { Number::Unsigned(self.to_bits()) }
     }
 
-    /// Tests whether this is neither infinite nor no number at all.
+    /// Tests whether this is a finite number.
     fn is_finite(self) -> bool {
         true
     }
 
-    /// Tests whether this lies inside limits, which are legal.
+    /// Tests whether this lies inside limits, both legal.
     fn is_within(self, minimum: Self, maximum: Self) -> bool {
         let [value, minimum, maximum] = [self, minimum, maximum].map(Self::to_bits);
         if Self::SIGNED {
@@ -72,7 +75,7 @@ pub trait Raw: Copy + 'static {
 /// A raw value that physical values are scaled from.
 pub trait Integer: Raw {}
 
-/// What a value means to code that does not know its type.
+/// The meaning of a value, for code that does not know its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Meaning<'a> {
@@ -84,9 +87,10 @@ pub enum Meaning<'a> {
     Text(&'a str),
     /// The text of a packed value.
     Packed(PackedText),
-    /// The bits of a status word, and what each bit of it stands for that has a name, set or not.
+    /// The bits of a status word, and all its named bits, set or not.
     Status(u64, &'static [StatusBit]),
-    /// Nothing: a value without a name, no finite number, or a text that would not give these bits.
+    /// No meaning: a value without a name, a number that is not finite, or a text that would not
+    /// give these bits.
     None,
 }
 
@@ -102,7 +106,7 @@ impl fmt::Display for Meaning<'_> {
     }
 }
 
-/// Writes the names of the set bits, and those without a name as a number.
+/// Writes the names of the set bits. Those without a name become one number.
 fn write_status(bits: u64, known: &'static [StatusBit], formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
     let mut names = formatter.debug_set();
     for bit in status::set_bits(bits, known) {

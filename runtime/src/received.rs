@@ -23,21 +23,22 @@ pub struct Received<P: Protocol> {
 }
 
 impl<P: Protocol> Received<P> {
-    /// Recognises a frame; of messages that look the same, as the first one that the spec lists.
+    /// Recognises a frame. If messages look the same, it is the first one in the spec.
     ///
     /// # Errors
     ///
-    /// Says why the frame is not recognised. The tests have the order of [`Problem`], but for one: selectors in the data
-    /// are read after the length.
+    /// Says why the frame is not recognised. The tests have the order of [`Problem`], with one
+    /// exception: selectors in the data are tested after the length.
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         Self::decode_by(None, frame)
     }
 
-    /// Recognises a frame of a device model; of messages that look the same, as the one that the model has.
+    /// Recognises a frame of a device model. If messages look the same, it is the one that the
+    /// model has.
     ///
     /// # Errors
     ///
-    /// As [`decode`](Self::decode).
+    /// The same as [`decode`](Self::decode).
     pub fn decode_for(model: impl Into<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         Self::decode_by(Some(model.into()), frame)
     }
@@ -75,9 +76,9 @@ impl<P: Protocol> Received<P> {
         (self.kind == Kind::Report && !self.is_error_reply()).then_some(&self.content)
     }
 
-    /// Returns what stands in the frame whatever its kind, for logs.
+    /// Returns the values of the frame, whatever its kind, for logs.
     ///
-    /// That holds for an error reply too, whose values mean nothing unless the document says so.
+    /// This includes error replies, whose values mean nothing unless the document says so.
     pub const fn content(&self) -> &P {
         &self.content
     }
@@ -87,13 +88,13 @@ impl<P: Protocol> Received<P> {
         self.identifier
     }
 
-    /// Returns the same message under another identifier; [`encode`](Self::encode) makes the frame of it.
+    /// Returns the same message under another identifier. [`encode`](Self::encode) makes its frame.
     #[must_use]
     pub const fn with_identifier(self, identifier: P::Identifier) -> Self {
         Self { identifier, ..self }
     }
 
-    /// Returns other values under the same identifier; [`encode`](Self::encode) makes the frame of them.
+    /// Returns other values under the same identifier. [`encode`](Self::encode) makes their frame.
     #[must_use]
     pub const fn with_content(self, content: P) -> Self {
         Self { content, ..self }
@@ -109,7 +110,7 @@ impl<P: Protocol> Received<P> {
         self.kind
     }
 
-    /// Returns how the message travels: its name, its access, its selectors.
+    /// Returns how the message travels, with its name, its access and its selectors.
     pub const fn exchange(&self) -> &'static Exchange {
         self.exchange
     }
@@ -119,7 +120,7 @@ impl<P: Protocol> Received<P> {
         self.exchange.addressing(P::MODES, self.kind, P::Identifier::TO_RAW(self.identifier))
     }
 
-    /// Tests whether the frame shows an error code towards the controller.
+    /// Tests whether the frame goes to the controller and shows an error code.
     pub fn is_error_reply(&self) -> bool {
         !self.kind.is_to_module() && has_error::<P>(self.data_selectors(), &self.frame)
     }
@@ -138,7 +139,8 @@ impl<P: Protocol> Received<P> {
         self.content.run(Signals)
     }
 
-    /// Shows the signals, by first byte; those of an error reply say so, and as a text have no value.
+    /// Shows the signals to `visitor`, by first byte. Those of an error reply are marked, and have
+    /// no value as a text.
     pub fn visit(&self, mut visitor: impl FnMut(Reading<'_>)) {
         let is_of_error_reply = self.is_error_reply();
         for signal in self.signals() {
@@ -153,11 +155,11 @@ impl<P: Protocol> Received<P> {
         selectors.chain(signals).fold(self.frame.bytes(), cleared)
     }
 
-    /// Builds the frame anew, of [`identifier`](Self::identifier) and [`content`](Self::content).
+    /// Builds the frame again from [`identifier`](Self::identifier) and [`content`](Self::content).
     ///
     /// # Errors
     ///
-    /// Refuses what the signals cannot hold, and identifiers of another message.
+    /// Refuses values that the signals cannot hold, and identifiers of another message.
     ///
     /// In a request it also refuses
     /// - values outside their limits,
@@ -180,7 +182,7 @@ impl<P: Protocol> Received<P> {
         is_same_frame && self.identifier == other.identifier
     }
 
-    /// Writes the signals over the frame as it was received.
+    /// Writes the signals over the received data.
     fn data(&self) -> Result<Data, Error> {
         let signals = self.signals().iter();
         let data = signals.fold(self.frame.bytes(), |data, signal| cleared(data, signal.place()));
@@ -190,8 +192,8 @@ impl<P: Protocol> Received<P> {
         Ok(*payload.data())
     }
 
-    /// Refuses a request in another addressing mode, to an address that the document does not name, or that the device
-    /// model does not have.
+    /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message
+    /// that the device model does not have.
     fn check_request(&self, id: u32) -> Result<(), Error> {
         if !self.kind.is_to_module() {
             return Ok(());
@@ -214,7 +216,7 @@ fn cleared(mut data: Data, place: Place) -> Data {
     data
 }
 
-/// Says whether the length is wrong, or the selectors are.
+/// Says whether the length or the selectors are wrong.
 fn problem<P: Protocol>(is_request: bool, frame: &Frame) -> Problem {
     let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(frame.raw_id());
     let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());

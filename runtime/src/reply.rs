@@ -1,4 +1,4 @@
-//! Replies: who sent them, and what they say.
+//! Replies: who sent them, and their values.
 
 use core::fmt;
 
@@ -10,7 +10,7 @@ use crate::{Filter, Frame, IdentifierFields, Layout, Protocol, Selector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "a reply can be an error; look at its `values`"]
 pub struct Reply<P: Protocol, R> {
-    /// The identifier: it shows who answers, and in some protocols the error code.
+    /// The identifier. It shows who answers, and in some protocols the error code.
     pub identifier: P::Identifier,
     /// The values, or why there are none.
     pub values: Result<R, Failure>,
@@ -19,14 +19,15 @@ pub struct Reply<P: Protocol, R> {
 }
 
 impl<P: Protocol, R> Reply<P, R> {
-    /// Returns the selectors in the data, each with its raw value: in some protocols one of them is the error code.
+    /// Returns the selectors in the data, each with its raw value. In some protocols one of them is
+    /// the error code.
     pub fn selectors(&self) -> impl Iterator<Item = (&'static Selector, u64)> {
         selected(self.selectors, self.frame)
     }
 }
 
 impl<P: Protocol, R: Layout> Reply<P, R> {
-    /// Decodes an [`answer`], which should have so many data bytes.
+    /// Decodes an [`answer`], which should have `length` data bytes.
     pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
         let identifier = P::Identifier::FROM_RAW(frame.raw_id());
         let failure = failure::<P>(selectors, length, &frame);
@@ -34,7 +35,7 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
         Self { identifier, values, selectors, frame }
     }
 
-    /// Returns the reply that is another message, which says why the request is refused.
+    /// Returns the reply of a request that another message refuses.
     pub(crate) fn refused(selectors: &'static [Selector], frame: Frame) -> Self {
         Self { identifier: P::Identifier::FROM_RAW(frame.raw_id()), values: Err(Failure::Error), selectors, frame }
     }
@@ -45,7 +46,8 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
-    /// The device answers with an error code, in the identifier or in a selector, or by another message that says why it refuses.
+    /// The device reports an error: by a code in the identifier or a selector, or by a message that
+    /// refuses the request.
     Error,
     /// It has too few or too many data bytes.
     Length,
@@ -62,7 +64,7 @@ impl fmt::Display for Failure {
 
 impl core::error::Error for Failure {}
 
-/// Copies a frame that shows what the replies show, unless it goes to a module.
+/// Copies a frame that matches the replies, unless it goes to a module.
 pub fn answer<P: Protocol>(replies: &Filter, frame: &impl embedded_can::Frame) -> Option<Frame> {
     classic(frame).filter(|frame| replies.matches(frame) && is_to_module::<P>(frame) == Ok(false))
 }

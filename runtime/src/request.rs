@@ -1,4 +1,4 @@
-//! Requests: how they are built, and which frames answer them.
+//! Requests, and the frames that answer them.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -9,7 +9,7 @@ use crate::plumbing::Continuation;
 use crate::reply::answer;
 use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
-/// Whom a request of a protocol can address.
+/// A target that a request of a protocol can address.
 pub trait Destination: Copy {
     /// The messages of the protocol.
     type Protocol: Protocol;
@@ -17,11 +17,11 @@ pub trait Destination: Copy {
     /// Returns the mode as an index into [`Protocol::MODES`].
     fn mode(self) -> usize;
 
-    /// Returns the address, unless the mode has none to choose.
+    /// Returns the address, if the mode lets the caller choose one.
     fn number(self) -> Option<i32>;
 }
 
-/// A target, and the address from which it is addressed.
+/// A target, and the sender's own address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Route<T> {
     target: T,
@@ -40,7 +40,7 @@ impl<T: Destination> Route<T> {
         Self { target, sender: Some(sender) }
     }
 
-    /// Forgets the protocol, so that messages share the code behind.
+    /// Forgets the protocol, so that all messages share the code behind it.
     fn choice(&self) -> Choice {
         let mode = T::Protocol::MODES.get(self.target.mode());
         Choice { index: self.target.mode(), mode, target: self.target.number(), sender: self.sender }
@@ -64,7 +64,7 @@ impl Choice {
     }
 }
 
-/// How a message travels by one access: which frames exist, what they show, and who answers.
+/// How a message travels by one access: its frames, what they show, and who answers.
 #[derive(Clone, Copy, Debug)]
 pub struct Exchange {
     message: &'static str,
@@ -81,7 +81,8 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Returns an access, without a message and without frames; `answers` says who answers, mode by mode.
+    /// Returns an access without a message and without frames. `answers` says who answers in each
+    /// mode.
     pub const fn new(access: &'static str, answers: &'static [Option<Who>]) -> Self {
         Self {
             message: "",
@@ -98,7 +99,7 @@ impl Exchange {
         }
     }
 
-    /// Returns this access to a message, whose frames show what `own` asks for too.
+    /// Returns this access for a message, whose frames also show what `own` requires.
     #[must_use]
     pub const fn of(self, message: &'static str, own: Filter) -> Self {
         let Self { request, reply, report, .. } = self;
@@ -106,7 +107,7 @@ impl Exchange {
         Self { message, request, reply, report, ..self }
     }
 
-    /// Sets who answers, mode by mode.
+    /// Sets who answers in each mode.
     #[must_use]
     pub const fn answers(self, answers: &'static [Option<Who>]) -> Self {
         Self { answers, ..self }
@@ -118,19 +119,19 @@ impl Exchange {
         Self { has_values: true, ..self }
     }
 
-    /// Sets how many data bytes its frames have.
+    /// Sets the number of data bytes of its frames.
     #[must_use]
     pub const fn length(self, length: u8) -> Self {
         Self { length, ..self }
     }
 
-    /// Sets which device models have the message, by number; without them every model has it.
+    /// Sets the device models that have the message, by number. Without them every model has it.
     #[must_use]
     pub const fn models(self, models: &'static [u8]) -> Self {
         Self { models, ..self }
     }
 
-    /// Sets of which set of frames the message is a member when it travels so.
+    /// Sets the name of the set of frames, if the message travels as its member.
     #[must_use]
     pub const fn member_of(self, set: &'static str) -> Self {
         Self { set: Some(set), ..self }
@@ -154,7 +155,8 @@ impl Exchange {
         Self { report: Some(report.accepting()), ..self }
     }
 
-    /// Adds what refuses a request in place of the reply: another message's reply, which says why.
+    /// Adds the refusal, which answers a request in place of the reply. It is another message's
+    /// reply and says why.
     #[must_use]
     pub const fn refusal(self, refusal: &'static Filter) -> Self {
         Self { refusal: Some(refusal), ..self }
@@ -165,7 +167,7 @@ impl Exchange {
         self.message
     }
 
-    /// Returns the name of the set of frames as a member of which the message travels.
+    /// Returns the name of the set of frames, if the message travels as its member.
     pub const fn set(&self) -> Option<&'static str> {
         self.set
     }
@@ -194,17 +196,17 @@ impl Exchange {
         self.access
     }
 
-    /// Tests whether there is a request by this access, and it carries no values.
+    /// Tests whether this access has a request without values.
     pub(crate) fn asks_by(&self, access: &str) -> bool {
         self.access == access && self.request.is_some() && !self.has_values
     }
 
-    /// Tests whether a device model has the message; every message is one of a model that nobody knows.
+    /// Tests whether a device model has the message. An unknown model has every message.
     pub(crate) fn is_of(&self, model: Option<u8>) -> bool {
         self.models.is_empty() || model.is_none_or(|model| self.models.contains(&model))
     }
 
-    /// Tests what a request carries against the limits of a device model; generated code calls it.
+    /// Tests the values of a request against the limits of a device model. Generated code calls it.
     ///
     /// # Errors
     ///
@@ -228,7 +230,7 @@ impl Exchange {
         Addressing::find(modes, self.answers, kind, id)
     }
 
-    /// Builds the request that carries `message`; generated code calls it.
+    /// Builds the request that carries `message`. Generated code calls it.
     ///
     /// # Errors
     ///
@@ -245,11 +247,11 @@ impl Exchange {
         built.map(|built| Request { built, reply: PhantomData })
     }
 
-    /// Builds the request to a device model that carries `message`; generated code calls it.
+    /// Builds the request that carries `message` to a device model. Generated code calls it.
     ///
     /// # Errors
     ///
-    /// As [`request_to`](Self::request_to), within the limits of the model.
+    /// The same as [`request_to`](Self::request_to), within the limits of the model.
     #[doc(hidden)]
     pub fn request_within<T: Destination, R>(
         &self,
@@ -262,7 +264,7 @@ impl Exchange {
         built.map(|built| Request { built, reply: PhantomData })
     }
 
-    /// Builds a request whose values `encode` writes; all messages share this code.
+    /// Builds a request whose values `encode` writes. All messages share this code.
     fn built(
         &self,
         choice: &Choice,
@@ -327,21 +329,21 @@ const fn narrowed(filter: Option<Filter>, own: Filter) -> Option<Filter> {
     }
 }
 
-/// Which replies a request gets.
+/// The replies that a request gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Replies {
     /// None.
     Nobody,
-    /// One, from the module addressed.
+    /// One, from the addressed module.
     One(Filter),
-    /// One from each module addressed.
+    /// One from each addressed module.
     Each(Filter),
     /// One, from the module that answers for all.
     Coordinator(Filter),
 }
 
 impl Replies {
-    /// Returns what the replies show: also the filter that lets only them pass.
+    /// Returns what the replies show, as a filter that passes only them.
     pub const fn filter(&self) -> Option<&Filter> {
         match self {
             Self::Nobody => None,
@@ -350,7 +352,7 @@ impl Replies {
     }
 }
 
-/// What requests of all messages have.
+/// What the requests of all messages share.
 #[derive(Clone, Copy, Debug)]
 struct Built {
     frame: Frame,
@@ -377,12 +379,13 @@ impl<P, R> Request<P, R> {
         &self.built.replies
     }
 
-    /// Returns what another message's reply shows that refuses this request, if there is one.
+    /// Returns what a refusal of this request shows, if there is one. A refusal is another
+    /// message's reply.
     pub const fn refusal(&self) -> Option<&Filter> {
         self.built.refusal.as_ref()
     }
 
-    /// Lets the frame say that more follow; generated code calls it.
+    /// Makes the frame say that more follow. Generated code calls it.
     #[doc(hidden)]
     pub fn followed(mut self, continuation: &Continuation) -> Self {
         self.built.frame = continuation.put(&self.built.frame);
@@ -391,7 +394,8 @@ impl<P, R> Request<P, R> {
 }
 
 impl<P: Protocol, R> Request<P, R> {
-    /// Decodes a frame if it answers this request, be it with an error; returns `None` for somebody else's frame.
+    /// Decodes a frame if it answers this request, even with an error. Returns `None` for any other
+    /// frame.
     pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>>
     where
         R: Layout,
@@ -406,7 +410,7 @@ impl<P: Protocol, R> Request<P, R> {
         Some(Reply::decode(filter.data_selectors(), self.built.frame.length(), frame))
     }
 
-    /// Tests whether a frame answers this request, be it with an error.
+    /// Tests whether a frame answers this request, even with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
         let mut filters = self.built.replies.filter().into_iter().chain(self.refusal());
         filters.any(|filter| answer::<P>(filter, frame).is_some())

@@ -1,6 +1,6 @@
 //! Exact scaling between raw and physical values.
 
-/// What a raw value is worth: physical = raw × scale + offset, both exact fractions.
+/// A scale and an offset, both exact fractions: physical = raw × scale + offset.
 ///
 /// ```
 /// use canspec_runtime::plumbing::Scale;
@@ -16,14 +16,14 @@
 pub struct Scale {
     numerator: i64,
     denominator: i64,
-    /// Makes `denominator` a common denominator of scale and offset.
+    /// The factor that makes `denominator` a common denominator of scale and offset.
     factor: i64,
     /// The offset as numerator over the common denominator.
     offset: i64,
 }
 
 impl Scale {
-    /// Counts one by one: raw and physical value are the same number.
+    /// The scale 1: raw and physical value are the same number.
     pub const ONE: Self = Self::new(1, 1);
 
     /// Returns a scale without offset.
@@ -41,21 +41,22 @@ impl Scale {
         Self { factor, offset, ..self }
     }
 
-    /// Tests whether physical values fall where raw values rise.
+    /// Tests whether physical values fall while raw values rise.
     pub(crate) const fn is_falling(self) -> bool {
         (self.numerator < 0) != (self.denominator < 0)
     }
 
     /// Returns the double nearest to the physical value of `raw`.
     ///
-    /// Sum and product are exact as long as their size stays below 2⁵³, so that the division is the only rounding.
+    /// Sum and product are exact while their size stays below 2⁵³. Then only the division rounds.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
     #[inline]
     pub const fn physical(self, raw: i64) -> f64 {
         self.sum(raw) as f64 / self.common_denominator() as f64
     }
 
-    /// Returns the raw value nearest to a physical value, ties away from zero, or `None` for what 64 bits cannot hold.
+    /// Returns the raw value nearest to a physical value, with ties away from zero. It is `None` if
+    /// 64 bits cannot hold it.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
     pub const fn raw(self, physical: f64) -> Option<i64> {
         let offset = self.offset as f64 / self.common_denominator() as f64;
@@ -64,7 +65,7 @@ impl Scale {
 
     /// Returns the single nearest to the physical value of `raw`, without arithmetic in double precision.
     ///
-    /// Sum and product are exact as long as their size stays below 2²⁴, so that the division is the only rounding.
+    /// Sum and product are exact while their size stays below 2²⁴. Then only the division rounds.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
     #[inline]
     pub const fn physical_f32(self, raw: i64) -> f32 {
@@ -74,8 +75,8 @@ impl Scale {
     /// Returns the raw value nearest to a physical value as [`raw`](Self::raw) does, without arithmetic in double
     /// precision.
     ///
-    /// The sum is calculated back before the offset is taken off: one rounding less than the other way round, so that
-    /// every raw value survives whose sum stays below 2²².
+    /// It first recovers the sum, and then subtracts the offset. That rounds once less than the
+    /// other order. So every raw value whose sum stays below 2²² comes back unchanged.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
     pub const fn raw_f32(self, physical: f32) -> Option<i64> {
         let sum = physical * self.common_denominator() as f32;
@@ -94,7 +95,8 @@ impl Scale {
     }
 }
 
-/// Returns the integer nearest to `value`, ties away from zero, or `None` for what 64 bits cannot hold.
+/// Returns the integer nearest to `value`, with ties away from zero. It is `None` if 64 bits cannot
+/// hold it.
 #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the limits are tested first")]
 pub const fn nearest(value: f64) -> Option<i64> {
     const LIMIT: f64 = 9_223_372_036_854_775_808.0;
@@ -112,7 +114,8 @@ pub const fn nearest(value: f64) -> Option<i64> {
     })
 }
 
-/// Returns the integer nearest to `value`, ties away from zero, or `None` for what 64 bits cannot hold.
+/// Returns the integer nearest to `value`, with ties away from zero. It is `None` if 64 bits cannot
+/// hold it.
 #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the limits are tested first")]
 const fn nearest_f32(value: f32) -> Option<i64> {
     const LIMIT: f32 = 9_223_372_036_854_775_808.0;
@@ -124,7 +127,7 @@ const fn nearest_f32(value: f32) -> Option<i64> {
     Some(whole.saturating_add((rest >= 0.5) as i64).saturating_sub((rest <= -0.5) as i64))
 }
 
-/// Euclid's algorithm; 1 for two zeros, so that it can always divide.
+/// Euclid's algorithm. Two zeros give 1, so the result can always divide.
 const fn greatest_common_divisor(mut a: i64, mut b: i64) -> i64 {
     while b != 0 {
         (a, b) = (b, a.wrapping_rem(b));

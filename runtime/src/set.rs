@@ -1,4 +1,4 @@
-//! Sets: replies of several frames, each with a member of its own.
+//! Sets: replies of several frames, each with one member.
 
 use crate::address::AddressType;
 use crate::{Bits, Exchange, Frame, Place, Protocol};
@@ -17,17 +17,17 @@ enum Field {
 }
 
 impl Continuation {
-    /// Returns a field of the identifier, and what it is if more frames follow.
+    /// Returns a field of the identifier, and its value if more frames follow.
     pub const fn identifier(bits: Bits, raw: u64) -> Self {
         Self { field: Field::Identifier(bits), raw }
     }
 
-    /// Returns a field of the data, and what it is if more frames follow.
+    /// Returns a field of the data, and its value if more frames follow.
     pub const fn data(place: Place, raw: u64) -> Self {
         Self { field: Field::Data(place), raw }
     }
 
-    /// Tests whether a frame says that more follow, rather than that it is the last.
+    /// Tests whether a frame says that more follow. Otherwise it is the last.
     pub fn is_in(&self, frame: &Frame) -> bool {
         let raw = match self.field {
             Field::Identifier(bits) => bits.of(frame.raw_id()).into(),
@@ -49,22 +49,23 @@ impl Continuation {
     }
 }
 
-/// What a set consists of; generated code implements it, and an [`Assembler`](crate::assembler::Assembler) needs it.
+/// What a set consists of. Generated code implements it, and an
+/// [`Assembler`](crate::assembler::Assembler) needs it.
 pub trait FrameSet: Copy + Default + 'static {
     /// The messages of the protocol.
     type Protocol: Protocol;
-    /// How the set travels; its reply is what every frame of the set shows.
+    /// How the set travels. Every frame of the set shows what its reply shows.
     const EXCHANGE: &'static Exchange;
-    /// The kind of address by which a reply shows who sends it.
+    /// The kind of address that shows who sends a reply.
     const NODE: &'static AddressType;
     /// The field that says whether more frames follow.
     const CONTINUATION: Continuation;
-    /// Names of the members in the order in which they come, at most 64.
+    /// Names of at most 64 members, in the order of their frames.
     const MEMBERS: &'static [&'static str];
 
     /// Returns which member a message is.
     fn position(message: &Self::Protocol) -> Option<usize>;
 
-    /// Keeps the values of a member; tells whether the same stood there already.
+    /// Keeps the values of a member. Returns whether they were there already.
     fn put(&mut self, message: &Self::Protocol) -> bool;
 }

@@ -1,4 +1,4 @@
-//! Signals: named bit ranges of the data with all that the document says of them.
+//! Signals: named bit ranges of the data, with all that the document says about them.
 
 mod any;
 
@@ -13,10 +13,12 @@ pub use any::{AnySignal, Reading, WriteSignal};
 
 /// A named bit range of a message's data.
 ///
-/// Its raw value has the type `R`, its physical value the type `F`: another one only where the value is calculated.
+/// Its raw value has the type `R`, and its physical value the type `F`. They differ only if the
+/// value is calculated.
 ///
-/// [`get`](Self::get) and [`put`](Self::put) deal in raw values; [`decode`](Self::decode) and [`encode`](Self::encode)
-/// in physical ones. Limits of raw integers are integers, and are compared as such.
+/// [`get`](Self::get) and [`put`](Self::put) use raw values. [`decode`](Self::decode) and
+/// [`encode`](Self::encode) use physical values. Limits of raw integers are integers, and are
+/// compared as integers.
 ///
 /// ```
 /// use canspec_runtime::{Payload, Place, Signal};
@@ -46,7 +48,7 @@ pub struct Signal<R: 'static, F: 'static = R> {
 }
 
 impl<R: Raw, F: Physical<R>> Signal<R, F> {
-    /// Returns a signal that carries its raw value as it is.
+    /// Returns a signal whose physical value is its raw value.
     pub const fn new(name: &'static str, place: Place) -> Self {
         Self { name, place, unit: None, scale: None, limits: None, model_limits: &[], specials: &[], raw: PhantomData }
     }
@@ -57,13 +59,15 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         Self { unit: Some(unit), ..self }
     }
 
-    /// Adds the documented limits of the physical value, both legal: those that hold where no device model is chosen.
+    /// Adds the documented limits of the physical value, both legal. They hold if no device model
+    /// is chosen.
     #[must_use]
     pub const fn limits(self, minimum: F, maximum: F) -> Self {
         Self { limits: Some((minimum, maximum)), ..self }
     }
 
-    /// Adds the limits of device models, minimum and maximum, by number of the model; some have none.
+    /// Adds the minimum and maximum of device models, by number of the model. Some models have
+    /// none.
     #[must_use]
     pub const fn model_limits(self, model_limits: &'static [(u8, Option<(F, F)>)]) -> Self {
         Self { model_limits, ..self }
@@ -80,7 +84,8 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         self.place
     }
 
-    /// Returns the documented limits of the physical value, both legal: what holds where no device model is chosen.
+    /// Returns the documented limits of the physical value, both legal. They hold if no device
+    /// model is chosen.
     pub const fn documented_limits(&self) -> Option<(F, F)> {
         self.limits
     }
@@ -101,7 +106,8 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     ///
     /// # Errors
     ///
-    /// Refuses what the signal's bits cannot hold, and what lies outside the limits if `payload` keeps to them.
+    /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
+    /// refuses values outside them.
     pub fn put(&self, raw: R, payload: &mut Payload) -> Result<(), Error> {
         if !raw.is_whole() {
             return Err(self.meaningless(payload));
@@ -116,7 +122,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if R::SIGNED { self.place.get_signed(&data).cast_unsigned() } else { self.place.get(&data) }
     }
 
-    /// Writes bits that come back as they were.
+    /// Writes bits if they can be read back unchanged.
     fn store(&self, bits: u64, number: impl FnOnce() -> Number, payload: &mut Payload) -> Result<(), Error> {
         let mut data = *payload.data();
         self.place.put(&mut data, bits);
@@ -127,7 +133,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         Ok(())
     }
 
-    /// Returns what limits apply to.
+    /// Returns the value that limits apply to.
     fn physical(&self, raw: R) -> F {
         F::of(raw, self.scale)
     }
@@ -166,12 +172,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         self.scale.is_some()
     }
 
-    /// Tests the value that is asked for against the limits, if `payload` keeps to them.
+    /// Tests the value that the caller gave against the limits, if `payload` keeps to them.
     pub(crate) fn check_asked(&self, asked: F, payload: &Payload) -> Result<(), Error> {
         if payload.keeps_limits() { self.check(asked, payload) } else { Ok(()) }
     }
 
-    /// Names the limits of what the bits can hold.
+    /// Says that a value does not fit, with the limits of what the bits hold.
     fn too_wide(&self, value: Number, payload: &Payload) -> Error {
         let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number());
         let is_falling = self.scale.is_some_and(Scale::is_falling);
@@ -206,17 +212,18 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
         Self { scale: Some(scale), ..self }
     }
 
-    /// Returns the physical value: the number of its type nearest to the true one.
+    /// Returns the physical value: the number of type `F` nearest to the exact one.
     pub fn decode(&self, data: &Data) -> F {
         F::scaled(self.bits(*data).cast_signed(), self.exact_scale())
     }
 
-    /// Writes the raw value nearest to a physical value, ties away from zero.
+    /// Writes the raw value nearest to a physical value, with ties away from zero.
     ///
     /// # Errors
     ///
-    /// Refuses what the signal's bits cannot hold. If `payload` keeps to limits, refuses what lies outside them, before
-    /// or after rounding, and what would be rounded to a special raw value.
+    /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
+    /// refuses values outside them, before or after rounding. It then refuses values, too, that
+    /// would be rounded to a special raw value.
     pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
         let (number, raw) = (Scaled::number(physical), physical.raw(self.exact_scale()));
         if payload.keeps_limits() {
@@ -229,7 +236,8 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
         }
     }
 
-    /// Tests a physical value and the raw value to which it is rounded, which has a meaning of its own if it is special.
+    /// Tests a physical value, and the raw value that it is rounded to. A special raw value would
+    /// have another meaning.
     fn check_rounded(&self, physical: F, raw: Option<i64>, payload: &Payload) -> Result<(), Error> {
         let sent = raw.map_or(physical, |raw| F::scaled(raw, self.exact_scale()));
         let special = raw.and_then(R::bits_of).and_then(|bits| self.special(bits));

@@ -4,24 +4,24 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct StatusBit {
-    /// Number of the bit, 0 being the least significant.
+    /// Number of the bit. Bit 0 is the least significant.
     pub bit: u8,
     /// Name of the condition.
     pub name: &'static str,
-    /// How grave it is, if the document says so.
+    /// The severity, if the document says it.
     pub severity: Option<Severity>,
     /// What it means, in a few words.
     pub title: &'static str,
 }
 
-/// How grave a status bit is.
+/// The severity of a status bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Severity {
     /// Describes a condition.
     State,
-    /// Warns of something from which the device recovers.
+    /// Warns of something that the device recovers from.
     Alarm,
     /// Reports a defect.
     Fault,
@@ -38,7 +38,7 @@ impl StatusBit {
         Self { severity: Some(Severity::State), ..Self::new(bit, name, title) }
     }
 
-    /// Returns a bit that warns of something from which the device recovers.
+    /// Returns a bit that warns of something that the device recovers from.
     pub const fn alarm(bit: u8, name: &'static str, title: &'static str) -> Self {
         Self { severity: Some(Severity::Alarm), ..Self::new(bit, name, title) }
     }

@@ -5,12 +5,13 @@ use core::fmt;
 use crate::Meaning;
 use crate::plumbing::Raw;
 
-/// A text of at most `N` ASCII characters; the bytes behind a shorter one are 0.
+/// A text of at most `N` ASCII characters. The bytes after a shorter text are 0.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Text<const N: usize>([u8; N]);
 
 impl<const N: usize> Text<N> {
-    /// Takes a text of at most `N` printable ASCII characters, or returns `None` for another.
+    /// Takes a text of at most `N` printable ASCII characters, or returns `None` for any other
+    /// text.
     pub fn new(text: &str) -> Option<Self> {
         let mut bytes = [0; N];
         bytes.iter_mut().zip(text.bytes()).for_each(|(byte, letter)| *byte = letter);
@@ -22,12 +23,13 @@ impl<const N: usize> Text<N> {
         Self(bytes)
     }
 
-    /// Returns the bytes as they stand in the frame.
+    /// Returns the bytes of the frame.
     pub const fn as_bytes(&self) -> &[u8; N] {
         &self.0
     }
 
-    /// Returns the text, or `None` if the bytes are no printable ASCII with nothing but zeros behind.
+    /// Returns the text. It is `None` unless the bytes are printable ASCII with only zeros after
+    /// it.
     pub fn as_str(&self) -> Option<&str> {
         let length = self.0.iter().rposition(|byte| *byte != 0).map_or(0, |last| last.saturating_add(1));
         let text = self.0.get(..length)?;
@@ -46,7 +48,7 @@ impl<const N: usize> Default for Text<N> {
 }
 
 impl<const N: usize> fmt::Display for Text<N> {
-    /// Writes the text; other bytes than printable ASCII are escaped.
+    /// Writes the text, and escapes bytes that are no printable ASCII.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.as_str() {
             Some(text) => formatter.pad(text),

@@ -1,14 +1,16 @@
-//! `arbitrary` of messages and frames, for fuzzing; generated code calls it. Behind the feature `arbitrary`.
+//! `arbitrary` for messages and frames, for fuzzing, behind the feature `arbitrary`. Generated code
+//! calls it.
 
 use arbitrary::{Arbitrary, Result, Unstructured};
 
 use crate::{Data, Frame, Layout};
 
-/// Decodes eight arbitrary bytes: the values fit their signals, though not always the limits of requests.
+/// Decodes eight arbitrary bytes. The values fit their signals, but not always the limits of
+/// requests.
 ///
 /// # Errors
 ///
-/// Passes on what the source of bytes refuses.
+/// Passes on errors of the source of bytes.
 pub fn layout<L: Layout>(unstructured: &mut Unstructured<'_>) -> Result<L> {
     Data::arbitrary(unstructured).map(|data| L::decode(&data))
 }

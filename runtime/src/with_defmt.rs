@@ -1,13 +1,14 @@
-//! `defmt` of words, texts and frames; generated code calls it. Behind the feature `defmt`.
+//! `defmt` for words, texts and frames, behind the feature `defmt`. Generated code calls it.
 
 use defmt::{Display2Format, Format, Formatter, write};
 
 use crate::plumbing::{Integer, Raw, Word};
 use crate::{Bcd, Frame, Meaning, StatusBit, Text, status};
 
-/// Writes a named value by its name, a status word by the names of its set bits, a packed value by its text.
+/// Writes a named value by its name, a status word by the names of its set bits, and a packed value
+/// by its text.
 ///
-/// What has no name is written as a hexadecimal number.
+/// Values without a name are written as hexadecimal numbers.
 pub fn format<W: Word>(word: W, formatter: Formatter<'_>) {
     match word.meaning() {
         Meaning::Name(name) => write!(formatter, "{=str}", name),

@@ -1,5 +1,6 @@
-//! `serde` of words and floats, in formats for people as the `canspec` command writes them, in others as they stand in
-//! the frame; generated code calls it. Behind the feature `serde`.
+//! `serde` for words and floats, behind the feature `serde`. Generated code calls it. Formats for
+//! people get the values as the `canspec` command writes them. Other formats get them as they stand
+//! in the frame.
 //!
 //! | value | in formats for people |
 //! |---|---|
@@ -11,7 +12,7 @@
 //! | `f32` of the frame | the number, or its bits such as `"0x7FC00000"` if it is not finite |
 //! | [`Frame`](crate::Frame) | as in a log: `"029C03F0#000B71B000003A98"` |
 //!
-//! A format for people must describe itself, as JSON does.
+//! A format for people must be self-describing, as JSON is.
 
 mod bcd;
 pub mod float;
@@ -33,7 +34,8 @@ use crate::{Meaning, status};
 ///
 /// # Errors
 ///
-/// Refuses a packed value whose parts do not fit their places, and passes on what the serializer refuses.
+/// Refuses a packed value whose parts do not fit their places, and passes on errors of the
+/// serializer.
 pub fn serialize<W: Word, S: Serializer>(word: W, serializer: S) -> Result<S::Ok, S::Error> {
     if !word.is_whole() {
         return Err(S::Error::custom("a part of the packed value does not fit its place"));
@@ -58,7 +60,7 @@ pub fn serialize<W: Word, S: Serializer>(word: W, serializer: S) -> Result<S::Ok
 ///
 /// # Errors
 ///
-/// Refuses names and texts that the word does not have, and what its bits cannot hold.
+/// Refuses names and texts that the word does not have, and values that its bits cannot hold.
 pub fn deserialize<'de, W: Word, D: Deserializer<'de>>(deserializer: D) -> Result<W, D::Error> {
     if deserializer.is_human_readable() {
         deserializer.deserialize_any(WordVisitor(PhantomData))

@@ -8,15 +8,15 @@ use crate::{Meaning, PackedText, StatusBit, status};
 
 /// An integer with a legend: named values, a status word or a packed value.
 ///
-/// The types that generated code has for them offer all this by methods of their own.
+/// The generated types offer all this as methods of their own.
 pub trait Word: Copy + PartialEq + 'static {
-    /// The integer that stands in the frame.
+    /// The integer in the frame.
     type Raw: Integer;
     /// What the integer stands for.
     const LEGEND: Legend<Self>;
-    /// Returns the value that stands for an integer, whether the legend has it or not.
+    /// Returns the value of an integer, even if the legend does not have it.
     const FROM_RAW: fn(Self::Raw) -> Self;
-    /// Returns the integer that stands in the frame.
+    /// Returns the integer in the frame.
     const RAW: fn(Self) -> Self::Raw;
 
     /// Returns the name of a named value, unless it has none.
@@ -50,11 +50,11 @@ pub trait Word: Copy + PartialEq + 'static {
         packed::parse(text)
     }
 
-    /// Writes the parts of a packed value in the documented form, be the text exact or not.
+    /// Writes the parts of a packed value in the documented form, even if the text is not exact.
     ///
     /// # Errors
     ///
-    /// Passes on what the formatter returns.
+    /// Passes on errors of the formatter.
     fn write(self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         packed::write(self, formatter)
     }
@@ -67,7 +67,7 @@ pub enum Legend<W: 'static> {
     Names(&'static [(W, &'static str)]),
     /// Every bit that has a name, the lowest first.
     Bits(&'static [StatusBit]),
-    /// The number of bytes, and the pieces of the text that they are written as.
+    /// The number of bytes, and the pieces of their text.
     Text(u8, &'static [Piece]),
 }
 

@@ -55,7 +55,7 @@ fn is_foreseen(example: &Example) -> bool {
     example.fails.is_none() && !example.notes.iter().any(|rule| strange.contains(rule))
 }
 
-/// Counts the document's frames, each of which must have a message.
+/// Counts the document's frames. Each must have a message.
 fn found(protocol: &Protocol, dbc: &Dbc, mask: u32) -> usize {
     let identifiers: BTreeSet<_> = identifiers(dbc).iter().map(|(wide, id)| (*wide, id & mask)).collect();
     let foreseen: Vec<_> = protocol.examples.iter().filter(|example| is_foreseen(example)).collect();

@@ -138,7 +138,7 @@ fn diagnose(spec: &Path) -> Result<Diagnostics> {
     Ok(compile_with_examples(source, percent).diagnostics)
 }
 
-/// Returns the specs of all rules of which the name starts with `prefix`.
+/// Returns the specs of all rules whose file name starts with `prefix`.
 fn fixtures(prefix: &str) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for folder in files(&rules_folder())? {

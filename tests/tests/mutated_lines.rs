@@ -1,8 +1,9 @@
 //! A mistake in one line of a spec, and whether the compiler points at that very line.
 //!
-//! The mistakes are drawn with a fixed seed, twenty a spec, from what says something about frames. What changes nothing that is
-//! generated is no mistake, and drawn anew. With `--nocapture` the test lists all mistakes that are not noticed in their line, each with
-//! the reason for which it does no harm, or with the generated code that it changes.
+//! The mistakes are drawn with a fixed seed, a hundred for each spec, in lines about frames. A change
+//! without an effect on generated code is no mistake, and is drawn again. With `--nocapture`, the
+//! test lists all mistakes that are not noticed in their line. It says why a mistake does no harm,
+//! or which generated code it changes.
 
 use std::fs;
 use std::ops::Range;
@@ -15,7 +16,8 @@ use fastrand::Rng;
 
 const MISTAKES_A_SPEC: usize = 20;
 
-/// Of a hundred mistakes so many at least are noticed by a diagnostic that starts in the line, and so many at most do harm unnoticed.
+/// Fewest mistakes in a hundred that a diagnostic in their line must notice, and most that may do
+/// harm unnoticed.
 const NOTICED_IN_THE_LINE: usize = 90;
 const HARMFUL: usize = 3;
 
@@ -209,8 +211,8 @@ fn notice(lines: &[&str], index: usize, line: Option<&str>, right: &str) -> Noti
     }
 }
 
-/// Returns the lines, counted from 1, in which a mistake is noticed; what is deleted is missed in a line beside it, or where the entry
-/// begins from which it is missing.
+/// Returns the lines, counted from 1, where a mistake is noticed. A deleted line is noticed in a
+/// line beside it, or at the start of its entry.
 fn own_lines(lines: &[&str], index: usize, is_deleted: bool) -> Vec<usize> {
     let indent = |line: &str| line.len() - line.trim_start().len();
     let outer = (0..index).rfind(|above| indent(lines[*above]) < indent(lines[index]) && !lines[*above].is_empty());

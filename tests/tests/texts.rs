@@ -196,7 +196,8 @@ fn texts() -> Vec<String> {
     HOSTILE.into_iter().map(str::to_owned).chain(random).collect()
 }
 
-/// Returns Rust with a struct for each text, documented as that of a message whose note is the text.
+/// Returns Rust with the documentation of a module, and a struct for each text. The text is title and
+/// note of the struct's message.
 fn documented(texts: &[String]) -> String {
     let mut spec = String::from(
         "{canspec: 1, protocol: shown, title: Texts, document: {title: Test, version: '1'}, length: 2, \

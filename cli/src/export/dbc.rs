@@ -14,14 +14,14 @@ use crate::protocols::One;
 
 /// Export a protocol as a DBC.
 ///
-/// Addresses vary, so a message is a layout of the identifier, to be compared by a mask. Tools without masks need the
-/// identifiers of the nodes on the bus.
+/// Addresses vary, so each message stands for a layout of the identifier, which a mask compares.
+/// Tools without masks need the identifiers of the nodes on the bus.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Dbc {
     #[command(flatten)]
     protocol: One,
-    /// The identifiers of these nodes, as `2` or `0-3`, in place of layouts.
+    /// Write the identifiers of these nodes, as `2` or `0-3`, in place of layouts.
     #[arg(long, value_name = "FIRST-LAST", value_parser = nodes)]
     nodes: Option<RangeInclusive<i64>>,
     /// Write the mask and what the DBC cannot say in place of the DBC.
@@ -34,7 +34,7 @@ const EXAMPLES: &str = "Examples:
   canspec export dbc --spec protocol.yaml --nodes 0-3 > four-nodes.dbc
   canspec export dbc --protocol NAME --report";
 
-/// More nodes are no bus, but a mistake.
+/// More nodes are a mistake. No bus has them.
 const MOST: i64 = 256;
 
 impl Dbc {
@@ -65,7 +65,7 @@ impl Dbc {
     }
 }
 
-/// Refuses nodes of which the document names none.
+/// Refuses nodes if the document names none of them.
 fn refuse_strangers(protocol: &Protocol, nodes: &RangeInclusive<i64>) -> Result<(), Failure> {
     let open: Vec<_> = protocol.address_types.iter().filter(|known| known.send.is_none()).collect();
     let (first, last) = (*nodes.start(), *nodes.end());

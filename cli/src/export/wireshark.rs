@@ -11,7 +11,8 @@ use crate::protocols::One;
 
 /// Export a protocol as a Wireshark dissector in Lua.
 ///
-/// It recognises frames on CAN by itself, or is chosen by "Decode As". Wireshark loads it from its folder of plugins.
+/// It recognises frames on CAN by itself, or "Decode As" chooses it. Wireshark loads it from its
+/// folder of plugins.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Wireshark {

@@ -24,14 +24,15 @@ use spec::Spec;
 
 /// Begin a spec from a DBC.
 ///
-/// Every message becomes a report of one whole identifier. Comments with the word DECIDE stand where the vendor's
-/// document must say more, and those at the top list what the DBC says and the spec does not.
+/// Every message becomes a report with one whole identifier. Comments with the word DECIDE show
+/// where the vendor's document must say more. Comments at the top list what the DBC says and the
+/// spec does not.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Dbc {
     /// The DBC.
     file: PathBuf,
-    /// Name of the protocol, in place of that of the file.
+    /// Name of the protocol, in place of the file's name.
     #[arg(long, value_name = "NAME", value_parser = protocol)]
     protocol: Option<String>,
     /// A new file for the spec; standard output without it.
@@ -44,7 +45,7 @@ const EXAMPLES: &str = "Examples:
   canspec import dbc vehicle.dbc --protocol battery -o battery.yaml";
 
 impl Dbc {
-    /// Writes the spec, and tells how much of the DBC it holds.
+    /// Writes the spec, and says how much of the DBC it contains.
     pub fn run(&self) -> Result<Finish, Failure> {
         let dbc = read::read(&self.file)?;
         let name = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
@@ -56,7 +57,7 @@ impl Dbc {
         Ok(Finish::Done)
     }
 
-    /// Writes the spec; a file that somebody may have worked on is left alone.
+    /// Writes the spec. It leaves an existing file alone, because somebody may have worked on it.
     fn write(&self, text: &str) -> Result<(), Failure> {
         let Some(path) = &self.out else { return Ok(output()?.write_all(text.as_bytes())?) };
         let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));

@@ -1,4 +1,4 @@
-//! From a line of JSON to what a frame is made of.
+//! Turns a line of JSON into the content of a frame.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -14,7 +14,7 @@ use serde_json::{Number, Value};
 use super::Members;
 use crate::log;
 
-/// What a line says of a frame, and of the log it came from.
+/// What a line says about a frame, and about the log that it came from.
 #[derive(Debug)]
 pub struct Content {
     /// A JSON number.
@@ -27,7 +27,7 @@ pub struct Content {
 }
 
 impl Content {
-    /// Reads a line, `None` from a blank one.
+    /// Reads a line. A blank line gives `None`.
     ///
     /// # Errors
     ///
@@ -179,7 +179,7 @@ fn whole(number: &Number) -> Option<i128> {
     number.as_u64().map(i128::from).or_else(|| number.as_i64().map(i128::from))
 }
 
-/// A struct of which only a JSON object makes a value, while serde would take a list as well.
+/// A struct that only a JSON object gives a value. serde would take a list as well.
 struct ByName<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for ByName<T> {

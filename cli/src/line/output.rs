@@ -1,4 +1,4 @@
-//! From a decoded frame to a line of JSON.
+//! Turns a decoded frame into a line of JSON.
 
 use std::io::{self, Write};
 
@@ -10,7 +10,7 @@ use serde_json::value::RawValue;
 use super::Members;
 use crate::log;
 
-/// Where a frame comes from, and by which protocol it was read.
+/// Where a frame comes from, and the protocol that read it.
 pub struct Origin<'a> {
     pub line: usize,
     pub time: Option<&'a RawValue>,
@@ -199,14 +199,15 @@ fn signals<'a>(
     Members(readings.iter().map(object).collect())
 }
 
-/// Returns the set reserved bits in as many digits as the data, if there are any.
+/// Returns the set reserved bits with as many digits as the data, if there are any.
 fn reserved(decoded: &Decoded) -> Option<String> {
     let bytes = decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
     bytes.iter().any(|byte| *byte != 0).then(|| log::hexadecimal(bytes))
 }
 
 impl<K: Serialize + PartialEq, V: Serialize> Serialize for Members<K, V> {
-    /// Of members with one name, such as a field that messages have in different places, the first one counts.
+    /// If members have the same name, the first one counts. A field that messages have in different
+    /// places is such a case.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let is_first = |index: usize, name: &K| self.0[..index].iter().all(|(other, _)| other != name);
         let members = self.0.iter().enumerate().filter(|(index, (name, _))| is_first(*index, name));
@@ -267,7 +268,7 @@ messages:
         outcome.protocol.expect("the spec has no errors")
     }
 
-    /// The line that decoding a line of a log gives.
+    /// Decodes a line of a log to a line of JSON.
     fn line(text: &str) -> String {
         let protocol = protocol();
         let entry = log::read(text).expect("the line is readable").expect("the line is not blank");

@@ -1,4 +1,4 @@
-//! What a build script tells cargo.
+//! The lines that a build script prints for cargo.
 
 use std::fmt::Display;
 use std::io;
@@ -7,14 +7,14 @@ use std::path::PathBuf;
 use crate::diagnostic::{Diagnostics, Located};
 use crate::source::visible;
 
-/// Asks to run the build script again when one of the paths changes, and what is in it.
+/// Asks to run the build script again when one of the paths or its content changes.
 ///
-/// Of a path that cannot stand in a line cargo finds nothing, so that it runs the build script each time.
+/// Cargo cannot find a path that does not fit a line. It then runs the build script each time.
 pub fn rerun<'a>(paths: impl Iterator<Item = &'a PathBuf>) -> Vec<String> {
     paths.map(|path| directive("rerun-if-changed", path.display())).collect()
 }
 
-/// Reports each diagnostic with its place, in a line.
+/// Reports each diagnostic with its place, in one line.
 pub fn diagnostics(diagnostics: &Diagnostics) -> Vec<String> {
     diagnostics.located().map(|found| diagnostic(&found)).collect()
 }
@@ -29,7 +29,8 @@ pub fn unwritten(error: &io::Error) -> String {
     directive("error", format_args!("the generated code cannot be written: {error}"))
 }
 
-/// Returns one line; what it repeats of specs and names of files cannot begin another, which cargo would obey.
+/// Returns one line. Texts of specs and file names cannot begin a second line in it, which cargo
+/// would obey.
 fn directive(name: &str, value: impl Display) -> String {
     format!("cargo::{name}={}", visible(&value.to_string()))
 }

@@ -1,4 +1,4 @@
-//! From a spec to generated code.
+//! Compiles a spec to generated code.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub struct Generated {
 }
 
 impl Generated {
-    /// Returns the file of the code, `PROTOCOL.rs` in a folder.
+    /// Returns the code as the file `PROTOCOL.rs` in a folder.
     pub fn file_in(&self, folder: &Path) -> File {
         File::new(folder.join(format!("{}.rs", self.name)), self.code.clone())
     }
@@ -64,7 +64,7 @@ pub fn all(inputs: Inputs, options: &Options) -> Result<Vec<Generated>, Vec<Diag
     if refused.is_empty() { Ok(generated) } else { Err(refused) }
 }
 
-/// Refuses a protocol of which the file is that of another one, or the list of them.
+/// Refuses a protocol whose file name belongs to another protocol, or to the list of protocols.
 fn unclaimed(one: Generated, others: &[Generated]) -> Result<Generated, Diagnostics> {
     let other = others.iter().find(|other| other.name == one.name);
     let what = match other {

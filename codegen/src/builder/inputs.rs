@@ -7,15 +7,16 @@ use std::{fs, io};
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::source;
 
-/// What is to be compiled.
+/// The specs to compile.
 pub struct Inputs {
-    /// Every spec once: those that are named, then those of each folder by name.
+    /// Every spec once: first the named ones, then those of each folder in the order of their
+    /// names.
     pub specs: Vec<PathBuf>,
     /// What is wrong with the folders.
     pub refused: Vec<Diagnostics>,
 }
 
-/// Finds the specs that are named, and those of folders.
+/// Finds the named specs, and those of the folders.
 pub fn find(specs: &[PathBuf], folders: &[PathBuf]) -> Inputs {
     let (mut specs, mut refused) = (specs.to_vec(), Vec::new());
     for folder in folders {
@@ -31,7 +32,7 @@ pub fn find(specs: &[PathBuf], folders: &[PathBuf]) -> Inputs {
     Inputs { specs: distinct(specs), refused }
 }
 
-/// Returns the files of a folder that are specs by their ending, in whatever way that is written.
+/// Returns the files of a folder that end like a spec, in small or capital letters.
 fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -49,7 +50,7 @@ fn ending(path: &Path) -> &str {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default()
 }
 
-/// Keeps the first one of the paths that lead to one file.
+/// Keeps the first of several paths to one file.
 fn distinct(mut paths: Vec<PathBuf>) -> Vec<PathBuf> {
     let mut seen = BTreeSet::new();
     paths.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));

@@ -1,4 +1,4 @@
-//! `protocols.rs`, which has a module for each protocol of a folder.
+//! Writes `protocols.rs`, which has a module for each protocol of a folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::Generated;
 use crate::files::{File, MARK};
 
-/// Name of the file without its ending, which therefore no protocol may have.
+/// Name of the file without its ending. No protocol may have this name.
 pub const NAME: &str = "protocols";
 
 /// Returns the list of protocols.
@@ -15,7 +15,7 @@ pub fn file_in(folder: &Path, generated: &[Generated]) -> File {
     File::new(path_in(folder), format!("{MARK}; do not edit.\n\n{modules}"))
 }
 
-/// Returns the files beside it that the list of an earlier build includes.
+/// Returns the files that an earlier list in the folder includes.
 pub fn listed(folder: &Path) -> Vec<PathBuf> {
     let list = fs::read_to_string(path_in(folder)).unwrap_or_default();
     let names = list.lines().filter_map(|line| line.strip_prefix("    include!(\"")?.strip_suffix("\");"));
@@ -27,7 +27,7 @@ fn path_in(folder: &Path) -> PathBuf {
     folder.join(format!("{NAME}.rs"))
 }
 
-/// Returns the module that includes the file of a protocol, which stands beside the list.
+/// Returns a module that includes the file of a protocol from the list's folder.
 fn module(generated: &Generated) -> String {
     let (name, title) = (&generated.name, format!("{}.", generated.title.in_rust_doc()));
     format!("#[doc = {title:?}]\npub mod {name} {{\n    include!(\"{name}.rs\");\n}}\n")

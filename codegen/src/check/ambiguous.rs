@@ -34,7 +34,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Finds the first of the frames before one that a frame can be as well.
+/// Finds the first earlier frame that a frame could be mistaken for.
 fn first_alike<'a>(
     protocol: &'a Protocol,
     id: FrameId,
@@ -57,7 +57,7 @@ fn first_alike<'a>(
     first.map(|first| &protocol[first])
 }
 
-/// Tests whether a frame belongs to a set that has an error of its own, which can be why it is ambiguous.
+/// Tests whether a frame belongs to a set with an error, because that error can make it ambiguous.
 fn is_of_wrong_set(protocol: &Protocol, frame: &FrameLayout, diagnostics: &Diagnostics) -> bool {
     let message = &protocol[frame.message];
     let set = frame.set.map(|set| &protocol[set]).or(message.set.as_ref().map(|_| message));
@@ -87,7 +87,8 @@ fn report(
     diagnostics.push(Diagnostic::error(&AMBIGUOUS, at, text).help(help).other(second, "the other one"));
 }
 
-/// Returns the places of the sets that two frames are part of; where they are part of one, or of none, those of their messages.
+/// Returns the places of the sets of two frames. If they have no sets or the same one, it returns
+/// those of their messages.
 fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path, Path) {
     let own = |frame: &FrameLayout| protocol[frame.message].doc.path.clone();
     let whole = |frame: &FrameLayout| protocol[frame.set.unwrap_or(frame.message)].doc.path.clone();
@@ -95,7 +96,7 @@ fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path,
     if first == second { (own(one), own(other)) } else { (first, second) }
 }
 
-/// Tests whether models, lengths and addresses leave frames that can be both.
+/// Tests whether models, lengths and addresses allow a frame that is both.
 fn both_fit(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
     !protocol[one.message].is_apart_from(&protocol[other.message])
         && one.length == other.length

@@ -18,7 +18,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Tests the default that holds for a device model, or where none is chosen.
+/// Tests the default for a device model, or the default if no model is chosen.
 fn check_for(
     protocol: &Protocol,
     model: Option<ModelId>,
@@ -38,7 +38,7 @@ fn check_for(
     diagnostics.push_first(Diagnostic::error(&DEFAULT_VALUE, at, text).help(help));
 }
 
-/// Returns a number that lies outside a range; what has a name or a text has no range.
+/// Returns a number that lies outside a range. Named values and texts have no range.
 fn outside(protocol: &Protocol, signal: &Signal, range: &Range, raw: i128) -> Option<String> {
     let bits = signal.bits_of(raw)?;
     match Words::from(protocol).with(signal, |room| room.value(bits)) {

@@ -24,7 +24,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Names the patterns that lack the constant by which the others show their direction, or all of them.
+/// Names the patterns without the constant that shows the direction of the others. If there is no
+/// such constant, it names all patterns.
 fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let text = "nothing in the identifier tells a request from a reply";
     let patterns = patterns(protocol);
@@ -42,7 +43,8 @@ fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Shows where requests and replies have one constant, or else asks for something that tells them apart.
+/// Shows where requests and replies have the same constant, or asks for something that tells them
+/// apart.
 fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagnostics) {
     let (requests, replies): (Vec<_>, Vec<_>) = patterns.iter().partition(|known| known.key == "request");
     let mut pairs = requests.iter().flat_map(|one| replies.iter().map(move |other| (*one, *other)));
@@ -67,7 +69,7 @@ fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagn
     diagnostics.push(diagnostic.help("give the reply another constant here"));
 }
 
-/// A pattern of an addressing mode and the key it stands under.
+/// A pattern of an addressing mode, and its key.
 struct Known<'a> {
     mode: &'a Mode,
     key: &'static str,
@@ -91,7 +93,7 @@ fn patterns_of(mode: &Mode) -> impl Iterator<Item = Known<'_>> {
     keys.into_iter().filter_map(move |(key, pattern)| Some(Known { mode, key, pattern: pattern.as_ref()? }))
 }
 
-/// Tests whether requests and replies that have a constant in the field have different ones.
+/// Tests whether the constants of requests in the field differ from those of replies.
 fn tells(patterns: &[Known], field: u32) -> bool {
     let having = patterns.iter().filter(|known| known.has(field));
     let (requests, replies): (Vec<_>, Vec<_>) = having.partition(|known| known.key == "request");

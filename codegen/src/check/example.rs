@@ -59,7 +59,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
     counts
 }
 
-/// Tests that what is said of each signal is a value of it, unless the signal has an error of its own.
+/// Tests that every text of an example is a value of its signal, unless the signal has an error of
+/// its own.
 pub fn check_texts(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for example in &protocol.examples {
         let Some(message) = example.message.map(|index| &protocol.messages[index]) else { continue };
@@ -74,7 +75,7 @@ pub fn check_texts(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// A check of one example; the diagnostic is boxed because it is large.
+/// The result of a check. The diagnostic is boxed because it is large.
 type Checked = Result<(), Box<Diagnostic>>;
 
 struct Checker<'a> {
@@ -135,7 +136,7 @@ impl<'a> Checker<'a> {
         note.map_or(Ok(()), |note| Err(self.unexpected(note, decoded)))
     }
 
-    /// Tests that what is said of each signal is a value of it.
+    /// Tests that every text is a value of its signal.
     fn fits(&self) -> Checked {
         let Some(message) = self.example.message.map(|index| &self.protocol.messages[index]) else { return Ok(()) };
         let misfit = self.example.means.iter().find_map(|meaning| Some((meaning, meaning.raw.as_ref().err()?)));
@@ -178,7 +179,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Tells whether one digit of the frame is wrong rather than one of the text.
+    /// Tests whether a digit of the frame is probably wrong, and not one of the text.
     fn is_slip_in_frame(&self, signal: &Signal, meaning: &Meaning, read: &str) -> bool {
         let Ok(raw) = meaning.raw else { return false };
         evidence::digits_apart(signal, self.frame().padded(), raw) == 1 && strsim::osa_distance(&meaning.text, read) > 1
@@ -242,7 +243,7 @@ impl<'a> Checker<'a> {
         Box::new(Diagnostic::error(&rules::EXAMPLE, at, text).help(help))
     }
 
-    /// Blames the range for a note that is there or missing against what the example says.
+    /// Blames the range for a missing note, or for one that the example does not state.
     fn limit(&self, rule: NoteRule, decoded: &Decoded, at: At) -> Option<Diagnostic> {
         if rule == NoteRule::OutOfRange { limit::report(self.protocol, self.example, decoded, at) } else { None }
     }
@@ -281,7 +282,7 @@ impl<'a> Checker<'a> {
         Err(Box::new(Diagnostic::error(&EXPECTED_FAILURE, at, text).help(help)))
     }
 
-    /// Returns how a frame fails in fact.
+    /// Returns how a frame really fails.
     fn seen(&self, outcome: &Result<Decoded, Unrecognised>) -> Option<Failure> {
         let decoded = match outcome {
             Err(problem) => {
@@ -322,7 +323,7 @@ fn shown(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Stri
     }
 }
 
-/// Says how an example holds a status bit that has no name.
+/// Says how to write a status bit without a name in an example.
 fn unnamed_bits(value: &Value, read: &str) -> Option<String> {
     let is_unnamed = matches!(value, Value::Status { unknown, .. } if *unknown != 0);
     is_unnamed.then(|| {
@@ -346,7 +347,7 @@ fn no_value(meaning: &Meaning, misfit: &Misfit) -> Diagnostic {
     Diagnostic { help, ..Diagnostic::error(&rules::VALUE, meaning.path.at_value(), why) }
 }
 
-/// Runs an example of a type: bytes alone, and what they mean.
+/// Runs an example of a type, which has only bytes and their meaning.
 fn check_value(protocol: &Protocol, example: &ValueExample, diagnostics: &mut Diagnostics) {
     let bits = example.signal.place.get(&example.data);
     match &example.meaning.raw {

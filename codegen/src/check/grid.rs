@@ -10,17 +10,18 @@ rules! {
     GRID "grid" Check ERROR;
 }
 
-/// What sum and product of a raw value must stay below, as a power of two.
+/// Sums and products of raw values must stay below this power of two.
 const DOUBLE: u32 = 50;
 
-/// The same in single precision, of raw values within the documented range if there is one.
+/// The same in single precision, for raw values within the documented range if there is one.
 ///
-/// Measured: of 2000 scales without offset the first raw value that comes back as another is 4 207 191 in steps of 1/1027;
-/// with offsets none of 440 million random cases below 2^22 does.
+/// This is measured. Among 2000 scales without offset, the first raw value that changes on the way
+/// is 4 207 191, in steps of 1/1027. With offsets, none of 440 million random cases below 2^22
+/// changes.
 const SINGLE: u32 = 22;
 
-/// What numbers must stay below that a single holds exactly, as a power of two: where the common denominator is one, every
-/// step is exact, and limits of unscaled numbers that have a fraction must stay below that too.
+/// Below this power of two, a single holds every integer exactly. If the common denominator is one,
+/// every step is exact. Limits with a fraction must stay below it, too, if the number is unscaled.
 const EXACT: u32 = 24;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -36,12 +37,13 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     });
 }
 
-/// Tests whether a double tells all steps of a scaled number of so many bits apart.
+/// Tests whether a double tells apart all steps of a scaled number that is `width` bits wide.
 pub fn has_exact_steps(width: u8, linear: Linear) -> bool {
     linear.scale != Rational::ZERO && is_below(largest(beyond(width, linear.numeral), linear), DOUBLE)
 }
 
-/// Looks for scales and limits that do not fit single precision, if that is what generated code is to calculate in.
+/// Looks for scales and limits that do not fit single precision, if generated code calculates in
+/// it.
 pub fn fits(protocol: &Protocol, float: Float, diagnostics: &mut Diagnostics) {
     if float == Float::F32 {
         let help = "generate code with `f64`, or write the range that the document states";
@@ -83,7 +85,8 @@ fn each_scaled(
     }
 }
 
-/// Looks for limits of unscaled numbers that a single does not hold; limits without a fraction are integers.
+/// Looks for limits of unscaled numbers that a single does not hold. Limits without a fraction are
+/// integers.
 fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         let is_compared = |signal: &&Signal| signal.encoding.is_unscaled() && !signal.has_whole_limits();
@@ -116,7 +119,7 @@ fn farthest(width: u8, numeral: Numeral) -> i128 {
     last.max(-first)
 }
 
-/// Returns the largest |integer| that the document speaks of, if there is a range.
+/// Returns the largest |integer| of the documented range, if there is one.
 fn documented(signal: &Signal, linear: Linear) -> Option<i128> {
     signal.range?;
     let integer = |end: Rational| {

@@ -8,7 +8,7 @@ rules! {
     NO_EXAMPLE "no_example" Check EITHER;
 }
 
-/// Tests that of a hundred messages at least so many have an example.
+/// Tests that at least `percent` of a hundred messages have an example.
 pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
     let without: Vec<_> = protocol.messages.entries().filter(|(id, _)| !has_example(protocol, *id)).collect();
     for (_, message) in &without {

@@ -26,7 +26,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Returns the place of the answers: the message's own, or those of its access.
+/// Returns the place of `answers`, in the message or else in its access.
 fn at(protocol: &Protocol, message: &Message, exchange: &Exchange) -> At {
     let access = &protocol[exchange.access];
     let doc = if access.answers == exchange.answers { &access.doc } else { &message.doc };

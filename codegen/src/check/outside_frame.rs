@@ -29,7 +29,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Names the bytes of a frame, counted as `bytes` does.
+/// Names the bytes of a frame, counted from 0 as `bytes` does.
 fn bytes(length: u8) -> String {
     match length {
         0 => "no data bytes".to_owned(),
@@ -38,7 +38,7 @@ fn bytes(length: u8) -> String {
     }
 }
 
-/// Returns the place that counts bytes: that of a field, or of the word in which it counts bits.
+/// Returns the place of `bytes`: of the field itself, or of the word around it.
 fn place(field: &Path, diagnostics: &Diagnostics) -> At {
     let known = field.ancestors().map(|outer| outer.key("bytes")).find(|path| diagnostics.has(path));
     known.map_or_else(|| field.at_key(), |path| path.at_value())

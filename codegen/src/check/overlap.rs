@@ -11,7 +11,7 @@ rules! {
     OVERLAP "overlap" Check ERROR;
 }
 
-/// A leaf of a frame: its name, its remarks, its bits with byte 0 highest.
+/// A leaf of a frame: its name, its remarks, and its bits with byte 0 highest.
 type Leaf<'a> = (&'a str, &'a Doc, u64);
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -62,7 +62,7 @@ fn leaf(signal: &Signal) -> Leaf<'_> {
     (&signal.name, &signal.doc, u64::from_be_bytes(signal.place.mask()))
 }
 
-/// Reports two leaves, of which rather the later one is wrong, or else the earlier one.
+/// Reports two leaves. The later one is probably wrong if `is_later`, else the earlier one.
 fn report(message: &Message, [earlier, later]: [&Leaf; 2], is_later: bool, diagnostics: &mut Diagnostics) {
     let text = format!("`{}` and `{}` of `{}` share {}", earlier.0, later.0, message.name, bits(earlier.2 & later.2));
     let help = "correct one of the two places, or remove one of the two";

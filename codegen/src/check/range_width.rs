@@ -25,8 +25,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Reports the limits of a field, or its place where several limits exceed it; where a limit is that of a type, the place of the field
-/// can as well be wrong.
+/// Reports the limits of a field, or its place if several limits exceed it. The place can also be
+/// wrong if the limit is that of a type.
 fn report(signal: &Signal, place: At, field: &str, exceeding: &[(Range, Path)]) -> Option<Diagnostic> {
     let (range, path) = exceeding.first()?;
     let (minimum, maximum) = (range.minimum, range.maximum);

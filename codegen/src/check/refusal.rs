@@ -63,7 +63,7 @@ fn is_apart(reply: &FrameLayout, refusal: &FrameLayout) -> bool {
     reply.constants.iter().any(differs)
 }
 
-/// Tests whether every refusal is such a frame.
+/// Tests whether every frame of such a refusal is a reply of this kind.
 fn says_why(frame: &FrameLayout, refusal: &FrameLayout) -> bool {
     frame.kind == Kind::Reply && frame.constants.iter().all(|constant| refusal.constants.contains(constant))
 }

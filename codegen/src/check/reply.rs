@@ -38,7 +38,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Decodes an example that does not fail, and is what it says.
+/// Decodes an example that must not fail, and does not.
 fn decoded(protocol: &Protocol, example: &Example) -> Option<Decoded> {
     if example.fails.is_some() {
         return None;
@@ -83,7 +83,7 @@ fn value_of(protocol: &Protocol, frame: &Decoded, selector: SelectorId) -> Optio
     }
 }
 
-/// Says in which constants a reply departs from that of the answer or the refusal to which it comes nearest.
+/// Names the constants that differ between a reply and the nearest answer or refusal.
 fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &Decoded) -> Option<String> {
     let answers = |frame: &&FrameLayout| frame.is_exchanged_with(&protocol[asked.frame]) && frame.kind == Kind::Reply;
     let frames = protocol.frames_of(request).chain(&request.refusals).filter(answers);
@@ -99,19 +99,19 @@ fn difference(protocol: &Protocol, request: &Message, asked: &Decoded, reply: &D
     Some(format!(": {}", nearest.join(", ")))
 }
 
-/// Returns the message that a frame belongs to: its set, if it is one of a set.
+/// Returns the set that a frame belongs to, or else its message.
 fn whole(decoded: &Decoded) -> MessageId {
     decoded.set.unwrap_or(decoded.message)
 }
 
-/// Names the message of a frame, its access, and its set if it is one of a set.
+/// Names the message of a frame, its access, and its set if it has one.
 fn shown(protocol: &Protocol, decoded: &Decoded) -> String {
     let (name, access) = (&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name);
     let set = decoded.set.map(|set| format!(" in `{}`", protocol.messages[set].name));
     format!("`{name}` by `{access}`{}", set.unwrap_or_default())
 }
 
-/// Says which address of the reply is not the request's.
+/// Says which address of the reply differs from that of the request.
 fn unbound(protocol: &Protocol, mode: &Mode, who: Who, asked: &Decoded, reply: &Decoded) -> Option<String> {
     let (request, pattern) = (mode.request.as_ref()?, mode.reply(who)?);
     let numbers = numbers(protocol, request, &asked.identifier);

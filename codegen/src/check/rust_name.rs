@@ -67,7 +67,7 @@ mod tests {
     use crate::source::Source;
     use crate::{Outcome, compile};
 
-    /// Compiles a spec of so many device models.
+    /// Compiles a spec of `count` device models.
     fn models(count: usize) -> Outcome {
         let models: Vec<_> = (0..count).map(|number| format!("M{number}: {{section: \"1\"}}")).collect();
         let spec = format!(

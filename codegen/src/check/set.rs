@@ -7,7 +7,7 @@ use crate::model::{
 use crate::resolve::rules;
 use crate::syntax::tree::Path;
 
-/// The most members that a set can have: one bit each in the machine's widest integer.
+/// Largest number of members in a set: one for each bit of an integer of 64 bits.
 const MOST: usize = 64;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -113,7 +113,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Says why the kinds of frames are none of a set.
+    /// Says why a set cannot have these kinds of frames.
     fn wrong_kinds(&self) -> Option<Diagnostic> {
         let (set, kinds) = (&self.message.name, &self.set.kinds);
         if !kinds.contains(&Kind::Report) && kinds.contains(&Kind::Reply) {
@@ -125,7 +125,7 @@ impl Checker<'_> {
         Some(wrong(self.key("in").at_value(), text).help(help))
     }
 
-    /// Says why an access is none of a set.
+    /// Says why a set cannot have an access.
     fn misfit(&self, access: &Access) -> Option<Diagnostic> {
         let (set, name) = (&self.message.name, &access.name);
         let at = self.key("access").index(0).at_value();
@@ -147,7 +147,8 @@ impl Checker<'_> {
         })
     }
 
-    /// Says that replies do not show which node sends them; where one addressing mode is the reason, it is shown.
+    /// Says that replies do not show which node sends them. If one addressing mode is the reason,
+    /// it is shown.
     fn nameless(&self, exchange: &Exchange) -> Diagnostic {
         let text = format!("the replies of the set `{}` do not show which node sends them", self.message.name);
         let help = "let each pattern of the replies name the address of who answers, the same in all addressing modes";
@@ -204,7 +205,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Says that a device model has the set, but not one of its members.
+    /// Says that a device model has the set but lacks one of its members.
     fn lacking(&self, member: &Message, at: &Path) -> Diagnostic {
         let lacking = self.message.models.iter().find(|model| !member.is_of(**model));
         let who = lacking.map_or_else(
@@ -216,7 +217,7 @@ impl Checker<'_> {
         diagnostic.other(member.doc.path.key("models").at_key(), "the models of the member")
     }
 
-    /// Returns the places where a constant of a field can stand for frames of the set.
+    /// Returns the places in the spec where frames of the set can get a constant of a field.
     fn constants(&self, member: &Message, field: &str) -> Vec<Path> {
         let accesses = self.message.exchanges.iter().map(|exchange| &self.protocol[exchange.access].doc.path);
         let of_access = accesses.flat_map(|path| [path.key("request"), path.key("reply")]);
@@ -226,7 +227,7 @@ impl Checker<'_> {
         of_access.chain(of_messages).chain(of_modes).map(|path| path.key(field)).collect()
     }
 
-    /// Returns the name of the field that ends the set if it has one value only.
+    /// Returns the name of the field that ends the set, if a constant fixes it.
     fn fixed(&self, frame: &FrameLayout) -> Option<&str> {
         let continuation = self.protocol.continuation()?;
         let constant = frame.constants.iter().find(|constant| constant.place == continuation.place);

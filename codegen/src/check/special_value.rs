@@ -37,7 +37,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Returns the special values that are also ordinary ones.
+/// Returns the names of special values inside the range.
 fn names_inside(signal: &Signal, range: Range) -> Vec<String> {
     let inside =
         |raw| signal.encoding.value_of(raw).is_some_and(|value| range.minimum <= value && value <= range.maximum);

@@ -9,7 +9,8 @@ rules! {
     STALE_ALLOWANCE "stale_allowance" Check WARNING;
 }
 
-/// Takes out the warnings that are allowed; an allowance without any is stale, unless an error kept rules from being applied.
+/// Takes out the allowed warnings. An allowance without a warning is stale, unless an error kept
+/// rules from being applied.
 pub fn allow(allowances: &[Allowance], diagnostics: &mut Diagnostics) {
     for (index, Allowance { rule, at, .. }) in allowances.iter().enumerate() {
         let was_needed = diagnostics.allow(rule, at);

@@ -40,7 +40,7 @@ fn claimed(message: &Message, foreign: &Foreign) -> Diagnostic {
     diagnostic.other(foreign.doc.path.key("match").at_key(), "this claims them first")
 }
 
-/// Finds who claims all frames of a kind that an addressing pattern allows.
+/// Finds the foreign identifiers that claim all frames of a kind in an addressing pattern.
 fn owner<'a>(protocol: &'a Protocol, frame: &FrameLayout, pattern: &AddressPattern) -> Option<&'a Foreign> {
     let fields = protocol.identifier.fields.entries();
     let values: Table<FieldId, _> = fields.map(|field| values(protocol, frame, pattern, field)).collect();

@@ -19,28 +19,29 @@ use file::File;
 pub struct Dbc {
     /// The file, in ASCII.
     pub text: String,
-    /// The bits of an identifier that choose the message; the other ones vary.
+    /// The bits of an identifier that choose the message. The other bits vary.
     pub mask: u32,
-    /// How many messages of the protocol there are, and how many frames were made of them.
+    /// The number of messages in the protocol, and the number of frames made from them.
     pub counts: (usize, usize),
-    /// What the protocol says and the file cannot, a sentence each without a full stop.
+    /// What the protocol says and the file cannot, each a sentence without a full stop.
     pub losses: Vec<String>,
     /// The frames that the file lacks.
     pub dropped: Vec<Dropped>,
 }
 
-/// A frame of a message that the file lacks, since nothing in it would tell it from another one.
+/// A frame that the file lacks, because nothing would tell it from another frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dropped {
-    /// What is missing where, and why, without a full stop.
+    /// What is missing, where and why, without a full stop.
     pub text: String,
-    /// Whether their identifiers differ, if only in bits that vary.
+    /// Whether the identifiers of the two frames differ, even if only in bits that vary.
     pub has_own_identifier: bool,
 }
 
-/// Emits a DBC: a message for each layout of the identifier, or for each identifier of these nodes.
+/// Emits a DBC. It has a message for each layout of the identifier, or for each identifier of these
+/// nodes.
 ///
-/// Where addresses vary, the messages are told apart by the bits of [`Dbc::mask`].
+/// If addresses vary, the bits of [`Dbc::mask`] tell the messages apart.
 pub fn dbc(protocol: &Protocol, nodes: Option<RangeInclusive<i64>>) -> Dbc {
     let sent = frames::sent(protocol, nodes.as_ref());
     let mask = frames::mask(protocol, &sent);

@@ -1,4 +1,4 @@
-//! Lua: a dissector for Wireshark, which reads the protocol from a table.
+//! Emits Lua: a dissector for Wireshark that reads the protocol from a table.
 
 mod addressing;
 mod recognition;
@@ -12,7 +12,7 @@ use table::Value;
 
 use crate::model::{FrameLayout, IdentifierField, Kind, Message, Protocol, Selector, SelectorPlace, Set};
 
-/// The Lua that is the same for every protocol, in the order in which its parts need each other.
+/// The Lua that is the same for every protocol. Each part needs those before it.
 const INTERPRETER: [&str; 3] =
     [include_str!("lua/decode.lua"), include_str!("lua/link.lua"), include_str!("lua/dissector.lua")];
 
@@ -102,7 +102,8 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
         )
 }
 
-/// Returns what request and reply of a set have in common: its name, and the member if each is asked for.
+/// Returns what request and reply of a set share: its name, and the member if each has its own
+/// request.
 fn exchange(name: &str, set: &Set, member: &Message) -> String {
     if is_asked_for(set) { format!("{name}.{}", member.name) } else { name.to_owned() }
 }

@@ -1,9 +1,10 @@
-//! What the user chooses about generated code.
+//! The options of generated code.
 
-/// What generated code has beside the codec.
+/// Options of generated code.
 ///
-/// Generated code depends on the runtime alone, which passes on the crates of the optional traits: a trait that is switched on
-/// asks for the feature of `canspec-runtime` that has its name, and for nothing else.
+/// Generated code depends only on the runtime, which re-exports the crates of the optional traits.
+/// A trait that is switched on needs the feature of `canspec-runtime` with its name, and nothing
+/// else.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Type of scaled values.
@@ -11,17 +12,18 @@ pub struct Options {
     /// `serde::Serialize` and `serde::Deserialize` of every type that carries values: messages, the enum of them,
     /// identifiers, targets, named values, status words and packed values.
     ///
-    /// Fields have the names of the struct, messages and targets the names of the spec. In formats for people named values
-    /// go by their names, status words by those of their set bits, packed values by their text; what has no name goes by
-    /// its number, so that every value comes back. Other formats carry raw values. What was received does not borrow from
-    /// a format: write its frame, and decode it again.
+    /// Fields have the names of the struct. Messages and targets have the names of the spec.
+    /// Formats for people write named values by name, status words by the names of their set bits,
+    /// and packed values by their text. A value without a name is written as its number, so every
+    /// value can be read back. Other formats carry raw values. Received messages cannot be read
+    /// from a format. Write their frame, and decode it again.
     pub serde: Switch,
     /// `defmt::Format` of the same types, with the same names.
     pub defmt: Switch,
-    /// `arbitrary::Arbitrary` of the structs of messages, out of eight bytes as of a frame: the values can be encoded,
-    /// though a request refuses those outside its limits.
+    /// `arbitrary::Arbitrary` of the structs of messages, made from the eight bytes of a frame. The
+    /// values can be encoded, but a request refuses those outside its limits.
     ///
-    /// The crate `arbitrary` needs the standard library; the generated code itself does not.
+    /// The crate `arbitrary` needs the standard library. The generated code itself does not.
     pub arbitrary: Switch,
 }
 
@@ -31,9 +33,11 @@ pub enum Float {
     /// `f64`, which suits every spec.
     #[default]
     F64,
-    /// `f32`, for processors that calculate in single precision only: decoding and encoding do no arithmetic in double.
+    /// `f32`, for processors that only calculate in single precision. Decoding and encoding then
+    /// never calculate in double.
     ///
-    /// Not every spec suits it: [`check::fits`](crate::check::fits) says which signals do not.
+    /// It does not suit every spec. [`check::fits`](crate::check::fits) reports the signals that
+    /// need `f64`.
     F32,
 }
 
@@ -43,8 +47,8 @@ pub enum Switch {
     /// It does not.
     #[default]
     Never,
-    /// It does if the crate that includes the code has this feature, which turns on that of `canspec-runtime`:
-    /// `serde = ["canspec-runtime/serde"]`.
+    /// It does if the crate that includes the code has this feature. The feature must turn on that
+    /// of `canspec-runtime`: `serde = ["canspec-runtime/serde"]`.
     Gated(String),
     /// It does.
     Always,

@@ -1,4 +1,4 @@
-//! Rust: a `no_std` codec on the runtime.
+//! Emits Rust: a `no_std` codec on the runtime.
 
 mod address;
 mod choice;
@@ -30,7 +30,7 @@ use plan::Plan;
 pub use plan::naming::is_word_of_rust;
 pub(crate) use plan::naming::{camel_case, member};
 
-/// Returns the content of a module that encodes and decodes the protocol, as text to be included as it is.
+/// Returns the content of a module that encodes and decodes the protocol, as text to include.
 pub fn rust(protocol: &Protocol, options: &Options) -> String {
     let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file.for_people());
     header + &formatted(&tokens(protocol, options))

@@ -1,16 +1,16 @@
-//! What a number to send must keep to.
+//! The limits of a value to send.
 
 use std::cmp::Ordering;
 use std::fmt::Display;
 
 use crate::model::{Range, Signal};
 
-/// What a value of one signal must keep to beside its bits.
+/// The limits of one signal's values, beside the width of its bits.
 #[derive(Clone, Copy, Debug)]
 pub enum Allowed {
-    /// Nothing, as in a reply.
+    /// No limits, as in a reply.
     Everything,
-    /// As in a request: a finite number, within the range if there is one.
+    /// Those of a request: a finite number, within the range if there is one.
     Within {
         /// The limits of the device model, or of all models together.
         range: Option<Range>,
@@ -20,7 +20,7 @@ pub enum Allowed {
 }
 
 impl Allowed {
-    /// Tests a number that may be infinite or none at all.
+    /// Tests a number that may be infinite or no number.
     pub fn check_float(&self, signal: &Signal, value: f64) -> Result<(), String> {
         if matches!(self, Self::Within { .. }) && !value.is_finite() {
             return Err(format!("{value} is not a finite number"));
@@ -41,7 +41,7 @@ impl Allowed {
         self.check_by(signal, value, |range| signal.is_within(range, value))
     }
 
-    /// Tests an integer that is its own physical value, however many digits it has.
+    /// Tests an integer of any size that is its own physical value.
     pub fn check_whole(&self, signal: &Signal, value: i128) -> Result<(), String> {
         self.check_by(signal, value, |range| range.has_whole(value))
     }
@@ -56,7 +56,7 @@ impl Allowed {
         missed.map_or(Ok(()), |limits| Err(format!("{shown}{} is outside {limits}", signal.unit_text())))
     }
 
-    /// Tests a number to send, and what it becomes by rounding: another number, or a special value.
+    /// Tests a number to send, and the number or special value that it is rounded to.
     pub fn check_sent(&self, signal: &Signal, value: f64, sent: f64, special: Option<&str>) -> Result<(), String> {
         let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
         if matches!(self, Self::Everything) || is_exact && special.is_some() {
@@ -73,7 +73,7 @@ impl Allowed {
         }
     }
 
-    /// Returns the limits outside which a number lies.
+    /// Returns the limits that a number exceeds.
     fn missed(&self, signal: &Signal, is_within: impl FnOnce(&Range) -> bool) -> Option<String> {
         let Self::Within { range: Some(range), advice } = self else { return None };
         let text = || format!("{}..{}{}{advice}", range.minimum, range.maximum, signal.unit_text());

@@ -1,4 +1,4 @@
-//! Values that have names and no numbers.
+//! Values that have names and are no quantities.
 
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
 use crate::model::{Enumeration, Misfit, NamedValue, NoteRule, Signal};

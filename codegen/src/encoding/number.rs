@@ -78,7 +78,7 @@ impl Number<'_> {
         i64::try_from(integer).map_or(f64::NAN, |integer| self.runtime_scale().physical(integer))
     }
 
-    /// Returns the scale as the runtime computes with it; the checks have made sure that its numbers fit.
+    /// Returns the scale as the runtime computes with it. The checks ensure that its numbers fit.
     fn runtime_scale(&self) -> Scale {
         let part = |number: i128| i64::try_from(number).unwrap_or(1);
         Scale::new(part(self.scale.numerator()), part(self.scale.denominator()))
@@ -109,7 +109,7 @@ impl Number<'_> {
         raw.and_then(|raw| self.signal.bits_of(raw)).ok_or_else(|| self.misfit(value))
     }
 
-    /// Encodes a raw number, which in a request must lie in the range too.
+    /// Encodes a raw number. In a request it must lie within the range.
     fn raw_number(&self, raw: i128, allowed: &Allowed) -> Result<u64, String> {
         let bits = bits(self.signal, raw)?;
         match (self.special(raw), self.numeral.integer(raw)) {
@@ -121,7 +121,7 @@ impl Number<'_> {
         Ok(bits)
     }
 
-    /// Says what the bits can hold.
+    /// Says that a value does not fit, and what the bits can hold.
     fn misfit(&self, value: impl std::fmt::Display) -> String {
         let (unit, width) = (self.signal.unit_text(), self.signal.place.width());
         let held =

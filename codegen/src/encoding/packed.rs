@@ -87,7 +87,7 @@ impl Packed<'_> {
     }
 }
 
-/// Returns how much of a text belongs to a part.
+/// Returns how many bytes of the rest of a text belong to a part.
 fn length(part: &Signal, digits: Option<usize>, rest: &str, is_last: bool) -> usize {
     if part.encoding.is_text() {
         return Text { signal: part }.length();

@@ -31,7 +31,7 @@ pub fn typed(signal: &Signal, text: &str) -> Input {
     }
 }
 
-/// Names what a signal takes.
+/// Names the values that a signal takes.
 pub fn wanted(signal: &Signal) -> String {
     let unit = signal.unit.map_or_else(|| " without a unit".to_owned(), |unit| format!(" in {}", unit.symbol));
     format!("a number{unit}{}", specials(signal))
@@ -43,7 +43,7 @@ pub fn as_double(value: i128) -> f64 {
     value as f64
 }
 
-/// Writes a value in the unit of its signal, if it stands without a unit or in a multiple of it.
+/// Writes a value in the unit of its signal, if it has no unit or a multiple of that unit.
 fn converted(text: &str, unit: Unit) -> Option<String> {
     let is_of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '.' | '/');
     let (number, symbol) = text.split_at(text.find(|letter| !is_of_number(letter)).unwrap_or(text.len()));

@@ -33,14 +33,14 @@ impl Room for Text<'_> {
     }
 }
 
-/// Says that bits are no text, if that is what is odd about them.
+/// Says that bits are no text, if they are none.
 pub fn formless(signal: &Signal, value: &Value) -> Option<(NoteRule, String)> {
     let text = || format!("{} is not a text of the documented form", signal.name);
     (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
 }
 
 impl Text<'_> {
-    /// Returns how many characters there is room for.
+    /// Returns how many characters fit.
     pub fn length(&self) -> usize {
         usize::from(self.signal.place.width() / 8)
     }
@@ -61,7 +61,8 @@ impl Text<'_> {
         Ok(filled.fold(0, |bits, byte| bits << 8 | u64::from(byte)))
     }
 
-    /// Returns the text of raw bits, without the NULs at its end; `None` if that text would not give the same bits.
+    /// Returns the text of raw bits, without the NULs at its end. It is `None` if the text would
+    /// not give the same bits.
     pub fn text(&self, bits: u64) -> Option<String> {
         let bytes = bits.to_be_bytes();
         let text = std::str::from_utf8(&bytes[8 - self.length()..]).ok()?.trim_end_matches('\0');

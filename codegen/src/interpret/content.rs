@@ -1,10 +1,11 @@
-//! What was decoded, as what encodes it.
+//! Turns what was decoded into what can be encoded.
 
 use super::{Content, Decoded, Form, Frame, Input, Value};
 use crate::model::{Example, FrameLayout, Message, Protocol, Signal};
 
 impl Frame {
-    /// Returns the frame of an example; one printed without data has those bytes alone that choose its message.
+    /// Returns the frame of an example. If it is printed without data, only the bytes that choose
+    /// its message are set.
     pub fn of(protocol: &Protocol, example: &Example) -> Self {
         let message = example.message.map(|id| &protocol[id]);
         let data = example.data.clone().unwrap_or_else(|| {
@@ -22,7 +23,7 @@ fn constants(protocol: &Protocol, message: &Message, example: &Example) -> [u8; 
     frame.map_or([0; 8], constant_data)
 }
 
-/// Returns the data bytes of a kind of frame in which nothing but its constants is set.
+/// Returns the data bytes of a kind of frame with only its constants set.
 pub fn constant_data(frame: &FrameLayout) -> [u8; 8] {
     let mut data = [0; 8];
     frame.payload().for_each(|(place, value)| place.put(&mut data, value));
@@ -30,7 +31,7 @@ pub fn constant_data(frame: &FrameLayout) -> [u8; 8] {
 }
 
 impl Content {
-    /// Takes over what a frame was decoded to, so that encoding gives the same frame.
+    /// Takes over a decoded frame, so that encoding gives the same frame.
     pub fn of(protocol: &Protocol, decoded: &Decoded) -> Self {
         let message = &protocol[decoded.message];
         let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
@@ -52,7 +53,7 @@ impl Content {
 }
 
 impl Input {
-    /// Takes over a value; one without a physical value stands for its bits.
+    /// Takes over a value. Without a physical value it takes the bits.
     pub fn of(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Self {
         match value {
             Value::None => Self::Raw(bits.into()),

@@ -1,4 +1,4 @@
-//! From a frame to a message with its values.
+//! Decodes a frame to a message with its values.
 
 use std::cmp::Reverse;
 use std::fmt::Display;
@@ -11,20 +11,20 @@ use crate::model::{
     Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
-/// Decodes a frame that goes to a device model, or comes from one.
+/// Decodes a frame that goes to or comes from a device model.
 ///
-/// Without a model, messages that look the same are decoded as the first one listed, and limits that depend on the model
-/// do not count.
+/// Without a model, a frame of several messages that look the same is decoded as the first of them.
+/// Limits of models then do not count.
 ///
 /// # Errors
 ///
-/// Says why a frame is not recognised; the tests come in the order of [`Problem`]'s variants, except that a sub-command is
-/// looked for after the length is known to be right.
+/// Says why a frame is not recognised. The tests come in the order of [`Problem`]'s variants, with
+/// one exception. Constants in the data bytes are tested after the length.
 pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Decoded, Unrecognised> {
     Decoder { protocol, model, frame, data: frame.padded() }.decode()
 }
 
-/// A kind of frame that a frame can be.
+/// A kind of frame that a frame may be.
 type Candidate<'a> = (FrameId, &'a FrameLayout);
 
 struct Decoder<'a> {
@@ -139,7 +139,7 @@ impl<'a> Decoder<'a> {
         format!("the identifier's {} is {found} instead of {wanted}", field.name)
     }
 
-    /// Returns what a selector has in this frame.
+    /// Returns the value of a selector in this frame.
     fn read(&self, place: SelectorPlace) -> u64 {
         match place {
             SelectorPlace::Identifier(field) => self.field(field).into(),
@@ -194,7 +194,7 @@ impl<'a> Decoder<'a> {
         })
     }
 
-    /// Returns those of these kinds of frames that have the frame's length.
+    /// Returns the kinds of frames that have the frame's length.
     fn candidates(&self, frames: &'a [FrameId]) -> impl Iterator<Item = Candidate<'a>> {
         let protocol = self.protocol;
         let length = self.frame.data.len();
@@ -202,7 +202,8 @@ impl<'a> Decoder<'a> {
         known.filter(move |(_, layout)| usize::from(layout.length) == length)
     }
 
-    /// Puts a candidate that the device model has first, then one whose addresses fit better.
+    /// Ranks candidates: first those that the device model has, then those whose addresses fit
+    /// better.
     fn rank(&self, (_, frame): &Candidate) -> (Reverse<bool>, Fit, Reverse<usize>) {
         let addressing = self.addressing(frame);
         let is_of_model = self.model.is_none_or(|model| self.protocol[frame.message].is_of(model));
@@ -246,7 +247,7 @@ impl<'a> Decoder<'a> {
         format!("{} {}", self.protocol[id].name, self.protocol.selector_value(id, value))
     }
 
-    /// Returns the values of payload selectors, as far as the frame has the bytes.
+    /// Returns the values of payload selectors whose bytes the frame has.
     fn selectors(&self, ids: &[SelectorId]) -> Vec<(SelectorId, u64)> {
         let values = ids.iter().filter_map(|id| match self.protocol[*id].place {
             SelectorPlace::Payload(place) if covered(place.mask(), self.frame.data.len()) => {
@@ -267,7 +268,8 @@ impl<'a> Decoder<'a> {
         self.protocol.identifier.fields.map(|field| field.get(self.frame.id))
     }
 
-    /// Finds the mode that fits best: documented addresses, then tolerated ones, then modes the message does not have.
+    /// Finds the mode that fits best: documented addresses, then tolerated ones, then modes that
+    /// the message does not have.
     fn addressing(&self, frame: &FrameLayout) -> Addressing<'a> {
         let patterns = self.protocol.modes.entries().flat_map(|(mode, known)| {
             let senders: &[_] = match frame.kind {
@@ -294,7 +296,8 @@ impl<'a> Decoder<'a> {
         fitting.min_by_key(|known| (known.fit, Reverse(known.constants))).unwrap_or(none)
     }
 
-    /// Tests a pattern; `Some(true)` if it holds but for an address that the document does not name.
+    /// Tests a pattern. `Some(true)` means that it holds with an address that the document does not
+    /// name.
     fn fits(&self, pattern: &AddressPattern) -> Option<bool> {
         if self.frame.id & pattern.mask != pattern.value {
             return None;
@@ -345,7 +348,7 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    /// Returns the set bits that no signal and no selector covers.
+    /// Returns the set bits that neither a signal nor a selector covers.
     fn reserved(&self, frame: &FrameLayout) -> [u8; 8] {
         (u64::from_be_bytes(self.data) & !frame.covered).to_be_bytes()
     }
@@ -422,7 +425,7 @@ fn range_note(
     Some(Note { rule: NoteRule::OutOfRange, text })
 }
 
-/// Names the kinds of frames, for texts.
+/// Names the kinds of frames in words.
 fn kinds(scope: &Scope) -> String {
     scope.kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(" or ")
 }

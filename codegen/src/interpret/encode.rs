@@ -1,20 +1,21 @@
-//! From a message with its values to a frame.
+//! Encodes a message with its values to a frame.
 
 use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
 use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace};
 use crate::nearest;
 
-/// Notes that a request does not get: it is refused.
+/// Notes that no request may get. It is refused instead.
 const FORBIDDEN: [NoteRule; 3] = [NoteRule::Address, NoteRule::Addressing, NoteRule::ModelDependent];
 
-/// Makes the frame that shows `content`, for a device model or for any.
+/// Makes the frame that shows `content`, for a device model or for any model.
 ///
 /// # Errors
 ///
-/// Refuses unknown names, missing and superfluous fields and signals, values that do not fit, a message that contradicts the
-/// identifier or the selectors, foreign identifiers; in requests also values outside their range, messages that the model
-/// does not have, and addresses and addressing modes that the document does not have.
+/// Refuses unknown names, missing and superfluous fields and signals, and values that do not fit.
+/// Refuses foreign identifiers, and a message that contradicts the identifier or the selectors. In
+/// requests, it also refuses values outside their range, and messages that the model does not have.
+/// It also refuses addresses and addressing modes that the document does not have.
 pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, &content.message)?;
     let id = identifier(protocol, content)?;
@@ -53,7 +54,7 @@ pub fn frame(protocol: &Protocol, message: &Message, id: u32, data: [u8; 8]) -> 
     Frame { id, extended: protocol.identifier.extended, data, form: Form::Data }
 }
 
-/// Builds the identifier of its named fields.
+/// Builds the identifier from its named fields.
 fn identifier(protocol: &Protocol, content: &Content) -> Result<u32, Refusal> {
     let fields = &protocol.identifier.fields;
     if let Some((name, _)) = content.identifier.iter().find(|(name, _)| fields.iter().all(|field| field.name != *name))
@@ -191,8 +192,8 @@ fn put_reserved(message: &Message, layout: &FrameLayout, content: &Content, data
     Ok(())
 }
 
-/// Tests that the frame decodes to what was asked for, and that a request keeps to the documented addresses and to the
-/// messages of the model.
+/// Tests that the frame decodes to the content. A request must also keep to the documented
+/// addresses and to the messages of the model.
 fn confirm(
     protocol: &Protocol,
     message: &Message,

@@ -1,4 +1,4 @@
-//! A request by name: `set_output` to `module:3`.
+//! Makes a request by name: `set_output` to `module:3`.
 
 use super::content::constant_data;
 use super::encode::{find_message, frame, not_of, refuse};
@@ -8,7 +8,7 @@ use crate::encoding::Words;
 use crate::model::{AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, SelectorPlace, Set};
 use crate::number::Rational;
 
-/// Whom a request goes to.
+/// Where a request goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
     /// The addressing mode, or the address type that only one mode leaves open.
@@ -22,7 +22,7 @@ impl Target {
     ///
     /// # Errors
     ///
-    /// Says that what follows the colon is no number.
+    /// Says that the text after the colon is no number.
     pub fn parse(text: &str) -> Result<Self, Refusal> {
         let Some((name, number)) = text.split_once(':') else {
             return Ok(Self { name: text.to_owned(), number: None });
@@ -39,7 +39,7 @@ impl Target {
 ///
 /// # Errors
 ///
-/// As [`request`].
+/// The same as [`request`].
 pub fn requests(
     protocol: &Protocol,
     model: Option<ModelId>,
@@ -56,7 +56,7 @@ pub fn requests(
     }
 }
 
-/// Makes one request for each member of a set; all but the last say that more follow.
+/// Makes one request for each member of a set. All but the last say that more follow.
 fn of_members(
     protocol: &Protocol,
     model: Option<ModelId>,
@@ -87,7 +87,7 @@ fn of_members(
     Ok(frames)
 }
 
-/// Lets a frame say that more follow.
+/// Makes a frame say that more follow.
 fn continue_after(protocol: &Protocol, frame: &mut Frame) {
     let Some(continuation) = protocol.continuation() else { return };
     match continuation.place {
@@ -103,8 +103,8 @@ fn continue_after(protocol: &Protocol, frame: &mut Frame) {
     }
 }
 
-/// Makes the frame of a request to a device model or to any; a signal that is left
-/// out takes its default.
+/// Makes the frame of a request to a device model or to any model. A signal that is left out takes
+/// its default.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! One signal: raw bits to physical value and back.
+//! Turns the raw bits of one signal into a physical value, and back.
 
 use super::{Input, Refusal, Value};
 use crate::encoding::{Allowed, Words};
@@ -9,22 +9,23 @@ pub fn physical(protocol: &Protocol, signal: &Signal, bits: u64) -> Value {
     Words::from(protocol).with(signal, |room| room.value(bits))
 }
 
-/// What a value to send must keep to.
+/// The limits of a value to send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limits {
-    /// What the bits hold, as in a reply.
+    /// Whatever the bits hold, as in a reply.
     Bits,
-    /// The range too, as in a request: that of a device model, or where none is chosen the hull of those of all models.
+    /// The range, as in a request. It is that of a device model, or the hull of all models' ranges
+    /// if none is chosen.
     Range(Option<ModelId>),
 }
 
 impl Limits {
-    /// Returns what holds in a kind of frame.
+    /// Returns the limits of a kind of frame.
     pub fn of(kind: Kind, model: Option<ModelId>) -> Self {
         if kind.is_to_module() { Self::Range(model) } else { Self::Bits }
     }
 
-    /// Returns what a signal is allowed.
+    /// Returns the limits of a signal.
     fn allowed(self, protocol: &Protocol, message: &Message, signal: &Signal) -> Allowed {
         let Self::Range(model) = self else { return Allowed::Everything };
         let range = match model {
@@ -37,7 +38,8 @@ impl Limits {
     }
 }
 
-/// Returns the raw bits of a value to send; a request also refuses what lies outside the range and what is not finite.
+/// Returns the raw bits of a value to send. A request also refuses values that lie outside the
+/// range or are not finite.
 ///
 /// # Errors
 ///

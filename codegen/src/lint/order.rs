@@ -12,10 +12,10 @@ rules! {
     ORDER "order" Lint WARNING;
 }
 
-/// How many siblings show an order.
+/// Fewest siblings that show an order.
 const FEWEST: usize = 5;
 
-/// First and last number of a place; both are the same for a single number.
+/// First and last number of a place. Both are the same for a single number.
 type Range = (i128, i128);
 
 /// The number of an entry.
@@ -69,7 +69,7 @@ fn keys<'a>(table: &Table<'a>) -> Vec<Step<'a>> {
     table.entries.keys().filter_map(|number| Step::read(number, table.path.key(number).at_key())).collect()
 }
 
-/// Puts names together that differ only in the number at their end.
+/// Groups names that differ only in the number at their end.
 fn numbered_names<'a>(table: &Table<'a>) -> impl Iterator<Item = Sequence<'a>> {
     let mut siblings: IndexMap<_, Vec<_>> = IndexMap::new();
     for name in table.entries.keys() {
@@ -80,7 +80,7 @@ fn numbered_names<'a>(table: &Table<'a>) -> impl Iterator<Item = Sequence<'a>> {
     siblings.into_values().map(|steps| Sequence { steps, may_repeat: false })
 }
 
-/// Puts messages together that differ only in the last of their selectors.
+/// Groups messages that differ only in the last of their selectors.
 fn selectors<'a>(table: &Table<'a>) -> impl Iterator<Item = Sequence<'a>> {
     let mut siblings: IndexMap<_, Vec<_>> = IndexMap::new();
     for (name, entry) in table.entries {
@@ -102,7 +102,7 @@ fn selector<'a>(path: &Path, message: &'a Node) -> Option<(Shared<'a>, Step<'a>)
     Some(((last, others.collect()), step))
 }
 
-/// Notices the one entry that is out of order.
+/// Finds the one entry that is out of order.
 fn misplaced(sequence: &Sequence) -> Option<Diagnostic> {
     let Sequence { steps, may_repeat } = sequence;
     let upwards: Vec<_> = steps.iter().map(|step| step.range).collect();
@@ -127,12 +127,12 @@ fn is_ordered(ranges: &[Range], may_repeat: bool) -> bool {
     ranges.windows(2).all(|pair| is_before(pair[0], pair[1], may_repeat))
 }
 
-/// Finds the one without which the others ascend.
+/// Finds the only number without which the others ascend.
 fn odd_one(ranges: &[Range], may_repeat: bool) -> Option<usize> {
     let at = ranges.windows(2).position(|pair| !is_before(pair[0], pair[1], may_repeat))?;
     let mends = |index: usize| is_ordered(&[&ranges[..index], &ranges[index + 1..]].concat(), may_repeat);
     match (mends(at), mends(at + 1)) {
-        // Two that changed places are both right.
+        // Two swapped numbers are not one mistake.
         (true, true) if ranges[at].0 > ranges[at + 1].1 => None,
         (true, true) => one_of_two(ranges, at),
         (true, false) => Some(at),
@@ -142,7 +142,8 @@ fn odd_one(ranges: &[Range], may_repeat: bool) -> Option<usize> {
     .filter(|index| has_room(ranges, *index))
 }
 
-/// Tells of two neighbours with the same number which one is wrong: beside the right one, nothing is missing on the other side.
+/// Returns which of two neighbours with the same number is wrong. The right one has no gap on its
+/// other side.
 fn one_of_two(ranges: &[Range], at: usize) -> Option<usize> {
     let gap = |left: usize| Some(ranges.get(left + 1)?.0 - ranges.get(left)?.1);
     match (gap(at.checked_sub(1)?)?, gap(at + 1)?) {
@@ -152,7 +153,8 @@ fn one_of_two(ranges: &[Range], at: usize) -> Option<usize> {
     }
 }
 
-/// Tells whether there is a number between the neighbours of an entry; nothing says where the first and the last belong.
+/// Tests whether there is a number between the neighbours of an entry. The first and the last entry
+/// could belong anywhere.
 fn has_room(ranges: &[Range], index: usize) -> bool {
     let before = index.checked_sub(1).and_then(|index| ranges.get(index));
     before.zip(ranges.get(index + 1)).is_some_and(|(before, after)| after.0 - before.1 > 1)

@@ -13,7 +13,7 @@ rules! {
     QUANTITY "quantity" Lint WARNING;
 }
 
-/// The unit of a share of anything.
+/// The unit of a share of any quantity.
 const PERCENT: &str = "%";
 
 /// Something with a unit.
@@ -53,7 +53,7 @@ fn fact<'a>(name: &'a str, text: &'a str, path: Path) -> Option<Measured<'a>> {
     Some(Measured { name, title: None, unit, path })
 }
 
-/// Notices a unit of something else than the name says, or the title if the name says nothing.
+/// Finds a unit that contradicts the name, or the title if the name says no quantity.
 fn contradiction(measured: &Measured) -> Option<Diagnostic> {
     let Measured { name, title, unit, path } = measured;
     let (quantity, source) = match (read(name), title.map_or(Reading::Unknown, read)) {

@@ -14,19 +14,20 @@ rules! {
     SPELLING "spelling" Lint WARNING;
 }
 
-/// Longest name that is looked at, in bytes.
+/// Longest name that is tested, in bytes.
 const LONGEST: usize = 48;
 
-/// Shortest name that is looked at, in bytes.
+/// Shortest name that is tested, in bytes.
 const SHORTEST: usize = 4;
 
-/// Shortest word in which a letter may be missing, wrong or too many; shorter ones are too like each other.
+/// Shortest word in which a letter may be missing, wrong or superfluous. Shorter words are too
+/// similar.
 const LONG_WORD: usize = 5;
 
-/// What stands between the ends of a range.
+/// Words and signs between the ends of a range.
 const TO: [&str; 6] = ["to", "..", "...", "…", "-", "–"];
 
-/// Most strange names that are looked at, so that a file of many thousands takes no longer.
+/// Largest number of strange names that are tested, so that large files take no longer.
 const MOST: usize = 500;
 
 pub fn lint(tree: &Node, tables: &[Table]) -> Vec<Diagnostic> {
@@ -52,7 +53,7 @@ fn mistyped(name: &Name, meant: &str) -> Diagnostic {
     Diagnostic::warning(&SPELLING, name.at.clone(), text).label(label).help(help)
 }
 
-/// Tells whether a name has a word that the spec has nowhere else.
+/// Tests whether a name has a word that stands nowhere else in the spec.
 fn is_strange(vocabulary: &Vocabulary, name: &str) -> bool {
     (SHORTEST..=LONGEST).contains(&name.len()) && strange_words(vocabulary, name).next().is_some()
 }
@@ -61,7 +62,7 @@ fn strange_words<'a>(vocabulary: &'a Vocabulary, name: &'a str) -> impl Iterator
     words(name).filter(move |word| !vocabulary.has_elsewhere(word, name))
 }
 
-/// Returns the name from which a name differs by one slip of the hand, which made a strange word of known ones.
+/// Returns a name of known words that differs by one typing slip.
 fn meant(vocabulary: &Vocabulary, name: &Name) -> Option<String> {
     if let Some(known) = swapped(name.text).find(|other| is_meant(vocabulary, name.text, other)) {
         return Some(known);
@@ -72,7 +73,7 @@ fn meant(vocabulary: &Vocabulary, name: &Name) -> Option<String> {
     Some(name.text.replacen(word, &other, 1))
 }
 
-/// Returns a name with any two neighbours in the other order.
+/// Returns the names with two neighbouring letters swapped.
 fn swapped(name: &str) -> impl Iterator<Item = String> {
     let is_part = |letter: u8| letter.is_ascii_alphabetic() || letter == b'_';
     let pairs = name.as_bytes().windows(2).enumerate();
@@ -83,8 +84,8 @@ fn swapped(name: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// Tells whether a swap made a strange word of known ones; a single word must be long or in other names, as short ones are too like
-/// each other.
+/// Tests whether a swap turned known words into a strange one. A single word must be long or in
+/// other names, because short words are too similar.
 fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
     let before: Vec<_> = words(name).collect();
     let after: Vec<_> = words(other).collect();
@@ -96,7 +97,8 @@ fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
         && found.all(|word| vocabulary.has_often(word, name) && is_certain(word))
 }
 
-/// Notices a number in a name that is not in its title, where the title has the words of the name and other numbers.
+/// Finds a number in a name that is not in its title, if the title has the same words and other
+/// numbers.
 fn misnumbered(name: &Name) -> Option<Diagnostic> {
     let title = name.title?;
     let title_numbers: Vec<_> = numbers(title).collect();
@@ -121,7 +123,7 @@ fn numbers(text: &str) -> impl Iterator<Item = &str> {
     digits.map(|digits| digits.trim_start_matches('0')).map(|digits| if digits.is_empty() { "0" } else { digits })
 }
 
-/// Returns the ranges in a text, such as `5 to 11`: they say what is inside, and are no number of the whole.
+/// Returns the ranges in a text, such as `5 to 11`. Their ends do not number the thing itself.
 fn ranges(text: &str, numbers: &[&str]) -> Vec<RangeInclusive<u64>> {
     let is_digit = |letter: char| letter.is_ascii_digit();
     let between = text.split(is_digit).filter(|between| !between.is_empty());

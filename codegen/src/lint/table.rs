@@ -1,11 +1,11 @@
-//! The maps of a spec in which names are given.
+//! Finds the maps of a spec that give names.
 
 use indexmap::IndexMap;
 
 use crate::diagnostic::At;
 use crate::syntax::tree::{Content, Entry, Node, Path};
 
-/// Keys of the language under which names are given.
+/// Keys of the language whose maps give names.
 const KINDS: [&str; 15] = [
     "identifier",
     "header",
@@ -24,7 +24,7 @@ const KINDS: [&str; 15] = [
     "facts",
 ];
 
-/// Keys of the language under which names that are given elsewhere lead to values.
+/// Keys of the language whose maps use names that are given elsewhere.
 const REFERENCES: [&str; 10] =
     ["match", "request", "reply", "refusal", "report", "one", "each", "coordinator", "answers", "means"];
 
@@ -49,12 +49,12 @@ pub struct Name<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Tells whether the names are given here.
+    /// Tests whether the table gives its names.
     pub fn is_definition(&self) -> bool {
         self.kind == "values" || KINDS.contains(&self.kind)
     }
 
-    /// Returns the names that are given here.
+    /// Returns the names that the table gives.
     pub fn names(&self) -> impl Iterator<Item = Name<'a>> {
         let is_of_values = self.kind == "values";
         self.entries.iter().filter_map(move |(key, entry)| {
@@ -75,7 +75,8 @@ pub fn tables(tree: &Node) -> Vec<Table<'_>> {
     found
 }
 
-/// Looks for tables in a map with keys of the language, or in a list of such maps; `owner` is the kind of table that it is in.
+/// Looks for tables in a map with keys of the language, or in a list of such maps. `owner` is the
+/// kind of table around it.
 fn visit<'a>(node: &'a Node, owner: &str, path: &Path, found: &mut Vec<Table<'a>>) {
     match &node.content {
         Content::Map(entries) => {

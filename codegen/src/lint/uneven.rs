@@ -11,10 +11,10 @@ rules! {
     UNEVEN "uneven" Lint WARNING;
 }
 
-/// How many entries show what all of them have.
+/// Fewest entries that show what all have.
 const FEWEST: usize = 4;
 
-/// Kinds of maps, and the keys that every entry can have, whatever it is.
+/// Kinds of maps, and the keys that every entry of them can have.
 const KEYS: [(&str, &[&str]); 5] = [
     ("status", &["severity", "title"]),
     ("messages", &["title"]),
@@ -45,7 +45,7 @@ fn uneven(table: &Table) -> Vec<Diagnostic> {
     missing(&whole, |key| keys.contains(&key)).into_iter().chain(parts).collect()
 }
 
-/// Returns the entries of a table, or the map that each of them has as the value of a key.
+/// Returns the entries of a table, or the maps after a key of each entry.
 fn siblings<'a>(table: &Table<'a>, key: Option<&str>) -> Vec<Sibling<'a>> {
     let entries = table.entries.iter();
     entries
@@ -59,7 +59,8 @@ fn siblings<'a>(table: &Table<'a>, key: Option<&str>) -> Vec<Sibling<'a>> {
         .collect()
 }
 
-/// Notices the one key that all siblings but one have; an entry without several of them is something else.
+/// Finds the one key that all siblings but one have. An entry that lacks several keys is of another
+/// kind.
 fn missing(siblings: &[Sibling], is_compared: impl Fn(&str) -> bool) -> Option<Diagnostic> {
     let mut counts: IndexMap<&str, usize> = IndexMap::new();
     for key in siblings.iter().flat_map(|sibling| sibling.entries.keys()).filter(|key| is_compared(key)) {

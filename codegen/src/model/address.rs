@@ -18,7 +18,7 @@ pub struct AddressType {
     pub offset: i64,
     /// Step of the number from one raw value to the next, 1 or -1: raw = (number - offset) * sign.
     pub sign: i64,
-    /// A number outside the range is something else, rather than an undocumented address.
+    /// A number outside the range is no address of this type, not even an undocumented one.
     pub strict: bool,
     /// Number sent unless the caller says otherwise.
     pub send: Option<i64>,
@@ -57,9 +57,9 @@ pub struct Mode {
     pub doc: Doc,
     /// What the identifier of a request shows.
     pub request: Option<AddressPattern>,
-    /// What the identifier of a reply or report shows if the one module addressed sends it.
+    /// What the identifier of a reply or report shows if the one addressed module sends it.
     pub one: Option<AddressPattern>,
-    /// What the identifier of a reply or report shows if each module addressed sends one.
+    /// What the identifier of a reply or report shows if each addressed module sends one.
     pub each: Option<AddressPattern>,
     /// What the identifier of a reply or report shows if one module sends it for all.
     pub coordinator: Option<AddressPattern>,
@@ -78,7 +78,7 @@ impl Mode {
         }
     }
 
-    /// Returns the pattern of a kind of frame, of requests that `who` answers, and of others that `who` sends.
+    /// Returns the pattern of a kind of frame. `who` answers a request, and sends any other frame.
     pub fn pattern(&self, kind: Kind, who: Who) -> Option<&AddressPattern> {
         match kind {
             Kind::Request => self.request.as_ref(),
@@ -109,15 +109,16 @@ pub struct Address {
     pub field: FieldId,
     /// The kind of address.
     pub address_type: AddressTypeId,
-    /// Raw ranges that belong to somebody else; the other undocumented ones are tolerated, unless the type is strict.
+    /// Raw ranges that belong to other types or modes. Other undocumented values are tolerated,
+    /// unless the type is strict.
     pub excluded: Vec<(u32, u32)>,
 }
 
-/// How an identifier shows its direction: one of these lists of tests holds.
+/// How an identifier shows its direction.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Direction {
-    /// Lists of tests; a direction is shown if all tests of one list hold.
+    /// Lists of tests. The identifier shows the direction if all tests of one list hold.
     pub any: Vec<Vec<FieldTest>>,
 }
 
@@ -129,6 +130,6 @@ pub struct FieldTest {
     pub field: FieldId,
     /// Inclusive raw ranges.
     pub ranges: Vec<(u32, u32)>,
-    /// The value lies in one of the ranges, rather than in none.
+    /// The value must lie in one of the ranges. Otherwise it must lie in none.
     pub inside: bool,
 }

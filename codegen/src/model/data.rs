@@ -27,7 +27,7 @@ pub struct Doc {
     pub title: Option<Text>,
     /// What else a reader must know.
     pub note: Option<Text>,
-    /// The item's own section, or that of what it stands in.
+    /// The item's own section, or that of the item around it.
     pub section: Option<Text>,
     /// Errata by name.
     pub errata: Vec<Text>,
@@ -45,9 +45,9 @@ pub struct DeviceModel {
     pub doc: Doc,
     /// Item numbers.
     pub items: Vec<Text>,
-    /// Most devices that can work together, if the document says so.
+    /// Largest number of devices that can work together, if the document says it.
     pub max_parallel: Option<u32>,
-    /// Bit rates of this model in bit/s; empty if the document says nothing of it.
+    /// Bit rates of this model in bit/s; empty if the document does not say them.
     pub bit_rates: Vec<u32>,
     /// Ratings that no message carries, by name.
     pub facts: Vec<(Text, Quantity)>,
@@ -69,7 +69,7 @@ pub struct TypeOfModel {
     pub doc: Doc,
 }
 
-/// A time that the document states; both ends are equal where it names one value.
+/// A time that the document states. Both ends are equal if it names one value.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Timing {

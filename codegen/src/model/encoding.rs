@@ -1,6 +1,6 @@
-//! What bits mean: the encodings, and what the rest of the compiler asks about them.
+//! What bits mean: the encodings, and the compiler's questions about them.
 //!
-//! How each of them makes values of bits, and bits of values, is in `crate::encoding`.
+//! `crate::encoding` turns bits into values and back.
 
 use super::{EnumerationId, Numeral, PartId, Signal, StatusWordId, Table};
 use crate::number::Rational;
@@ -34,7 +34,7 @@ pub enum Encoding {
     },
 }
 
-/// How a number is made of an integer: physical = integer * scale + offset.
+/// Turns an integer into a number: physical = integer * scale + offset.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear {
     /// Which integer the bits are.
@@ -52,9 +52,9 @@ impl Linear {
     }
 }
 
-/// What others ask, each an exhaustive match: a new encoding has to answer.
+/// Each question is an exhaustive match, so a new encoding must answer it.
 impl Encoding {
-    /// Returns how numbers are made, if that is by a scale.
+    /// Returns the scale and the offset of numbers that have them.
     pub fn linear(&self) -> Option<Linear> {
         match *self {
             Self::Number { numeral, scale, offset } => Some(Linear { numeral, scale, offset }),
@@ -86,7 +86,7 @@ impl Encoding {
         }
     }
 
-    /// Returns the signals in a packed value; of any other, none.
+    /// Returns the signals in a packed value. Any other encoding has none.
     pub fn parts(&self) -> &[Signal] {
         self.packed().map_or(&[], |(_, parts)| parts)
     }
@@ -107,13 +107,14 @@ impl Encoding {
         }
     }
 
-    /// Returns the exact physical value of a raw number; `None` of what is no number, and on overflow.
+    /// Returns the exact physical value of a raw number. It is `None` for other encodings, and on
+    /// overflow.
     pub fn value_of(&self, raw: i128) -> Option<Rational> {
         let linear = self.linear()?;
         linear.value(linear.numeral.integer(raw)?)
     }
 
-    /// Returns which integer the bits are, whatever it stands for.
+    /// Returns which integer the bits are, whatever the integer means.
     pub fn numeral(&self) -> Numeral {
         self.linear().map_or(Numeral::Unsigned, |linear| linear.numeral)
     }
@@ -127,13 +128,13 @@ impl Encoding {
 /// A piece of a packed value's text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Piece {
-    /// A text that stands as it is.
+    /// A text that never changes.
     Literal(String),
     /// The text or the number of a part.
     Part {
         /// The part.
         part: PartId,
-        /// To how many digits a number is filled with zeros.
+        /// Number of digits that zeros fill a number up to.
         digits: Option<usize>,
     },
 }

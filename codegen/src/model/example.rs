@@ -15,25 +15,25 @@ pub struct Example {
     pub id: u32,
     /// 29-bit identifier rather than 11-bit.
     pub extended: bool,
-    /// `None` where the document prints an identifier alone.
+    /// Data bytes; `None` if the document prints only an identifier.
     pub data: Option<Vec<u8>>,
-    /// The message that it carries; `None` for a frame that is none of them.
+    /// The message that it carries; `None` if it carries none.
     pub message: Option<MessageId>,
-    /// The device model that the frame is of.
+    /// The device model of the frame.
     pub model: Option<ModelId>,
-    /// Raw values of the message's signals, and the text that says so.
+    /// Raw values of the message's signals, and their texts.
     pub means: Vec<Meaning>,
     /// Rules of the notes that decoding must report.
     pub notes: Vec<NoteRule>,
-    /// How the frame fails, if it has to.
+    /// How the frame must fail, if at all.
     pub fails: Option<Failure>,
-    /// The document does not print it.
+    /// Whether the frame is ours: the document does not print it.
     pub ours: bool,
-    /// The place in the list it stands in: a reply answers the request before it.
+    /// Its position in its list. A reply answers the request before it.
     pub position: usize,
 }
 
-/// What an example says of one signal.
+/// What an example says about one signal.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Meaning {
@@ -41,7 +41,7 @@ pub struct Meaning {
     pub signal: SignalId,
     /// As written in the spec.
     pub text: String,
-    /// The raw bits, or why the text is no value of the signal.
+    /// The raw bits, or the reason why the text is no value of the signal.
     pub raw: Result<u64, Misfit>,
     /// Place in the spec.
     pub path: Path,
@@ -74,7 +74,7 @@ impl Misfit {
 pub enum Failure {
     /// Its identifier has the wrong width or a wrong fixed bit, or does not show its direction.
     Identifier,
-    /// Its identifier belongs to somebody else.
+    /// Its identifier belongs to another device.
     Foreign,
     /// It has another number of data bytes.
     Length,
@@ -106,7 +106,7 @@ impl Failure {
     }
 }
 
-/// Bytes of a type alone, and the value they mean.
+/// Bytes of a type, and their value.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ValueExample {
@@ -116,6 +116,6 @@ pub struct ValueExample {
     pub signal: Signal,
     /// The bytes, followed by zeros.
     pub data: [u8; 8],
-    /// The value they mean.
+    /// The value of the bytes.
     pub meaning: Meaning,
 }

@@ -1,4 +1,4 @@
-//! Ids of the model's tables: the id of one table finds no row of another.
+//! Ids of the model's tables. The id of one table cannot find a row of another.
 
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -98,7 +98,7 @@ impl_index! {
     ExchangeId: exchanges of Message is Exchange;
 }
 
-/// Rows that are found by ids of their own.
+/// Rows with an id type of their own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table<I, T> {
     rows: Vec<T>,
@@ -132,7 +132,7 @@ impl<I: Id, T> Table<I, T> {
         self.rows.iter().position(test).map(I::new)
     }
 
-    /// Makes a table of the same ids.
+    /// Makes a table with the same ids.
     pub fn map<U>(&self, row: impl FnMut(&T) -> U) -> Table<I, U> {
         self.rows.iter().map(row).collect()
     }

@@ -1,4 +1,4 @@
-//! The identifier's fields, the fields that choose messages, and identifiers of somebody else.
+//! The identifier's fields, the fields that choose messages, and identifiers of other devices.
 
 use canspec_runtime::Place;
 
@@ -49,7 +49,7 @@ impl IdentifierField {
         ones << self.shift
     }
 
-    /// Returns what is sent in the field where nothing else chooses its value.
+    /// Returns the value that is sent in the field if nothing else chooses one.
     pub fn sent(&self) -> u32 {
         self.constant.or(self.send).or(self.normal).unwrap_or(0)
     }
@@ -92,7 +92,7 @@ pub enum SelectorPlace {
     Payload(Place),
 }
 
-/// Identifiers of somebody else on the bus.
+/// Identifiers of other devices on the bus.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Foreign {
@@ -100,6 +100,6 @@ pub struct Foreign {
     pub name: String,
     /// What the spec says beside it.
     pub doc: Doc,
-    /// Inclusive ranges of raw values, all of which must hold: of a field, or of the identifier as a whole.
+    /// Inclusive ranges of raw values of a field, or of the whole identifier. All must hold.
     pub ranges: Vec<(Option<FieldId>, u32, u32)>,
 }

@@ -1,4 +1,4 @@
-//! Messages, how they travel, and the frames that exist of them.
+//! Messages, how they travel, and their frames.
 
 use canspec_runtime::Place;
 
@@ -10,9 +10,9 @@ use crate::model::{
 /// What a frame is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
-    /// Towards a module: reads and sets alike.
+    /// Goes to a module, to read or to set.
     Request,
-    /// Towards the controller, echoes and failures included.
+    /// Goes to the controller, echoes and failures included.
     Reply,
     /// Sent unasked.
     Report,
@@ -31,7 +31,8 @@ impl Kind {
         }
     }
 
-    /// Tests whether such a frame goes towards a module, and so keeps to the limits of what may be sent.
+    /// Tests whether such a frame goes to a module. If it does, it keeps to the limits of what may
+    /// be sent.
     pub fn is_to_module(self) -> bool {
         match self {
             Self::Request => true,
@@ -53,7 +54,7 @@ pub enum Who {
     Nobody,
 }
 
-/// Who answers a request, by addressing mode; `None` where the mode is not allowed.
+/// Who answers a request, by addressing mode; `None` if the mode is not allowed.
 pub type Answers = Table<ModeId, Option<Who>>;
 
 /// How a message travels.
@@ -68,7 +69,7 @@ pub struct Access {
     pub kinds: Vec<Kind>,
     /// The kinds of frames that carry the message's signals.
     pub carries: Vec<Kind>,
-    /// Who answers; `None` where the mode is not allowed.
+    /// Who answers; `None` if the mode is not allowed.
     pub answers: Answers,
     /// How often a report comes.
     pub every: Option<TimingId>,
@@ -90,10 +91,10 @@ pub struct Message {
     pub constants: Vec<Constant>,
     /// How it travels: one exchange for each of its accesses, alone or as a member of a set.
     pub exchanges: Table<ExchangeId, Exchange>,
-    /// The frames that exist of it: one for each exchange and kind.
+    /// Its frames: one for each exchange and kind.
     pub frames: Vec<FrameId>,
-    /// The frames that refuse its requests in place of a reply, one for each exchange that has them: replies of another
-    /// message.
+    /// The frames that refuse its requests in place of a reply, one for each exchange that has
+    /// them. They are replies of another message.
     pub refusals: Vec<FrameLayout>,
     /// How often its report comes, if not as its access says.
     pub every: Option<TimingId>,
@@ -123,7 +124,7 @@ pub struct Exchange {
     pub access: AccessId,
     /// Who answers the message's requests.
     pub answers: Answers,
-    /// The set as whose member the message travels so.
+    /// The set, if the message travels as its member.
     pub set: Option<MessageId>,
 }
 
@@ -180,7 +181,7 @@ pub struct FrameLayout {
     pub signals: Vec<SignalId>,
     /// Payload bits of selectors and signals, byte 0 highest.
     pub covered: u64,
-    /// The addressing modes by which it is sent, and who answers, or sends it.
+    /// The addressing modes by which it is sent, and who answers or sends it.
     pub travels: Vec<Travel>,
 }
 

@@ -1,13 +1,13 @@
-//! What can be noted of a recognised frame.
+//! Notes on recognised frames.
 
 use std::fmt;
 
 /// Something that a document does not foresee in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum NoteRule {
-    /// A reply is not what the spec calls normal: it refuses.
+    /// A reply does not have the `normal` value: it reports an error.
     ErrorCode,
-    /// No addressing mode fits, or the message does not have the one that does.
+    /// No addressing mode fits, or only one that the message does not have.
     Addressing,
     /// An address lies outside its range.
     Address,
@@ -17,11 +17,11 @@ pub enum NoteRule {
     UnknownBit,
     /// A value lies outside its range.
     OutOfRange,
-    /// A floating-point number is infinite or none.
+    /// A floating-point number is infinite or not a number.
     NotFinite,
     /// Bits are set that no field has.
     ReservedBit,
-    /// The frame means something else on other device models, or nothing on the one that was chosen.
+    /// The frame means something else on other device models, or nothing on the chosen model.
     ModelDependent,
 }
 

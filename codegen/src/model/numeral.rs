@@ -43,7 +43,7 @@ impl Numeral {
         }
     }
 
-    /// Returns the integer that a raw value is; `None` if it is none.
+    /// Returns the integer of a raw value, if it has one.
     pub fn integer(self, raw: i128) -> Option<i128> {
         match self {
             Self::Unsigned | Self::Signed => Some(raw),
@@ -51,7 +51,7 @@ impl Numeral {
         }
     }
 
-    /// Returns the raw value that is an integer, however wide; `None` if there is none.
+    /// Returns the raw value of an integer, of any width, if there is one.
     pub fn raw(self, integer: i128) -> Option<i128> {
         match self {
             Self::Unsigned | Self::Signed => Some(integer),

@@ -1,4 +1,5 @@
-//! How frames are recognised: which bits tell them apart, in which order. Every engine runs or prints this plan.
+//! The plan to recognise frames: which bits tell them apart, and in which order. Every engine runs
+//! or prints it.
 
 use std::collections::BTreeSet;
 
@@ -28,7 +29,7 @@ pub struct Recognition {
 pub struct Course {
     /// All these frames.
     pub all: Scope,
-    /// Which of them have the constants of an identifier.
+    /// Chooses those that have the constants of an identifier.
     pub choice: Option<Choice<Group>>,
 }
 
@@ -38,38 +39,38 @@ pub struct Course {
 pub struct Group {
     /// All these frames.
     pub all: Scope,
-    /// Those of each length, the shortest first.
+    /// The frames of each length, the shortest first.
     pub lengths: Vec<(u8, Scope)>,
-    /// Which of them have the constants of a payload, whatever the length.
+    /// Chooses those that have the constants of a payload, of any length.
     pub choice: Option<Choice<Vec<FrameId>>>,
 }
 
 impl Group {
-    /// Returns the frames of a number of data bytes.
+    /// Returns the frames with a number of data bytes.
     pub fn of_length(&self, length: usize) -> Option<&Scope> {
         self.lengths.iter().find(|(known, _)| usize::from(*known) == length).map(|(_, scope)| scope)
     }
 }
 
-/// What frames have between them.
+/// What a group of frames has in all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Scope {
     /// Their kinds.
     pub kinds: Vec<Kind>,
-    /// The selectors of which some frame has a constant.
+    /// The selectors that have a constant in some frame.
     pub choosing: Vec<SelectorId>,
     /// The payload selectors that some frame has.
     pub selectors: Vec<SelectorId>,
 }
 
-/// A choice by one selector after the other.
+/// A choice by one selector after another.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Choice<T> {
     /// There is one outcome.
     End(T),
-    /// The value of a selector decides.
+    /// A selector's value decides.
     By {
         /// The selector.
         selector: SelectorId,
@@ -77,7 +78,7 @@ pub enum Choice<T> {
         place: SelectorPlace,
         /// How the choice goes on after each value, in the order of the frames.
         cases: IndexMap<u64, Self>,
-        /// How it goes on after another value; `None` if no frame has one.
+        /// How the choice goes on after any other value; `None` if no frame has one.
         otherwise: Option<Box<Self>>,
     },
 }
@@ -107,7 +108,7 @@ impl<T> Choice<T> {
         }
     }
 
-    /// Finds the first outcome that passes a test, among those of frames that can show constants.
+    /// Finds the first outcome that passes a test. It looks at frames that can show the constants.
     pub fn find_among<'a, R>(&'a self, constants: &[Constant], test: &mut impl FnMut(&'a T) -> Option<R>) -> Option<R> {
         match self {
             Self::End(outcome) => test(outcome),
@@ -130,7 +131,7 @@ impl Recognition {
         frames: &Table<FrameId, FrameLayout>,
         selectors: &Table<SelectorId, Selector>,
     ) -> Self {
-        // A frame has a few ends of its own, and shares some with others.
+        // A frame has a few ends of its own, and shares some with other frames.
         let mut planner = Planner { frames, selectors, ends_left: 64 * frames.len() + 1024 };
         let (requests, replies) = frames.ids().partition(|frame| frames[*frame].kind.is_to_module());
         let (requests, replies) = (planner.course(requests), planner.course(replies));
@@ -146,7 +147,7 @@ impl Recognition {
     }
 }
 
-/// How many selectors may be asked one after the other; a frame has fewer bits.
+/// Largest number of selectors that are read one after another. A frame has fewer bits.
 const DEEPEST: usize = 96;
 
 /// Makes the plan of both directions.
@@ -188,7 +189,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the selectors in the order in which they are asked: as in the identifier, then as in the header.
+    /// Returns the selectors in the order in which they are read: those of the identifier, then
+    /// those of the header.
     fn ordered(&self, selectors: &[SelectorId], is_asked: impl Fn(SelectorPlace) -> bool) -> Vec<SelectorId> {
         let place = |selector: &SelectorId| self.selectors[*selector].place;
         let mut ordered: Vec<_> = selectors.iter().copied().filter(|selector| is_asked(place(selector))).collect();
@@ -199,7 +201,8 @@ impl Planner<'_> {
         ordered
     }
 
-    /// Chooses among frames by selectors in turn; none are left over where the plan has become too large.
+    /// Chooses among frames by one selector after another. If the plan becomes too large, the
+    /// choice is empty.
     fn choice<T>(
         &mut self,
         frames: Vec<FrameId>,

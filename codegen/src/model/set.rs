@@ -2,15 +2,15 @@
 
 use crate::model::{AddressTypeId, Constant, Exchange, Kind, MessageId, Mode, Protocol, SelectorPlace, Who};
 
-/// What a message consists of that travels as several frames.
+/// What a message that travels as several frames consists of.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Set {
-    /// Messages of which one travels in each frame, in order.
+    /// The messages that travel in the frames, in order, one in each.
     pub members: Vec<MessageId>,
-    /// Kinds of frames of which there is one for each member.
+    /// The kinds of frames that each member has.
     pub kinds: Vec<Kind>,
-    /// What each reply shows, whatever it carries.
+    /// Constants that each reply shows, whatever it carries.
     pub replies: Vec<Constant>,
 }
 
@@ -20,7 +20,7 @@ pub struct Set {
 pub struct Continuation {
     /// Where it stands.
     pub place: SelectorPlace,
-    /// The value if more frames follow; another one says that this frame is the last.
+    /// The value if more frames follow. Any other value says that the frame is the last.
     pub raw: u64,
 }
 
@@ -40,8 +40,8 @@ impl Protocol {
 }
 
 impl Protocol {
-    /// Returns the kind of address that shows which node sends a reply; `None` if some reply does not show it, or replies
-    /// show different kinds.
+    /// Returns the kind of address that shows which node sends a reply. It is `None` if a reply
+    /// does not show it, or replies show different kinds.
     pub fn answering(&self, exchange: &Exchange) -> Option<AddressTypeId> {
         let answers = self.modes.iter().zip(&exchange.answers).filter_map(|(mode, who)| Some((mode, (*who)?)));
         let mut patterns = answers.filter(|(_, who)| *who != Who::Nobody).map(|(mode, who)| self.sender(mode, who));
@@ -49,8 +49,8 @@ impl Protocol {
         patterns.all(|other| other == Some(first)).then_some(first)
     }
 
-    /// Returns the kind of address of whoever answers: that of the one addressed, or else the only one that nobody sends
-    /// by default.
+    /// Returns the kind of address of the node that answers. It is that of the request's target, or
+    /// else the only kind without a default to send.
     fn sender(&self, mode: &Mode, who: Who) -> Option<AddressTypeId> {
         let types = || mode.reply(who).into_iter().flat_map(|pattern| &pattern.addresses);
         let types = || types().map(|address| address.address_type);

@@ -32,13 +32,13 @@ impl Enumeration {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct NamedValue {
-    /// Raw value, sign-extended where the signal is signed.
+    /// Raw value, sign-extended if the signal is signed.
     pub raw: i128,
     /// Name in the spec, in `snake_case`.
     pub name: String,
 }
 
-/// A word of which each named bit is a condition.
+/// A word whose named bits are conditions.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct StatusWord {
@@ -69,7 +69,7 @@ pub struct StatusBit {
     pub doc: Doc,
     /// Number of the bit, 0 = least significant.
     pub bit: u8,
-    /// How grave the set bit is, if the document says so.
+    /// Severity of the set bit, if the document says it.
     pub severity: Option<Severity>,
     /// Condition that sets the bit.
     pub set_when: Option<Text>,
@@ -81,7 +81,7 @@ pub struct StatusBit {
     pub led: Option<Text>,
 }
 
-/// How grave a status bit is.
+/// The severity of a status bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
     /// Describes a condition.
@@ -100,7 +100,7 @@ pub struct Signal {
     pub name: String,
     /// What the spec says beside it.
     pub doc: Doc,
-    /// The entries of `types` it takes keys from, the last first.
+    /// The entries of `types` that it takes keys from, the last first.
     pub types: Vec<String>,
     /// Bits of the data bytes.
     pub place: Place,
@@ -118,21 +118,21 @@ pub struct Signal {
     pub default: Option<i128>,
     /// Place of that value in the spec.
     pub default_path: Path,
-    /// Physical limits of device models that have their own.
+    /// Physical limits of device models, if they have their own.
     pub model_ranges: Vec<OfModel<Range>>,
-    /// Raw values that device models start with which have their own.
+    /// Raw values that device models start with, if they have their own.
     pub model_defaults: Vec<OfModel<i128>>,
     /// The only kinds of frames that have it; empty if the access decides.
     pub kinds: Vec<Kind>,
 }
 
-/// What one device model has of its own.
+/// A value that a device model has of its own.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct OfModel<T> {
     /// The model.
     pub model: ModelId,
-    /// What it has.
+    /// The value.
     pub value: T,
     /// Place in the spec.
     pub path: Path,
@@ -144,19 +144,21 @@ impl Signal {
         own(&self.model_ranges, model).or(self.range)
     }
 
-    /// Returns the limits of a request to one of these device models, whichever it is: the hull of what they state.
+    /// Returns the limits of a request to any of these device models. They are the hull of the
+    /// models' limits.
     ///
-    /// A model that states none has those of the type; if there are none either, it does not widen the hull.
+    /// A model without limits has those of the type. If the type has none either, the model does
+    /// not widen the hull.
     pub fn hull(&self, models: impl Iterator<Item = ModelId>) -> Option<Range> {
         models.filter_map(|model| self.range_for(Some(model))).reduce(Range::hull).or(self.range)
     }
 
-    /// Returns the raw value that a device model starts with, or a device of which the model is not known.
+    /// Returns the raw value that a device model, or a device of an unknown model, starts with.
     pub fn default_for(&self, model: Option<ModelId>) -> Option<i128> {
         own(&self.model_defaults, model).or(self.default)
     }
 
-    /// Returns the physical limits of what the bits hold; `None` of what is no number.
+    /// Returns the physical limits of what the bits hold, if they are a number.
     pub fn held(&self) -> Option<Range> {
         let linear = self.encoding.linear()?;
         let (first, last) = linear.numeral.limits(self.place.width());
@@ -164,7 +166,8 @@ impl Signal {
         Some(Range { minimum: one.min(other), maximum: one.max(other) })
     }
 
-    /// Tests a physical value against limits; of a float, the floats nearest to them are legal too.
+    /// Tests a physical value against limits. For a float, the floats nearest to the limits are
+    /// legal too.
     pub fn is_within(&self, limits: &Range, value: f64) -> bool {
         let is_within = |minimum: f64, maximum: f64| (minimum..=maximum).contains(&value);
         #[allow(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
@@ -178,7 +181,7 @@ impl Signal {
         self.encoding.numeral().raw_limits(self.place.width())
     }
 
-    /// Returns the raw value of bits, sign-extended where the signal is signed.
+    /// Returns the raw value of bits, sign-extended if the signal is signed.
     pub fn raw_of(&self, bits: u64) -> i128 {
         let width = self.place.width();
         let is_negative = self.encoding.numeral().is_signed() && bits >> (width - 1) & 1 == 1;
@@ -193,7 +196,7 @@ impl Signal {
         (first..=last).contains(&raw).then_some(bits)
     }
 
-    /// Returns the unit as it stands behind a number, with the blank before it; nothing if there is none.
+    /// Returns the unit as it stands after a number, with a blank before it, or an empty text.
     pub fn unit_text(&self) -> String {
         self.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
     }
@@ -227,7 +230,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// Tests an integer that is its own physical value, however many digits it has.
+    /// Tests an integer of any size that is its own physical value.
     pub fn has_whole(&self, value: i128) -> bool {
         (self.minimum..=self.maximum).contains(&Rational::integer(value))
     }

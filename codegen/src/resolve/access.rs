@@ -1,4 +1,4 @@
-//! Accesses: which frames exist, which of them carry the signals, who answers.
+//! Resolves accesses: which frames exist, which of them carry the signals, and who answers.
 
 use super::Resolver;
 use super::texts::remarks;
@@ -91,7 +91,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Refuses what says how often a report comes, where there is no report.
+    /// Refuses `every` if there is no report.
     pub fn misplaced_every(&mut self, path: &Path, what: &str, otherwise: &str) {
         let text = format!("`every` means nothing for {what} without a report");
         let help = format!("take it out, or {otherwise}");

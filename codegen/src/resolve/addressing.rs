@@ -1,4 +1,4 @@
-//! Addressing modes, address types, and how an identifier shows its direction.
+//! Resolves addressing modes and address types, and how an identifier shows its direction.
 
 use super::Resolver;
 use super::keys::Role;
@@ -184,7 +184,7 @@ impl Resolver<'_> {
         self.diagnostics.push(Diagnostic::warning(&rules::ADDRESSING, path.key("one").at_key(), text).help(help));
     }
 
-    /// Finds an address type; nothing is said of one that was refused before.
+    /// Finds an address type. It does not report one that was refused before.
     fn lookup_address_type(&mut self, at: &Path, name: &str, types: &AddressTypes) -> Option<AddressTypeId> {
         let spec = self.spec;
         if !spec.types.contains_key(name) {
@@ -196,7 +196,8 @@ impl Resolver<'_> {
         types.position(|known| known.name == name)
     }
 
-    /// Returns the raw values of a field that belong to somebody else: those of strict types, and constants of the same direction.
+    /// Returns the raw values of a field that are no tolerated addresses: those of strict types,
+    /// and constants of the same direction.
     fn excluded(&self, request: bool, field: &str, identifier: &Identifier, types: &AddressTypes) -> Vec<(u32, u32)> {
         let mut excluded = claimed(self.spec, field, types);
         let width = identifier.fields.iter().find(|known| known.name == field).map_or(32, |known| known.width);
@@ -226,7 +227,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Tells whether a type has what an address type has, and nothing else.
+/// Tests whether a type has the keys of an address type and no others.
 fn could_be_address(field: &ast::Field) -> bool {
     field.range.is_some() && field.keys().all(|key| Role::Address.reads(key))
 }
@@ -241,9 +242,10 @@ fn claimed(spec: &ast::Spec, field: &str, types: &AddressTypes) -> Vec<(u32, u32
     ranges
 }
 
-/// Works out what identifiers show of their direction: towards a module, towards the controller.
+/// Works out how identifiers show their direction, to a module and to the controller.
 ///
-/// A constant counts only where the other direction has another constant in the same field, so that an unknown device number does not hide the direction.
+/// A constant counts only if the other direction has another constant in the same field. So an
+/// unknown device number does not hide the direction.
 pub fn directions(
     identifier: &Identifier,
     types: &AddressTypes,
@@ -289,7 +291,7 @@ fn direction_tests(
     tests
 }
 
-/// Tests whether both patterns have a constant in the field, and another one.
+/// Tests whether the patterns have different constants in the field.
 fn differs(one: &AddressPattern, other: &AddressPattern, field: u32) -> bool {
     other.mask & field != 0 && (one.value ^ other.value) & field != 0
 }

@@ -1,4 +1,4 @@
-//! What a spec says beside the codec: document, timing, procedures, models, errata.
+//! Resolves what a spec says beside the codec: document, timing, procedures, models and errata.
 
 use super::Resolver;
 use super::keys::Role;
@@ -110,7 +110,7 @@ impl Resolver<'_> {
             .collect()
     }
 
-    /// Tests that what a step names in backquotes is a message.
+    /// Tests that names in backquotes in the steps are messages.
     fn check_steps(&mut self, path: &Path, steps: &[String]) {
         for (index, step) in steps.iter().enumerate() {
             for name in step.split('`').skip(1).step_by(2) {
@@ -188,7 +188,7 @@ fn texts(written: &[String]) -> Vec<Text> {
     written.iter().map(|text| Text::new(text)).collect()
 }
 
-/// Reads a bit rate in bit/s, at most that of CAN.
+/// Reads a bit rate in bit/s, up to the limit of CAN.
 fn bit_rate(text: &str) -> Option<u32> {
     let (number, unit) = text.split_once(' ')?;
     let factor = match unit {

@@ -1,4 +1,4 @@
-//! The document's frames and what they mean.
+//! Resolves the document's frames and what they mean.
 
 use canspec_runtime::Place;
 use indexmap::IndexSet;
@@ -61,7 +61,8 @@ impl Resolver<'_> {
         self.spec.examples.iter().map(|(name, sequence)| remarks!(sequence).doc(&root.key(name), None)).collect()
     }
 
-    /// Finds the message of an example that stands in a message: that one, or a member that it names.
+    /// Finds the message of an example in a message: the message itself, or a member that the
+    /// example names.
     fn message_in(
         &mut self,
         path: &Path,
@@ -180,7 +181,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// An example of the other identifier width can only be one that fails.
+    /// Tests that an example with the other identifier width must fail.
     fn check_identifier_width(&mut self, example: &Example, identifier: &Identifier) {
         if example.extended != identifier.extended && example.fails.is_none() {
             let (found, digits) = if identifier.extended { (3, 8) } else { (8, 3) };
@@ -223,7 +224,7 @@ impl Resolver<'_> {
         self.meaning(path, id, &message[id], means)
     }
 
-    /// Reports a message without fields of which an example says a value.
+    /// Reports a value in an example of a message without fields.
     fn nothing_to_mean(&mut self, path: &Path, message: &Message) {
         let text = format!("`{}` has no field, but an example says what it means", message.name);
         let diagnostic = Diagnostic::error(&rules::EXAMPLE, message.doc.path.at_key(), text);
@@ -266,7 +267,7 @@ impl Resolver<'_> {
         Some(names.iter().try_fold(0, |raw, name| Ok(raw | 1 << status_bit(signal, bits, name)?)))
     }
 
-    /// Resolves the examples of types: bytes alone, and what they mean.
+    /// Resolves the examples of types: bytes and what they mean.
     pub fn value_examples(&mut self) -> Vec<ValueExample> {
         let spec = self.spec;
         let mut resolved = Vec::new();
@@ -317,7 +318,7 @@ fn remarks_of_value(example: &ast::ValueExample) -> super::texts::Remarks<'_> {
     super::texts::Remarks { title: &None, note: &None, section: &example.section, erratum: &example.erratum }
 }
 
-/// Finds the bit of a status word that a name stands for; a bit without a name has its number for one.
+/// Finds the bit of a status word by its name, or by its number if it has no name.
 fn status_bit(signal: &Signal, bits: &[StatusBit], name: &str) -> Result<u8, Misfit> {
     if let Some(bit) = bits.iter().find(|bit| bit.name == name) {
         return Ok(bit.bit);

@@ -1,4 +1,4 @@
-//! The form of a packed value: the pieces of its text, and the bytes that they fill.
+//! Resolves the form of a packed value: the pieces of its text, and the bytes that they fill.
 
 use canspec_runtime::Place;
 
@@ -65,7 +65,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tests that no digit follows a number whose digits are not counted.
+    /// Tests that no digit follows a number without a count of digits.
     fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &Table<PartId, Signal>) {
         let number = |piece: &Piece| match piece {
             Piece::Part { part, digits } if !parts[*part].encoding.is_text() => Some((*part, *digits)),
@@ -103,7 +103,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Says that parts do not fill whole bytes: between which two there is a gap, or else that their ends do not fit.
+/// Says that parts do not fill whole bytes, because of a gap between two parts or because of their
+/// ends.
 fn unfilled(path: &Path, parts: &[Signal]) -> Diagnostic {
     let mask = |part: &Signal| u64::from_be_bytes(part.place.mask());
     let mut parts: Vec<_> = parts.iter().collect();

@@ -1,4 +1,4 @@
-//! The identifier's fields, which together fill 11 or 29 bits.
+//! Resolves the identifier's fields, which together fill 11 or 29 bits.
 
 use super::Resolver;
 use super::keys::Role;
@@ -12,7 +12,7 @@ use crate::syntax::tree::Path;
 
 /// The widest identifier.
 const EXTENDED: u8 = 29;
-/// The other one.
+/// The other width.
 const STANDARD: u8 = 11;
 
 /// A run of identifier bits and the entry that takes it.
@@ -27,7 +27,7 @@ impl Run {
         Claim { first: self.low, last: self.high }
     }
 
-    /// Its width is no power of two.
+    /// Tests whether its width is no power of two.
     fn is_odd(&self) -> bool {
         !(self.high - self.low + 1).is_power_of_two()
     }
@@ -100,7 +100,8 @@ impl Resolver<'_> {
         Some((IdentifierField { name, doc, shift: low, width, constant, send, normal, continues, enumeration }, run))
     }
 
-    /// Tests that the entries leave no gap and share no bit; tells whether the identifier is the widest one.
+    /// Tests that the entries leave no gap and share no bit. Returns whether the identifier is the
+    /// widest one.
     fn check_layout(&mut self, root: &Path, runs: &[Run]) -> bool {
         let top = runs.iter().map(|run| run.high).max().unwrap_or_default();
         let width = if top < STANDARD { STANDARD } else { EXTENDED };
@@ -110,14 +111,14 @@ impl Resolver<'_> {
         width == EXTENDED
     }
 
-    /// Reports the first bits that two entries share; tells whether there are any.
+    /// Reports the first bits that two entries share. Returns whether there are any.
     fn check_shared(&mut self, runs: &[Run], width: u8) -> bool {
         let shares = |one: &Run, other: &Run| one.low <= other.high && other.low <= one.high;
         let earlier = |later: usize| runs[..later].iter().position(|run| shares(run, &runs[later]));
         let Some((earlier, later)) = (0..runs.len()).find_map(|later| Some((earlier(later)?, later))) else {
             return false;
         };
-        // What is above the identifier ends the bits that the first entry can have been meant for.
+        // The first entry cannot have been meant for bits above the identifier.
         let above = Claim { first: width, last: width };
         let claims: Vec<_> = std::iter::once(above).chain(runs.iter().map(Run::claim)).collect();
         let wrong = misplaced(&claims, earlier + 1, later + 1) - 1;

@@ -1,4 +1,4 @@
-//! Keys that mean nothing where they stand are refused, rather than passed over.
+//! Refuses keys that mean nothing in their place.
 
 use super::Resolver;
 use super::types::Merged;
@@ -8,7 +8,7 @@ use crate::resolve::rules;
 use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::{Node, Path};
 
-/// Where a field stands, which decides the keys that it reads.
+/// Where a field stands. This decides which keys it reads.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Site {
     Header,
@@ -16,7 +16,7 @@ pub enum Site {
     Packed,
 }
 
-/// What a field is used as, which decides the keys that it reads.
+/// What a field is used as. This decides which keys it reads.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     Identifier,
@@ -43,7 +43,7 @@ pub enum Role {
 /// Numbers with a unit.
 const QUANTITIES: &[Role] = &[Role::Number, Role::Decimal, Role::Float];
 
-/// Signals that are not put together of parts.
+/// Signals that have no parts.
 const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text]];
 
 /// Numbers in a packed value.
@@ -52,10 +52,10 @@ const PACKED_NUMBERS: &[Role] = &[Role::PackedNumber, Role::PackedDecimal];
 /// Fields of the identifier.
 const IDENTIFIER: &[Role] = &[Role::Identifier, Role::IdentifierConstant];
 
-/// What has other fields inside.
+/// Roles with other fields inside.
 const WORDS: &[Role] = &[Role::Word, Role::HeaderWord, Role::PackedWord];
 
-/// What is one range of bits in the data bytes, beside signals and words.
+/// Roles that are one range of bits in the data bytes, beside signals and words.
 const PLACED: &[Role] = &[Role::Header, Role::Constant, Role::PackedNumber, Role::PackedDecimal, Role::PackedText];
 
 impl Role {
@@ -84,7 +84,7 @@ impl Role {
         }
     }
 
-    /// Tells whether the role reads a key.
+    /// Tests whether the role reads a key.
     pub fn reads(self, key: Key) -> bool {
         let signal = SIGNALS.concat().contains(&self);
         let among = |roles: &[Self]| roles.contains(&self);
@@ -116,7 +116,7 @@ impl Role {
         }
     }
 
-    /// Returns the keys that the role reads, without those that stand almost everywhere.
+    /// Returns the keys that the role reads, without those that almost every role reads.
     fn keys(self) -> Vec<&'static str> {
         let anywhere = [Key::Type, Key::Title, Key::Note, Key::Section, Key::Erratum];
         let keys = Key::ALL.iter().filter(|key| self.reads(**key) && !anywhere.contains(key));
@@ -172,7 +172,7 @@ impl Role {
     }
 }
 
-/// Tells whether a key says which values a field has.
+/// Tests whether a key says which values a field has.
 fn is_of_values(key: Key) -> bool {
     match key {
         Key::Bytes
@@ -227,7 +227,7 @@ impl Resolver<'_> {
         self.check_nothing_empty(path);
     }
 
-    /// Refuses keys of a field that would say nothing, or less than their absence.
+    /// Refuses empty maps and lists of a field.
     fn check_nothing_empty(&mut self, field: &Path) {
         let keys: Vec<_> = Key::ALL.iter().filter(|key| key.can_be_empty()).map(|key| key.name()).collect();
         self.check_not_empty(field, &keys);
@@ -249,13 +249,13 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tells whether no key has an error that says which values a field has.
+    /// Tests whether no key that says the values of a field has an error.
     pub fn is_sound(&self, merged: &Merged) -> bool {
         let keys = merged.field.keys().filter(|key| is_of_values(*key));
         keys.map(|key| merged.path(self.diagnostics, key)).all(|path| !self.diagnostics.has_errors_in(&path))
     }
 
-    /// Refuses a type of which a field cannot read a key.
+    /// Refuses a type with a key that the field cannot read.
     fn misplaced_by_type(&mut self, field: &Path, name: &str, path: &Path, key: Key, role: Role) {
         let (what, key) = (role.name(), key.name());
         let (text, help) = if super::patterns::is_address_type(self.spec, name) {

@@ -1,4 +1,4 @@
-//! Messages: their signals, and the frames that exist of each.
+//! Resolves messages: their signals and their frames.
 
 use super::Resolver;
 use super::access::{Modes, Times, pattern_of};
@@ -13,7 +13,7 @@ use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
-/// What messages refer to.
+/// The tables that messages refer to.
 pub struct Surroundings<'a> {
     pub identifier: &'a Identifier,
     modes: &'a Modes,
@@ -25,14 +25,14 @@ pub struct Surroundings<'a> {
 /// The accesses of the protocol.
 type Accesses = Table<AccessId, Access>;
 
-/// A message and the frames that exist of it.
+/// A message and its frames.
 pub struct Draft {
     pub message: Message,
     pub frames: Vec<FrameLayout>,
     pub choice: Choice,
 }
 
-/// The exchange of a message whose frames are made.
+/// The exchange whose frames are made, and its message.
 pub struct Owner<'a> {
     pub message: MessageId,
     pub id: ExchangeId,
@@ -41,7 +41,7 @@ pub struct Owner<'a> {
     pub signals: &'a Table<SignalId, Signal>,
 }
 
-/// What chooses the frames of a message, whatever its access.
+/// The constants that choose the frames of a message, whatever the access.
 pub struct Choice {
     /// Constants of `match`.
     pub matched: Vec<Constant>,
@@ -134,7 +134,7 @@ impl Resolver<'_> {
         Draft { message, frames, choice }
     }
 
-    /// Numbers the frames, and adds what follows from the whole of them.
+    /// Numbers the frames, and adds what depends on all of them.
     fn complete(
         &self,
         drafts: Table<MessageId, Draft>,
@@ -194,7 +194,7 @@ impl Resolver<'_> {
         models
     }
 
-    /// Returns what a reply shows because of the message's fields.
+    /// Returns the constants that a reply shows because of the message's fields.
     fn reply_constants(&mut self, patterns: &[(Path, ast::Pattern)], identifier: &Identifier) -> Vec<Constant> {
         let mut constants: Vec<Constant> = Vec::new();
         for (path, pattern) in patterns {
@@ -224,7 +224,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Makes a selector of a constant field; it is in the kinds of frames that the field names.
+    /// Makes a selector of a constant field. It is in the kinds of frames that the field names.
     fn fixed(&mut self, signal: Signal, value: u64) -> (Constant, Vec<Kind>) {
         self.check_header_name(&signal);
         let kinds = signal.kinds.clone();
@@ -232,7 +232,7 @@ impl Resolver<'_> {
         (Constant { selector: self.add_selector(signal, None), place, value }, kinds)
     }
 
-    /// Tests that a constant field is not called like a field of the header in another place.
+    /// Tests that a constant field does not have the name of a header field in another place.
     fn check_header_name(&mut self, signal: &Signal) {
         let mut header = self.tables.header.iter().map(|id| &self.tables.selectors[*id]);
         let named = header.find(|known| known.name == signal.name);
@@ -271,7 +271,7 @@ impl Resolver<'_> {
         exchanges
     }
 
-    /// Returns what a kind of frame shows because of its access.
+    /// Returns the constants that a kind of frame shows because of its access.
     pub fn access_constants(&mut self, access: AccessId, kind: Kind, surroundings: &Surroundings) -> Vec<Constant> {
         let spec = self.spec;
         let Some((name, access)) = spec.access.get_index(access.place()) else { return Vec::new() };
@@ -280,7 +280,7 @@ impl Resolver<'_> {
         self.constants(&path, pattern, surroundings.identifier)
     }
 
-    /// Makes the frame of one kind of a message; `travel` is what it shows because of its access.
+    /// Makes the frame of one kind of a message. `travel` has the constants of its access.
     pub fn layout(
         &self,
         owner: &Owner,
@@ -319,7 +319,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the frame that refuses a request of the message; it carries none of the message's fields.
+    /// Returns the frame that refuses a request of the message. It carries none of the message's
+    /// fields.
     fn refusal(
         &mut self,
         path: &Path,

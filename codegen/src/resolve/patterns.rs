@@ -1,4 +1,4 @@
-//! Constants that choose a message or a kind of frame, and identifiers of somebody else.
+//! Resolves constants that choose a message or a kind of frame, and identifiers of other devices.
 
 use super::Resolver;
 use super::texts::remarks;
@@ -22,7 +22,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the raw value of a field that is no error, and the one that says that more frames follow.
+    /// Returns the raw values of `normal` and `continues` of a field.
     fn header_values(&mut self, signal: &Signal) -> Option<(Option<u64>, Option<u64>)> {
         let field = ast_field(self.spec, &signal.doc.path)?.clone();
         let merged = self.merged(&signal.doc.path, &field)?;
@@ -60,7 +60,7 @@ impl Resolver<'_> {
         Some(Constant { selector, place, value: self.integer(path, text, 0, greatest)? })
     }
 
-    /// Finds a selector by name; a field of the identifier becomes one when it is first used.
+    /// Finds a selector by name. A field of the identifier becomes a selector on its first use.
     fn selector(&mut self, path: &Path, name: &str, identifier: &Identifier) -> Option<SelectorId> {
         if let Some(id) = self.tables.selectors.position(|known| known.name == name) {
             return Some(id);
@@ -124,7 +124,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Finds a field by its place, which is in a type if the word around it takes its fields from there.
+/// Finds a field by its place. The place is in a type if the word around the field takes its fields
+/// from there.
 fn ast_field<'a>(spec: &'a ast::Spec, path: &Path) -> Option<&'a ast::Field> {
     let (map, Step::Key(name)) = path.split()? else { return None };
     let root = Path::default();
@@ -138,7 +139,7 @@ fn ast_field<'a>(spec: &'a ast::Spec, path: &Path) -> Option<&'a ast::Field> {
     ast_field(spec, word)?.fields.get(name)
 }
 
-/// Returns every addressing pattern and the key it stands under.
+/// Returns every addressing pattern, and its key.
 pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Pattern)> {
     spec.addressing.values().flat_map(|mode| {
         let keys = [("request", &mode.request), ("one", &mode.one), ("each", &mode.each)];
@@ -147,7 +148,7 @@ pub fn patterns(spec: &ast::Spec) -> impl Iterator<Item = (&'static str, &Patter
     })
 }
 
-/// Tells whether an addressing pattern names a type.
+/// Tests whether an addressing pattern names a type.
 pub fn is_address_type(spec: &ast::Spec, name: &str) -> bool {
     patterns(spec).any(|(_, pattern)| pattern.values().any(|what| what == name))
 }

@@ -1,4 +1,4 @@
-//! The rules on what is written, and those of a later stage that are tested here already.
+//! The rules on what is written, and some rules on what is meant that are tested here already.
 
 use crate::rule::{Rule, rules};
 
@@ -27,7 +27,7 @@ rules! {
     EXAMPLE "example" Check ERROR;
 }
 
-/// All of the stage, in order.
+/// All rules of the stage, in order.
 pub static RULES: &[&Rule] = &[
     &MISPLACED_KEY,
     &VERSION,

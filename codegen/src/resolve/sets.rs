@@ -1,4 +1,5 @@
-//! Sets: messages whose frames carry a member each. A member travels as part of the set as it does by an access.
+//! Resolves sets: messages whose frames carry a member each. A set is one more way for a member to
+//! travel, like an access.
 
 use super::Resolver;
 use super::messages::{Draft, Owner, Surroundings};
@@ -9,7 +10,8 @@ use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
 impl Resolver<'_> {
-    /// Reads `members` and `in` of a message; the members are looked up when all messages are known.
+    /// Reads `members` and `in` of a message. The members are looked up when all messages are
+    /// known.
     pub fn set(&mut self, path: &Path, message: &ast::Message) -> Option<Set> {
         if message.members.is_empty() {
             if !message.kinds.is_empty() {
@@ -31,7 +33,7 @@ impl Resolver<'_> {
         Some(Set { members: Vec::new(), kinds, replies: Vec::new() })
     }
 
-    /// Finds the members of each set, and gives them the frames in which they travel as part of it.
+    /// Finds the members of each set, and gives them their frames in the set.
     pub fn sets(&mut self, surroundings: &Surroundings, drafts: &mut Table<MessageId, Draft>) {
         for id in drafts.ids() {
             let Some(mut set) = drafts[id].message.set.clone() else { continue };
@@ -100,7 +102,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the header if it says whether more frames follow; every frame of a set has it then.
+    /// Returns the header if it says whether more frames follow. Every frame of a set then has it.
     fn continuing_header(&self) -> Vec<SelectorId> {
         let is_in_header = self.tables.selectors.iter().any(|selector| selector.continues.is_some());
         if is_in_header { self.tables.header.clone() } else { Vec::new() }
@@ -125,7 +127,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Leaves out what stands there before.
+/// Leaves out repeated constants.
 fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
     constants.into_iter().fold(Vec::new(), |mut known, constant| {
         if !known.contains(&constant) {

@@ -1,4 +1,5 @@
-//! Fields become signals: words are taken apart, places become masks, keys become an encoding.
+//! Turns fields into signals: words are taken apart, places become masks, and keys become an
+//! encoding.
 
 use canspec_runtime::Place;
 
@@ -16,30 +17,30 @@ use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
 use crate::words::{NUMBER_FORMATS, NumberFormat};
 
-/// Most fields of a message, with those of its words, of its packed values and of their types.
+/// Largest number of fields of a message, counting those of words, packed values and their types.
 const FIELD_LIMIT: usize = 256;
 
-/// What the fields of a message come to.
+/// The result of resolving the fields of a message.
 #[derive(Default)]
 pub struct Leaves {
     pub signals: Vec<Signal>,
     /// Constant fields of the payload and their values.
     pub constants: Vec<(Signal, u64)>,
-    /// What a reply shows because of the fields, each with its place in the spec.
+    /// Constants that a reply shows because of the fields, each with its place in the spec.
     pub replies: Vec<(Path, ast::Pattern)>,
     /// Names of fields with an error of their own.
     pub given_up: Vec<String>,
 }
 
 impl Leaves {
-    /// Returns the names of all fields, whatever became of them.
+    /// Returns the names of all fields, also of those with an error.
     pub fn names(self) -> impl Iterator<Item = String> {
         let constants = self.constants.into_iter().map(|(signal, _)| signal);
         self.signals.into_iter().chain(constants).map(|signal| signal.name).chain(self.given_up)
     }
 }
 
-/// What a field stands in.
+/// What is around a field.
 #[derive(Clone, Copy)]
 struct Outer<'a> {
     site: Site,
@@ -48,7 +49,7 @@ struct Outer<'a> {
     doc: &'a Doc,
     /// Name of the message, for types without a name of their own.
     owner: &'a str,
-    /// Where the fields around it are written, from the outermost on.
+    /// Places of the fields around it, from the outermost on.
     around: &'a [Path],
 }
 
@@ -111,7 +112,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Resolves a field, a word or a packed value; nothing where it has to be given up.
+    /// Resolves a field, a word or a packed value. It returns nothing if the field must be given
+    /// up.
     fn read_leaf(&mut self, path: &Path, name: &str, merged: &Merged, outer: Outer, leaves: &mut Leaves) -> Option<()> {
         let field = &merged.field;
         let fields = merged.path(self.diagnostics, Key::Fields);
@@ -153,7 +155,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Counts a field of a message; there is no more to be said of one past the limit.
+    /// Counts a field of a message. It reports the limit only once.
     fn count_field(&mut self, path: &Path, owner: &str) -> Option<()> {
         self.tables.fields += 1;
         if self.tables.fields == FIELD_LIMIT + 1 {
@@ -164,7 +166,7 @@ impl Resolver<'_> {
         (self.tables.fields <= FIELD_LIMIT).then_some(())
     }
 
-    /// Tests that the field is not among those that its type brings with it.
+    /// Tests that the field is not inside a type that it takes its own fields from.
     fn check_not_around(&mut self, path: &Path, name: &str, fields: &Path, around: &[Path]) -> Option<()> {
         if !around.contains(fields) {
             return Some(());
@@ -243,7 +245,7 @@ impl Resolver<'_> {
         Some(signal)
     }
 
-    /// Adds the limits and defaults that device models have in place of those of the signal's types.
+    /// Adds the limits and defaults of device models that replace those of the signal's types.
     fn add_what_models_change(&mut self, merged: &Merged, signal: &mut Signal) {
         self.warn_of_hidden(merged, Key::Range, |known| known.range.is_some());
         self.warn_of_hidden(merged, Key::Default, |known| known.default.is_some());
@@ -282,7 +284,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// Warns of a key that keeps device models from changing it in one of the field's types.
+    /// Warns of a key of the field that hides what device models change in its types.
     fn warn_of_hidden(&mut self, merged: &Merged, key: Key, has: impl Fn(&TypeOfModel) -> bool + Copy) {
         for name in &merged.types {
             let models = self.hidden(merged, name, key, has);
@@ -294,7 +296,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Finds the device models that change a key of a type without an effect on the field.
+    /// Finds the device models that change a key of a type, but not the field.
     fn hidden(
         &self,
         merged: &Merged,
@@ -417,7 +419,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Warns of a key of a field that takes the effect from what device models say of a type.
+/// Makes a warning about a key that hides what device models change in a type.
 fn hidden_by(at: At, key: Key, name: &str, models: &[&DeviceModel]) -> Diagnostic {
     let names: Vec<_> = models.iter().map(|model| format!("`{}`", model.name)).collect();
     let word = key.name();
@@ -429,7 +431,7 @@ fn hidden_by(at: At, key: Key, name: &str, models: &[&DeviceModel]) -> Diagnosti
     })
 }
 
-/// Lets examples name a field, or those inside it, although there is no such signal.
+/// Lets examples name a field, or the fields inside it, although the signal was given up.
 fn give_up(name: &str, field: &Field, leaves: &mut Leaves) {
     leaves.given_up.push(name.to_owned());
     for (name, field) in &field.fields {

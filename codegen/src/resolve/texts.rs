@@ -15,7 +15,7 @@ use crate::syntax::ast::{Field, Names};
 use crate::syntax::tree::Path;
 use crate::text::Text;
 
-/// The keys that say something about an item rather than to the codec.
+/// The keys that say something to readers, not to the codec.
 #[derive(Clone, Copy)]
 pub struct Remarks<'a> {
     pub title: &'a Option<String>,
@@ -24,7 +24,7 @@ pub struct Remarks<'a> {
     pub erratum: &'a Names,
 }
 
-/// Borrows the remarks of an item of the syntax.
+/// Borrows the remarks of an item as it is written.
 macro_rules! remarks {
     ($item:expr) => {
         $crate::resolve::texts::Remarks {
@@ -38,7 +38,7 @@ macro_rules! remarks {
 pub(super) use remarks;
 
 impl Remarks<'_> {
-    /// Makes the model's remarks; an item without a section of its own stands in that of `outer`.
+    /// Makes the model's remarks. An item without a section has that of `outer`.
     pub fn doc(&self, path: &Path, outer: Option<&Doc>) -> Doc {
         let inherited = || outer.and_then(|outer| outer.section.clone());
         Doc {
@@ -106,7 +106,8 @@ impl Resolver<'_> {
         Some(range)
     }
 
-    /// Reads `high..low` or one number: bits of a word of `width` bits, 0 being the least significant.
+    /// Reads `high..low` or one number: bits of a word of `width` bits. Bit 0 is the least
+    /// significant.
     pub fn bits(&mut self, path: &Path, text: &str, width: u8) -> Option<(u8, u8)> {
         let (high, low) = self.ends(path, text, "7..4")?;
         let high = self.integer(path, high, 0, width - 1)?;
@@ -206,7 +207,7 @@ impl Resolver<'_> {
         self.find(path.at_key(), what, name, table.iter().map(name_of), None).map(I::new)
     }
 
-    /// Finds the name that stands at `path` as a value; `otherwise` says what else can be written.
+    /// Finds the name that stands at `path` as a value. `otherwise` says what else can be written.
     pub fn lookup_or<'n>(
         &mut self,
         path: &Path,
@@ -245,7 +246,7 @@ impl Resolver<'_> {
         found
     }
 
-    /// Reports a name that does not exist, with those that could be meant.
+    /// Reports a name that does not exist, and names that could be meant.
     pub fn report_name(&mut self, at: At, what: &str, name: &str, offered: &[&str], otherwise: Option<&str>) {
         let help = suggestion(what, name, offered);
         let help = match otherwise {
@@ -267,7 +268,7 @@ impl Resolver<'_> {
             .collect()
     }
 
-    /// Tests that a name can be used as it is in Rust, in logs and on the command line.
+    /// Tests that a name can be used unchanged in Rust, in logs and on the command line.
     pub fn check_name(&mut self, path: &Path, name: &str) {
         self.check_name_at(path.at_key(), name);
     }
@@ -282,7 +283,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Reports a name of another form than `form` says, with one like it that could be meant.
+    /// Reports a name that does not have the form `form`, and a similar name that does.
     pub fn report_form(&mut self, at: At, name: &str, form: &str) {
         let help = match respelled(name) {
             Some(respelled) => format!("write `{respelled}`: {form}"),
@@ -292,7 +293,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Writes a name in lower-case letters, digits and single `_`, if there is anything to write so.
+/// Writes a name in lower-case letters, digits and single `_`, if anything of it is left.
 fn respelled(name: &str) -> Option<String> {
     let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let respelled = words.collect::<Vec<_>>().join("_").to_ascii_lowercase();
@@ -305,7 +306,7 @@ fn known_units() -> String {
     format!("the units are {}", known.join(" "))
 }
 
-/// Says how a field writes a multiple of a unit: with a scale, which a float cannot have.
+/// Says how a field writes a multiple of a unit with a scale. A float cannot have one.
 fn scaled_unit(symbol: &str, field: &Field) -> Option<String> {
     let (unit, factor) = multiples::prefixed(symbol).filter(|_| field.format_of_number.as_deref() != Some("float"))?;
     let step = field.scale.as_deref().map_or(Some(Rational::ONE), Rational::parse)?;

@@ -13,7 +13,7 @@ use crate::words::SEVERITIES;
 /// Bits of the widest word.
 const WIDEST: u8 = 64;
 
-/// Most types of which each takes keys from the next.
+/// Largest number of types in a chain, in which each takes keys from the next.
 const CHAIN_LIMIT: usize = 64;
 
 /// A field together with the keys of its types.
@@ -34,7 +34,7 @@ impl Merged {
 }
 
 impl Merged {
-    /// Returns the type in which a key is written; nothing where the field itself writes it.
+    /// Returns the type that a key is written in, or nothing if the field itself has it.
     pub fn type_at(&self, key: &Path) -> Option<&String> {
         let outer = key.split().map(|(outer, _)| outer);
         let types = self.types.iter().zip(&self.sources[1..]);
@@ -68,7 +68,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tests the name of a type or a device model, which may have capitals as documents have them.
+    /// Tests the name of a type or a device model, which may have the document's capital letters.
     pub fn check_document_name(&mut self, path: &Path, name: &str) {
         let plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !plain || !name.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
@@ -77,7 +77,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Adds the keys of a field's types to its own, which win.
+    /// Adds the keys of a field's types to its own keys. Its own keys win.
     pub fn merged(&mut self, path: &Path, field: &Field) -> Option<Merged> {
         let mut merged = Merged { field: field.clone(), sources: vec![path.clone()], types: Vec::new() };
         self.merge_types(path, &field.types.0, &mut merged, &[])?;
@@ -116,7 +116,7 @@ impl Resolver<'_> {
         Some(())
     }
 
-    /// Reports types of which each names the next and the last the first, once.
+    /// Reports a ring of types once. Each of them names the next, and the last names the first.
     fn report_ring(&mut self, names: &[&str]) {
         let places = names.iter().map(|name| Path::default().key("types").key(*name).key("type"));
         let places: Vec<_> = places.collect();
@@ -137,7 +137,7 @@ impl Resolver<'_> {
         self.diagnostics.push(diagnostic);
     }
 
-    /// Returns the type whose key it is, or else the name that the field itself suggests.
+    /// Returns the name of the type that has the key, or else `otherwise`.
     fn type_name(&self, merged: &Merged, key: Key, otherwise: &str) -> (String, Path) {
         let path = merged.path(self.diagnostics, key);
         let own = merged.sources[0].key(key);
@@ -251,7 +251,8 @@ impl Resolver<'_> {
         self.tables.status_words.push(StatusWord { name, doc, width, bits })
     }
 
-    /// Tests that not several bits lie beyond the end of the word, where rather the place of the word is wrong.
+    /// Tests that at most one bit lies beyond the end of the word. If several do, the place of the
+    /// word is probably wrong.
     fn holds_bits(&mut self, merged: &Merged, width: u8) -> bool {
         let is_beyond = |bit: &ast::StatusBit| bit.bit.parse::<u8>().is_ok_and(|bit| (width..WIDEST).contains(&bit));
         let path = merged.path(self.diagnostics, Key::Status);

@@ -1,4 +1,4 @@
-//! What the values after a key may be, where their kind does not say it all: one of a few words, a number, a place.
+//! Restricts values beyond their kind: to one of a few words, to a number, or to a place.
 
 use serde_json::{Map, Value};
 
@@ -8,12 +8,12 @@ use crate::rules::RULES;
 use crate::syntax::ast::Key;
 use crate::words::{ANSWERS, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
 
-/// The form of a text; what YAML reads as a number needs none.
+/// The form of a text. What YAML reads as a number needs none.
 #[derive(Clone, Copy)]
 pub struct Form {
     /// The text as a regular expression, in which `N` stands for a number.
     pattern: &'static str,
-    /// What an editor says of another text.
+    /// What an editor says about a text of another form.
     message: &'static str,
 }
 
@@ -22,7 +22,7 @@ const RANGE: Form = Form { pattern: r"N\.\.N", message: "Write the limits as `41
 /// From the most to the least significant.
 pub const PLACE: Form = Form { pattern: r"N(\.\.N)?", message: "Write `7..4` or one number." };
 
-/// What a value is, beyond its kind.
+/// What a value must be, beyond its kind.
 enum Demand {
     /// A text has a form.
     Form(Form),
@@ -32,7 +32,8 @@ enum Demand {
     Anything,
 }
 
-/// Keys after which a text has a form, by the struct that has them; those of a field are in [`of_field`].
+/// Keys whose texts have a form, with the struct that has the key. The keys of a field are in
+/// [`of_field`].
 const FORMS: [(&str, &str, Form); 7] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
@@ -43,7 +44,7 @@ const FORMS: [(&str, &str, Form); 7] = [
     ("StatusBit", "bit", NUMBER),
 ];
 
-/// Returns the keys after which one of a few words stands, by the struct that has them.
+/// Returns the keys whose value is one of a few words, with the struct that has the key.
 fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 10] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();
     [
@@ -64,7 +65,7 @@ fn kinds() -> Vec<&'static str> {
     Kind::ALL.map(Kind::name).to_vec()
 }
 
-/// Returns what stands after a key of a field.
+/// Returns what the value of a field's key must be.
 fn of_field(key: Key) -> Demand {
     match key {
         Key::Bytes => Demand::Form(Form { message: "Write `0..3` or one number.", ..PLACE }),
@@ -91,7 +92,7 @@ fn of_field(key: Key) -> Demand {
     }
 }
 
-/// Returns every key with what stands after it, by the struct that has it.
+/// Returns every key with its struct and what its value must be.
 fn demands() -> impl Iterator<Item = (&'static str, &'static str, Demand)> {
     let forms = FORMS.into_iter().map(|(item, key, form)| (item, key, Demand::Form(form)));
     let choices = choices().into_iter().map(|(item, key, words)| (item, key, Demand::Choice(words)));
@@ -99,7 +100,7 @@ fn demands() -> impl Iterator<Item = (&'static str, &'static str, Demand)> {
     forms.chain(choices).chain(fields)
 }
 
-/// Adds all that to the schema.
+/// Adds every demand to the schema.
 pub fn restrict(schema: &mut Value) {
     for (item, key, demand) in demands() {
         if let Some(value) = value_of(schema, item, key) {
@@ -130,7 +131,7 @@ impl Form {
     }
 }
 
-/// Returns the schema of what stands after a key, in a list or a map that of each entry.
+/// Returns the schema of a key's value. For a list or a map it is the schema of each entry.
 fn value_of<'s>(schema: &'s mut Value, item: &str, key: &str) -> Option<&'s mut Map<String, Value>> {
     let value = schema.pointer_mut(&format!("/definitions/{item}/properties/{key}"))?;
     let entries = ["items", "additionalProperties"].into_iter().find(|inner| value.get(inner).is_some());

@@ -7,5 +7,5 @@ rules! {
     ENCODING "encoding" Source ERROR;
 }
 
-/// All of the stage, in order.
+/// All rules of the stage, in order.
 pub static RULES: &[&Rule] = &[&FILE, &ENCODING];

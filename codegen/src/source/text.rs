@@ -1,4 +1,4 @@
-//! The text of a spec file, and where its lines are.
+//! The text of a spec file, and the places of its lines.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Returns the name of the file, without what would begin a line or act on a terminal.
+    /// Returns the name of the file, without characters that begin a line or act on a terminal.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -29,7 +29,8 @@ impl Source {
         &self.text
     }
 
-    /// Returns the line and the column of a byte offset, both counted from 1, columns in characters.
+    /// Returns the line and the column of a byte offset. Both count from 1, and columns count
+    /// characters.
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
         let offset = offset.min(self.text.len());
         let line = self.lines.partition_point(|&start| start <= offset).max(1);
@@ -44,7 +45,7 @@ impl Source {
         self.lines[first - 1]..self.lines.get(next).copied().unwrap_or(self.text.len())
     }
 
-    /// Returns the byte offset of a character, whose position in the text is known.
+    /// Returns the byte offset of the character at a position.
     pub(crate) fn byte_of_character(&self, position: usize) -> usize {
         let block = self.blocks.partition_point(|&before| before <= position).max(1) - 1;
         let start = block * BLOCK;
@@ -52,7 +53,7 @@ impl Source {
         starts.map(|(at, _)| start + at).nth(position - self.blocks[block]).unwrap_or(self.text.len())
     }
 
-    /// Finds the lines of a text.
+    /// Makes a source of a text, and finds its lines.
     pub(super) fn index(name: &str, text: String) -> Self {
         let line_ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let lines = std::iter::once(0).chain(line_ends.map(|(at, _)| at + 1)).collect();
@@ -71,7 +72,7 @@ impl Source {
     }
 }
 
-/// Names what a character is if a spec may not hold it, nor the name of a file or a channel.
+/// Names the kind of a character that specs, file names and channel names must not hold.
 pub fn forbidden(character: char) -> Option<&'static str> {
     match character {
         '\t' | '\n' => None,
@@ -92,7 +93,7 @@ pub fn forbidden(character: char) -> Option<&'static str> {
     }
 }
 
-/// Replaces what would begin a line or act on a terminal.
+/// Replaces characters that begin a line or act on a terminal.
 pub(crate) fn visible(text: &str) -> String {
     text.replace(|character: char| character.is_control() || forbidden(character).is_some(), "\u{FFFD}")
 }

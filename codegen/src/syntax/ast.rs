@@ -34,34 +34,35 @@ pub struct Spec {
     /// Speeds of the bus in whole kbit/s, a list: `[125 kbit/s, 250 kbit/s]`; none if absent.
     #[serde(default)]
     pub bit_rates: Vec<String>,
-    /// Fields of the identifier by name, together with `ones` and `zeros` all of its 11 or 29 bits:
-    /// `{command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}`.
+    /// Fields of the identifier by name. Together with `ones` and `zeros` they fill all of its 11
+    /// or 29 bits: `{command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}`.
     #[cfg_attr(feature = "schema", schemars(schema_with = "crate::schema::identifier"))]
     pub identifier: Map<IdentifierEntry>,
-    /// Fields by name of the data bytes that choose the message: `{register: {bytes: 2..3}}`; none if absent. A frame
-    /// has them if its message or its access names one of them.
+    /// Fields by name, in the data bytes, that choose the message: `{register: {bytes: 2..3}}`;
+    /// none if absent. A frame has them if its message or its access names one of them.
     #[serde(default)]
     pub header: Map<Field>,
-    /// Fields by name whose keys other fields take with `type`, and the address types that `addressing` names:
-    /// `{real: {as: float}, module: {range: 0x00..0x3B}}`; none if absent.
+    /// Types by name. Fields take keys from them with `type`, and `addressing` names those that are
+    /// address types: `{real: {as: float}, module: {range: 0x00..0x3B}}`; none if absent.
     #[serde(default)]
     pub types: Map<Field>,
-    /// Addressing modes by name, which say how the identifier shows to whom a request goes and who answers:
-    /// `{single: {request: {target: module}, one: {source: module}}}`; none if absent.
+    /// Addressing modes by name. A mode says how the identifier shows where a request goes and who
+    /// answers: `{single: {request: {target: module}, one: {source: module}}}`; none if absent.
     #[serde(default)]
     pub addressing: Map<Mode>,
-    /// Accesses by name: which kinds of frames there are, and what tells them apart:
+    /// Accesses by name. An access says which kinds of frames there are, and what tells them apart:
     /// `{read: {request: {}, reply: {}, in: [reply], answers: {single: one}}}`.
     pub access: Map<Access>,
-    /// Identifiers of somebody else on the bus, by name, never sent and refused on receipt:
-    /// `{others: {match: {identifier: 0x100..0x1FF}}}`; none if absent.
+    /// Identifiers of other devices on the bus, by name. They are never sent, and refused on
+    /// receipt: `{others: {match: {identifier: 0x100..0x1FF}}}`; none if absent.
     #[serde(default)]
     pub foreign: Map<Foreign>,
-    /// Messages by name, a register being one too:
-    /// `{fan_speed: {match: {command: 0x03}, access: [read], value: {bytes: 0..1, unit: rpm}}}`; none if absent.
+    /// Messages by name. A register is a message too:
+    /// `{fan_speed: {match: {command: 0x03}, access: [read], value: {bytes: 0..1, unit: rpm}}}`;
+    /// none if absent.
     #[serde(default)]
     pub messages: Map<Message>,
-    /// Device models by name, and what differs with them:
+    /// Device models by name, and what is different for each:
     /// `{SM75030: {max_parallel: 60, types: {volts: {range: 50..750}}}}`; none if absent.
     #[serde(default)]
     pub models: Map<DeviceModel>,
@@ -80,8 +81,8 @@ pub struct Spec {
     /// `{E1: {kind: ocr, prints: 13 38, uses: 13 88, because: the text says 500 V}}`; none if absent.
     #[serde(default)]
     pub errata: Map<Erratum>,
-    /// Warnings that are meant, a list: `[{rule: section, at: messages.output, because: only seen on the bus}]`; none if
-    /// absent.
+    /// List of warnings that are accepted:
+    /// `[{rule: section, at: messages.output, because: only seen on the bus}]`; none if absent.
     #[serde(default)]
     pub allow: Vec<Allowance>,
 }
@@ -104,7 +105,8 @@ pub struct Document {
 /// One entry of `identifier`: a named field, or the place of unnamed `ones` or `zeros`.
 #[derive(Clone, Debug)]
 pub enum IdentifierEntry {
-    /// Bits that must be 1 after `ones`, or 0 after `zeros`, from the most to the least significant: `6..1` or `25`.
+    /// Bits from the most to the least significant: `6..1` or `25`. They must be 1 after `ones`,
+    /// and 0 after `zeros`.
     Place(String),
     /// A field with its `bits`: `{bits: 28..16}`.
     Field(Box<Field>),
@@ -115,10 +117,10 @@ pub enum IdentifierEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StatusBit {
-    /// Number of the bit in its word, 0 being the least significant: `3`.
+    /// Number of the bit in its word: `3`. Bit 0 is the least significant.
     pub bit: String,
-    /// How grave the set bit is: `state` (a condition), `alarm` (the device recovers) or `fault` (a defect); not stated
-    /// if absent.
+    /// Severity of the set bit: `state` (a condition), `alarm` (the device recovers) or `fault` (a
+    /// defect); not stated if absent.
     pub severity: Option<String>,
     /// Condition that sets the bit, as a text: `no command for 10 s`; not stated if absent.
     pub set_when: Option<String>,
@@ -139,14 +141,15 @@ pub struct StatusBit {
     pub erratum: Names,
 }
 
-/// Bytes of a type and the value they mean.
+/// Bytes of a type, and the value that they stand for.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ValueExample {
-    /// Bytes of the type alone in hexadecimal, 1 to 8, the first byte first: `43FA0000`.
+    /// The 1 to 8 bytes of the type alone, in hexadecimal, first byte first: `43FA0000`.
     pub bytes: String,
-    /// Physical value of these bytes, with the unit if the type has one, a name or a text: `500 V`.
+    /// Physical value of these bytes, with its unit if the type has one: `500 V`. It can also be a
+    /// name or a text.
     pub means: String,
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
@@ -160,16 +163,17 @@ pub struct ValueExample {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mode {
-    /// What the identifier of a request shows, a number or an address type for each field:
+    /// Identifier of a request, with a number or an address type for each field:
     /// `{target: module, source: controller}`. If absent, nobody is asked in this mode.
     pub request: Option<Pattern>,
-    /// What the identifier shows if the one module addressed answers or reports:
+    /// Identifier of a reply from the one addressed module, or of a report:
     /// `{target: controller, source: module}`; none if absent.
     pub one: Option<Pattern>,
-    /// What the identifier shows if each module addressed answers for itself: `{target: controller, source: module}`;
-    /// none if absent.
+    /// Identifier of a reply, if each addressed module answers for itself:
+    /// `{target: controller, source: module}`; none if absent.
     pub each: Option<Pattern>,
-    /// What the identifier shows if one module answers for all: `{target: controller, source: group}`; none if absent.
+    /// Identifier of a reply, if one module answers for all: `{target: controller, source: group}`;
+    /// none if absent.
     pub coordinator: Option<Pattern>,
     /// What it is, in a few words without a full stop: `All modules of one group`.
     pub title: Option<String>,
@@ -187,24 +191,26 @@ pub struct Mode {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Access {
-    /// Raw values that fields of the identifier and the header have in a request, which goes to a module:
-    /// `{function: 3}`, or `{}` if none are fixed. If absent, there is no request.
+    /// Raw values that fields of the identifier and the header have in a request to a module:
+    /// `{function: 3}`. Write `{}` if no values are fixed. If absent, there is no request.
     pub request: Option<Pattern>,
-    /// Raw values that fields of the identifier and the header have in a reply: `{function: 3}`, or `{}` if none are
-    /// fixed. If absent, there is no reply.
+    /// Raw values that fields of the identifier and the header have in a reply: `{function: 3}`.
+    /// Write `{}` if no values are fixed. If absent, there is no reply.
     pub reply: Option<Pattern>,
-    /// Raw values that fields of the identifier and the header have in a reply that refuses the request, in place of those of
-    /// `reply`; another message has such replies and says why: `{function: 0x80}`. If absent, nothing is refused so.
+    /// Raw values that fields of the identifier and the header have in a reply that refuses the
+    /// request: `{function: 0x80}`. They replace those of `reply`. Another message has such
+    /// replies, and says why. If absent, there are none.
     pub refusal: Option<Pattern>,
-    /// Raw values that fields of the identifier and the header have in a report, which is sent unasked:
-    /// `{function: 5}`, or `{}` if none are fixed. If absent, there is no report.
+    /// Raw values that fields of the identifier and the header have in a report, which is sent
+    /// unasked: `{function: 5}`. Write `{}` if no values are fixed. If absent, there is no report.
     pub report: Option<Pattern>,
-    /// Kinds of frames that carry the message's fields, of `request`, `reply` and `report`: `[reply]`; all that the
-    /// access has if absent.
+    /// Kinds of frames that carry the message's fields, out of `request`, `reply` and `report`:
+    /// `[reply]`; all kinds of the access if absent.
     #[serde(rename = "in", default)]
     pub kinds: Vec<String>,
-    /// Who answers in the addressing modes that may be used, `one`, `each`, `coordinator` or `nobody`:
-    /// `{single: one, broadcast: nobody}`; no mode may be used if absent.
+    /// The addressing modes that may be used, and who answers in each: `one`, `each`, `coordinator`
+    /// or `nobody`. An example is `{single: one, broadcast: nobody}`. If absent, no mode may be
+    /// used.
     #[serde(default)]
     pub answers: Map<String>,
     /// Entry of `timing` that says how often a report comes: `cycle`; not stated if absent.
@@ -220,13 +226,13 @@ pub struct Access {
     pub erratum: Names,
 }
 
-/// Identifiers that belong to somebody else on the bus.
+/// Identifiers that belong to other devices on the bus.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Foreign {
-    /// Number or range for fields of the identifier, all of which must hold; `identifier` is the whole of it:
-    /// `{identifier: 0x100..0x1FF}` or `{command: 0x21}`.
+    /// A number or a range for each field of the identifier: `{command: 0x21}`. All must hold.
+    /// `identifier` stands for the whole identifier: `{identifier: 0x100..0x1FF}`.
     #[serde(rename = "match")]
     pub pattern: Pattern,
     /// What it is, in a few words without a full stop: `Traffic between modules`.
@@ -240,7 +246,7 @@ pub struct Foreign {
     pub erratum: Names,
 }
 
-/// A device model and what differs with it.
+/// A device model, and what is different for it.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -250,12 +256,13 @@ pub struct DeviceModel {
     /// Item numbers of the model, a list of texts: `[SM-750-30]`; none if absent.
     #[serde(default)]
     pub items: Vec<String>,
-    /// Most devices that can work together, 1 to 65535: `60`; not stated if absent.
+    /// Largest number of devices that can work together, 1 to 65535: `60`; not stated if absent.
     pub max_parallel: Option<String>,
     /// Speeds of this model in whole kbit/s, a list: `[125 kbit/s]`; not stated if absent.
     #[serde(default)]
     pub bit_rates: Vec<String>,
-    /// Ratings by name that no message carries, numbers with their units: `{rated_current: 20 A}`; none if absent.
+    /// Ratings by name that no message carries, each a number with its unit:
+    /// `{rated_current: 20 A}`; none if absent.
     #[serde(default)]
     pub facts: Map<String>,
     /// The `range` and `default` of this model for entries of `types`, without units:
@@ -296,7 +303,8 @@ pub struct Timing {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Procedure {
-    /// Steps in order, a sentence each; a name in backquotes must be a message: ``[Wait 10 s, Read `output`]``.
+    /// Steps in order, each a sentence: ``[Wait 10 s, Read `output`]``. A name in backquotes must
+    /// be a message.
     pub steps: Vec<String>,
     /// What it is, in a few words without a full stop: `Switching on`.
     pub title: Option<String>,
@@ -314,8 +322,10 @@ pub struct Procedure {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Erratum {
-    /// What is wrong: `vendor` (a mistake in the original), `translation`, `ocr` (of a scan), `unclear` (it can be read
-    /// in two ways), `gap` (something is missing) or `note` (an oddity that is used as printed).
+    /// What is wrong: `vendor`, `translation`, `ocr`, `unclear`, `gap` or `note`. `vendor` is a
+    /// mistake in the original, and `ocr` one in the reading of a scan. `unclear` text can be read
+    /// in two ways, and a `gap` lacks something. A `note` is an oddity that the spec uses as
+    /// printed.
     pub kind: String,
     /// What the document prints: `13 38`.
     pub prints: String,
@@ -327,7 +337,7 @@ pub struct Erratum {
     pub section: Option<String>,
 }
 
-/// Warnings of one rule that are meant.
+/// Warnings of one rule that are accepted.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -336,7 +346,7 @@ pub struct Allowance {
     pub rule: String,
     /// Item in which the warnings are, by the keys that lead to it: `messages.output`.
     pub at: String,
-    /// Why they are meant: `only seen on the bus`.
+    /// Why they are accepted: `only seen on the bus`.
     pub because: String,
 }
 

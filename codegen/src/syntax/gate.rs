@@ -1,4 +1,4 @@
-//! Text to tree, without the parts of YAML that a spec does without.
+//! Turns text into a tree and refuses the parts of YAML that a spec does not need.
 
 mod cause;
 mod complaint;
@@ -20,13 +20,14 @@ const DEPTH_LIMIT: usize = 64;
 /// Most values in one file.
 const NODE_LIMIT: usize = 200_000;
 
-/// Most errors after which it is worth reading on.
+/// The reader stops after this number of errors.
 const PROBLEM_LIMIT: usize = 1000;
 
-/// Words that readers of YAML take for a text, a truth value or nothing, as they please.
+/// Words that some readers of YAML take for a text, and others for a truth value or nothing.
 const UNCLEAR_WORDS: [&str; 10] = ["on", "off", "yes", "no", "y", "n", "true", "false", "null", "~"];
 
-/// Reads the tree of a spec and reports all that is refused; there is no tree where the text cannot be read to its end.
+/// Reads the tree of a spec and reports all that is refused. It returns no tree if the text cannot
+/// be read to its end.
 pub(super) fn read(source: &Source) -> (Option<Node>, Vec<Diagnostic>) {
     let mut gate = Gate { source, problems: Vec::new(), open: Vec::new(), root: None, nodes: 0, gap: 0 };
     let read = gate.read_events();
@@ -40,7 +41,7 @@ pub(super) fn read(source: &Source) -> (Option<Node>, Vec<Diagnostic>) {
     }
 }
 
-/// What makes it pointless to read on.
+/// An error after which reading on is pointless.
 type Stopped = Box<Diagnostic>;
 
 struct Gate<'a> {
@@ -49,11 +50,11 @@ struct Gate<'a> {
     open: Vec<Open>,
     root: Option<Node>,
     nodes: usize,
-    /// Where the last event ended; up to the next one there are only indicators, blanks and comments.
+    /// Where the last event ended. Only indicators, blanks and comments stand between two events.
     gap: usize,
 }
 
-/// A map or a list of which the end is still to come.
+/// A map or a list whose end is still to come.
 struct Open {
     start: usize,
     entries: Entries,
@@ -297,7 +298,8 @@ impl Gate<'_> {
         }
     }
 
-    /// Ends the span of a text where it is written; the parser lets one that is not written reach up to what follows.
+    /// Ends the span of a text where the text ends. The parser stretches the span of an empty text
+    /// up to what follows.
     fn written(&self, span: Range<usize>, unwritten: bool) -> Range<usize> {
         let length = if unwritten { 0 } else { self.source.text()[span.clone()].trim_end().len() };
         span.start..span.start + length
@@ -332,7 +334,7 @@ fn put_entry(entries: &mut IndexMap<String, Entry>, key: Key, value: Node) -> Op
     None
 }
 
-/// Tells whether the number at the end of a key is above that of the next key, as that of `M12` before `M11`.
+/// Tells whether a key ends in a higher number than the next key, as `M12` before `M11`.
 fn is_out_of_order(entries: &IndexMap<String, Entry>, index: usize) -> bool {
     let numbered = |index| {
         let (name, _) = entries.get_index(index)?;

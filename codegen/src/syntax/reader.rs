@@ -1,4 +1,4 @@
-//! Tree to plain structs, past every error there is.
+//! Turns the tree into plain structs, and finds every error on the way.
 
 mod complaint;
 
@@ -14,16 +14,16 @@ use super::rules::{PLAIN_WORD, UNKNOWN_KEY};
 use super::tree::{Content, Entry, Node, Path, Step};
 use crate::diagnostic::{At, Diagnostic};
 
-/// Most times that one spec is read.
+/// A spec is read this number of times at most.
 const ROUNDS: usize = 200;
 
 /// Most errors that are reported of one spec.
 const REPORTED: usize = 100;
 
-/// Longest time after which a spec that has errors is read once more.
+/// A spec with errors is not read again after this time.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Reads a spec, unless something is wrong with it, and adds that to what is known to be wrong.
+/// Reads a spec, or adds what is wrong with it to the known problems.
 pub(super) fn read(tree: &Node, problems: &mut Vec<Diagnostic>) -> Option<Spec> {
     match attempts(tree) {
         Ok(spec) if problems.is_empty() => Some(spec),

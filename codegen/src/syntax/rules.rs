@@ -11,5 +11,5 @@ rules! {
     WRONG_KIND "wrong_kind" Syntax ERROR;
 }
 
-/// All of the stage, in order.
+/// All rules of the stage, in order.
 pub static RULES: &[&Rule] = &[&YAML, &PLAIN_WORD, &DUPLICATE_KEY, &UNKNOWN_KEY, &MISSING_KEY, &WRONG_KIND];

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 /// A value in the file and where it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// Bytes of a text, or of the first line of a map or a list.
+    /// The bytes of a text, or of the first line of a map or list.
     pub span: Range<usize>,
     /// What it is.
     pub content: Content,
@@ -78,13 +78,14 @@ impl Node {
         self.child_at(key)?.text()
     }
 
-    /// Returns the bytes of a key; for what has no key its own, for what does not exist those of the nearest parent.
+    /// Returns the bytes of the key. An item without a key gives its own bytes, and a missing one
+    /// those of its nearest parent.
     pub fn key_span(&self, path: &Path) -> Range<usize> {
         let found = self.find_nearest(path);
         found.key.unwrap_or(&found.value.span).clone()
     }
 
-    /// Returns the bytes of a text; for anything else those of [`Node::key_span`].
+    /// Returns the bytes of a text. Anything else gives [`Node::key_span`].
     pub fn value_span(&self, path: &Path) -> Range<usize> {
         match self.get(path) {
             Some(Node { span, content: Content::Text(_) | Content::Refused }) => span.clone(),
@@ -145,9 +146,10 @@ pub enum At {
     File,
     /// A range of bytes of the text.
     Span(Range<usize>),
-    /// The key of an entry; where there is no such entry, the key of what it should be in.
+    /// The key of an entry. If the entry is missing, it is the key of the map around it.
     Key(Path),
-    /// The value of an entry; of a map or a list its key, or its first line where it has no key.
+    /// The text after a key. For a map or a list it is the key, or the first line if there is no
+    /// key.
     Value(Path),
 }
 
@@ -157,7 +159,7 @@ impl From<Range<usize>> for At {
     }
 }
 
-/// Keys and list positions from the root of a spec to a value; the default is the root.
+/// Keys and list positions from the root of a spec to a value. The default is the root.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Path(Option<Arc<Link>>);
 

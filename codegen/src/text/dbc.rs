@@ -1,8 +1,7 @@
 use super::Text;
 
 impl Text {
-    /// Writes the text for a DBC in the characters that every tool reads alike: ASCII, since no two tools agree on another
-    /// encoding.
+    /// Writes the text for a DBC in ASCII. Tools do not agree on any other encoding.
     pub(crate) fn in_dbc(&self) -> String {
         let plain = self.0.chars().map(|letter| match letter {
             '"' => "'".to_owned(),

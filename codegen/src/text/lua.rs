@@ -7,7 +7,7 @@ impl Text {
     }
 }
 
-/// Writes any text in quotes, so that Lua reads the same.
+/// Writes any text in quotes, so that Lua reads the same text.
 pub(crate) fn quoted(text: &str) -> String {
     let escaped = text.chars().map(|letter| match letter {
         '"' | '\\' => format!("\\{letter}"),

@@ -1,9 +1,9 @@
 use super::Text;
 
 impl Text {
-    /// Writes the text for a paragraph of Rust documentation, so that Markdown shows it as it is.
+    /// Writes the text for a paragraph of Rust documentation. Markdown shows it unchanged.
     ///
-    /// What stands between two backquotes stays code, and names that look like code become it.
+    /// Text between two backquotes stays code, and names that look like code become code.
     pub(crate) fn in_rust_doc(&self) -> String {
         let ticks = self.0.matches('`').count();
         let is_paired = ticks.is_multiple_of(2) && !self.0.contains("``");
@@ -29,7 +29,7 @@ pub(crate) fn code(text: &str) -> String {
     if text.0.contains('`') { text.in_rust_doc() } else { format!("`{}`", text.0) }
 }
 
-/// Writes the first word, which could begin a list or be a rule across the page.
+/// Writes the first word, so that it begins no list and is no rule across the page.
 fn unmarked(word: &str) -> String {
     let number = word.trim_end_matches(['.', ')']);
     if word.starts_with(['-', '+', '=']) {
@@ -41,7 +41,8 @@ fn unmarked(word: &str) -> String {
     plain(word)
 }
 
-/// Writes a word; of one that looks like code, what is around the name is none.
+/// Writes a word. If its name looks like code, the punctuation around the name stays outside the
+/// code.
 fn plain(word: &str) -> String {
     let name = word.trim_matches(|letter: char| !letter.is_alphanumeric());
     match word.split_once(name).filter(|_| looks_like_code(name)) {
@@ -50,7 +51,8 @@ fn plain(word: &str) -> String {
     }
 }
 
-/// Tests for `snake_case`, `CamelCase` and paths, and for addresses of pages, which must be no links.
+/// Tests for `snake_case`, `CamelCase`, paths, and addresses of pages. The latter must not become
+/// links.
 fn looks_like_code(word: &str) -> bool {
     let bytes = word.as_bytes();
     let camel = bytes.windows(2).any(|pair| pair[0].is_ascii_lowercase() && pair[1].is_ascii_uppercase());

@@ -169,7 +169,7 @@ fn of_messages_that_look_the_same_the_device_model_chooses() {
     assert_eq!(message(&pumps, Some(model(&pumps, "P_48V_DC")), "003#12C0"), "supply_dc");
 }
 
-/// Two device models, each of which reports from an end of its own.
+/// Two device models that each report from an end of their own.
 const ENDS: &str = r#"
 canspec: 1
 protocol: ends

@@ -10,9 +10,10 @@ use crate::frame::Frame;
 /// How many distinct frames are measured.
 pub const MANY: usize = 1_000_000;
 
-/// Returns so many frames, no two of them alike, in an order without rule.
+/// Returns `count` different frames in a random order.
 ///
-/// Each message comes as often as any other until its frames are used up: there are few reads, and many set-points.
+/// All messages are equally frequent until their frames are used up. There are few reads, and many
+/// set-points.
 pub fn distinct(count: usize) -> Vec<Frame> {
     let mut rng = Rng::with_seed(0x5EED);
     let mut seen = HashSet::with_capacity(count);

@@ -30,7 +30,7 @@ fn main() {
     }
 }
 
-/// Works so many times through the frames, for valgrind to count.
+/// Works `passes` times through the frames, so that valgrind can count.
 fn run<C: Codec>(work: &str, passes: usize) {
     let frames = frames::distinct(COUNTED);
     let (received, requests) = (received::<C>(&frames), requests::<C>(&frames));

@@ -1,4 +1,4 @@
-//! Signals for code that does not know their types.
+//! Access to signals for code that does not know their types.
 
 use core::cmp::Ordering;
 use core::fmt;
@@ -15,11 +15,11 @@ pub struct Reading<'a> {
     pub name: &'static str,
     /// Unit of the physical value.
     pub unit: Option<&'static str>,
-    /// The integer in the frame; the bit pattern of a float, the bytes of a text.
+    /// The integer in the frame. For a float it is the bit pattern, and for a text the bytes.
     pub raw: Number,
     /// What it means.
     pub meaning: Meaning<'a>,
-    /// Whether the frame is an error reply, whose values mean nothing unless the document says so.
+    /// Whether the frame is an error reply. Its values mean nothing unless the document says so.
     pub is_of_error_reply: bool,
 }
 
@@ -36,9 +36,9 @@ impl fmt::Display for Reading<'_> {
     }
 }
 
-/// A signal for code that reads it and does not know its type.
+/// A signal, for code that reads it without knowing its type.
 ///
-/// Nothing of it writes, so that a program which only reads has no code for writing.
+/// It cannot write, so a program that only reads does not contain the code to write.
 pub trait AnySignal {
     /// Returns the name.
     fn name(&self) -> &'static str;
@@ -49,10 +49,11 @@ pub trait AnySignal {
     /// Returns the place in the data.
     fn place(&self) -> Place;
 
-    /// Returns the documented limits of the physical value, both legal: what holds where no device model is chosen.
+    /// Returns the documented limits of the physical value, both legal. They hold if no device
+    /// model is chosen.
     fn limits(&self) -> Option<(Number, Number)>;
 
-    /// Shows what the signal says in a frame.
+    /// Shows the signal's value in a frame to `visitor`.
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>));
 }
 
@@ -86,14 +87,14 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
     }
 }
 
-/// A signal for code that writes it and does not know its type.
+/// A signal, for code that writes it without knowing its type.
 pub trait WriteSignal: AnySignal {
-    /// Writes the value that means `meaning`.
+    /// Writes the value with this meaning.
     ///
     /// # Errors
     ///
-    /// Refuses what the signal's bits cannot hold, names that it does not have, and what lies outside the limits if
-    /// `payload` keeps to them.
+    /// Refuses unknown names, and values that the signal's bits cannot hold. If `payload` keeps to
+    /// limits, it also refuses values outside them.
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error>;
 }
 
@@ -117,7 +118,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         special.map(|(raw, _)| R::from_bits(raw.cast_unsigned()))
     }
 
-    /// Writes a number as its own raw value, or as the one nearest to it.
+    /// Writes a number as its own raw value, or as the nearest one.
     pub(crate) fn write_unscaled(&self, number: Number, payload: &mut Payload) -> Result<(), Error> {
         if let Some(raw) = R::from_meaning(Meaning::Number(number)) {
             return self.put(raw, payload);
@@ -133,7 +134,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         }
     }
 
-    /// Tests a number that is rounded to `raw` if it is no integer.
+    /// Tests a number with a fraction that is rounded to `raw`.
     fn check_fraction(&self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
         let sent = raw.number().to_f64();
         if sent.partial_cmp(&value) == Some(Ordering::Equal) || !payload.keeps_limits() {

@@ -29,7 +29,7 @@ impl<'de, R: Integer> Deserialize<'de> for Bcd<R> {
     }
 }
 
-/// Returns the value of bits, unless they are too many.
+/// Returns the value of bits, unless there are too many.
 fn of_bits<R: Integer>(bits: u64) -> Option<Bcd<R>> {
     let value = Bcd::from_bits(bits);
     (value.to_bits() == bits).then_some(value)

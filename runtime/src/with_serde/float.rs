@@ -1,15 +1,16 @@
-//! Floats of the frame, of which not every one is a number.
+//! Floats of the frame. Not every one is a number.
 
 use core::fmt;
 
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serializer};
 
-/// Serializes a float: for people as the double of the same value, or as the text of its bits if it is not finite.
+/// Serializes a float. Formats for people get the double of the same value, or the bits as a text
+/// if it is not finite.
 ///
 /// # Errors
 ///
-/// Passes on what the serializer refuses.
+/// Passes on errors of the serializer.
 pub fn serialize<S: Serializer>(value: &f32, serializer: S) -> Result<S::Ok, S::Error> {
     match (serializer.is_human_readable(), value.is_finite()) {
         (false, _) => serializer.serialize_f32(*value),
@@ -22,7 +23,7 @@ pub fn serialize<S: Serializer>(value: &f32, serializer: S) -> Result<S::Ok, S::
 ///
 /// # Errors
 ///
-/// Refuses what is neither a number nor the text of 32 bits.
+/// Refuses anything but a number or the text of 32 bits.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
     if deserializer.is_human_readable() { deserializer.deserialize_any(Float) } else { f32::deserialize(deserializer) }
 }

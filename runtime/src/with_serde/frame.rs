@@ -42,7 +42,7 @@ impl Visitor<'_> for FrameVisitor {
     }
 }
 
-/// Reads a frame as in a log: 8 digits are a 29-bit identifier, 3 digits an 11-bit one.
+/// Reads a frame as a log shows it: 8 digits are a 29-bit identifier, and 3 digits an 11-bit one.
 fn parse(text: &str) -> Option<Frame> {
     let (id, digits) = text.split_once('#')?;
     let extended = id.len() == 8;

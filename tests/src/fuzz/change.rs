@@ -1,4 +1,4 @@
-//! Changes of a spec, most of which leave it one that can be read.
+//! Changes of a spec. After most of them it can still be read.
 
 use std::ops::Range;
 

@@ -75,7 +75,7 @@ pub fn dbcs() -> Vec<Vec<u8>> {
     files(&["tests/commands/import.in", "generated/benches"], "dbc").into_iter().chain(exported).collect()
 }
 
-/// Changes a few lines of a file, of which it keeps at most forty.
+/// Changes a few lines of a file, and keeps at most forty lines.
 pub fn mutated(bytes: &[u8], random: &mut Rng) -> Vec<u8> {
     let text = String::from_utf8_lossy(bytes);
     let lines: Vec<&str> = text.lines().collect();

@@ -63,7 +63,7 @@ impl Draft {
         }
     }
 
-    /// Comes true in so many of a hundred cases.
+    /// Is true in `percent` of a hundred cases.
     pub fn chance(&mut self, percent: u8) -> bool {
         self.random.u8(..100) < percent
     }
@@ -160,7 +160,8 @@ impl Draft {
         own
     }
 
-    /// Adds a type, or two of which one takes from the other; returns the name of the last.
+    /// Adds a type, or two types where one takes keys from the other. Returns the name of the last
+    /// one.
     fn add_types(&mut self, keys: Map) -> String {
         if keys.0.len() < 2 || !self.chance(30) {
             return self.add_type(keys);

@@ -69,7 +69,7 @@ impl Draft {
         fields
     }
 
-    /// Returns a field of so many bytes.
+    /// Returns a field of `count` bytes.
     pub fn field(&mut self, first: u8, count: u8, scope: &mut Scope, site: &Site, has_reply: &mut bool) -> Map {
         let place = self.bytes(first, count);
         if self.chance(12) {
@@ -151,7 +151,7 @@ impl Draft {
         self.with_types(part, &[], bits)
     }
 
-    /// Says what so many bits mean.
+    /// Says what `bits` bits mean.
     fn fill(&mut self, field: &mut Map, bits: u8) {
         let whole: Vec<_> = self.whole.iter().filter(|known| known.bits == bits).cloned().collect();
         if !whole.is_empty() && self.chance(25) {
@@ -323,7 +323,7 @@ impl Draft {
         field.put("type", name);
     }
 
-    /// Returns a packed value that fills so many bytes.
+    /// Returns a packed value that fills `count` bytes.
     fn packed(&mut self, first: u8, count: u8, scope: &mut Scope) -> Map {
         let (mut parts, mut format) = (Map::default(), String::new());
         let mut next = first;

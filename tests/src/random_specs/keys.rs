@@ -72,8 +72,8 @@ impl Keys {
         }
     }
 
-    /// Wants the keys of fields where the reference says that they are used, with those of what stands after them; a type
-    /// has what any field has.
+    /// Wants the keys of fields wherever the reference says that they are used, with the keys
+    /// inside them. A type can have all keys of fields.
     fn want_fields(&mut self) {
         for key in Key::ALL.iter().copied() {
             let inside = self.schema["definitions"]["Field"]["properties"][key.name()].clone();

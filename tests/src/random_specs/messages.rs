@@ -319,7 +319,7 @@ impl Draft {
         }
     }
 
-    /// Adds identifiers of others, of which no message is one.
+    /// Adds foreign identifiers, which no message has.
     fn foreign(&mut self, bus: &Bus, traffic: &mut Traffic) {
         let (name, value) = self.command(bus, traffic);
         let pattern = match self.random.u8(..3) {

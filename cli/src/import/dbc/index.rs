@@ -1,4 +1,4 @@
-//! What a DBC says of messages and signals elsewhere, found by identifier and name.
+//! What other parts of a DBC say about messages and signals, by identifier and name.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -9,10 +9,10 @@ use can_dbc::{
 
 use super::spec::one_line;
 
-/// What something is about: a message, or one of its signals.
+/// A message, or one of its signals.
 type Item<'a> = (u32, Option<&'a str>);
 
-/// Of what is said twice, the first counts.
+/// If something is said twice, the first counts.
 pub struct Index<'a> {
     comments: HashMap<Item<'a>, &'a str>,
     values: HashMap<Item<'a>, &'a [ValDescription]>,
@@ -74,7 +74,7 @@ impl<'a> Index<'a> {
         self.attributes.get(&(id.raw(), name)).or_else(|| self.defaults.get(name)).copied()
     }
 
-    /// Says what is about no message and no signal of the file.
+    /// Lists what is about no message and no signal of the file.
     pub fn astray(&self, dbc: &Dbc) -> Vec<String> {
         let signals = dbc.messages.iter().flat_map(|message| {
             let names = message.signals.iter().map(|signal| Some(signal.name.as_str()));

@@ -1,4 +1,4 @@
-//! What a DBC says and the spec does not.
+//! Lists what a DBC says and the spec does not.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use can_dbc::{AttributeValue, Comment, Dbc, MessageId};
 use super::index::Index;
 use super::spec::one_line;
 
-/// Says what the file holds beside messages and signals, by kind.
+/// Lists what the file has beside messages and signals, by kind.
 pub fn beside_messages(dbc: &Dbc) -> Vec<String> {
     let attributes = attributes(dbc);
     let variables = dbc.environment_variables.iter().map(|variable| variable.name.as_str()).collect();
@@ -25,7 +25,7 @@ pub fn beside_messages(dbc: &Dbc) -> Vec<String> {
     lists.chain(comments).chain(senders(dbc)).collect()
 }
 
-/// Says which messages come from further nodes.
+/// Lists the messages that come from several nodes.
 fn senders(dbc: &Dbc) -> impl Iterator<Item = String> {
     dbc.message_transmitters.iter().filter(|known| !known.transmitter.is_empty()).map(|known| {
         let id = known.message_id.raw() & !(1 << 31);
@@ -33,7 +33,7 @@ fn senders(dbc: &Dbc) -> impl Iterator<Item = String> {
     })
 }
 
-/// Returns the names of the attributes that have values, but for the one that is imported.
+/// Returns the names of the attributes that have values, without the one that is imported.
 fn attributes(dbc: &Dbc) -> BTreeSet<&str> {
     let of_messages = dbc.attribute_values_message.iter().map(|value| value.name.as_str());
     let of_signals = dbc.attribute_values_signal.iter().map(|value| value.name.as_str());
@@ -54,7 +54,7 @@ pub fn is_parameter_group(index: &Index, id: MessageId) -> bool {
     }
 }
 
-/// Returns every how many milliseconds a message is sent.
+/// Returns the milliseconds between two frames of a message.
 pub fn cycle(index: &Index, id: MessageId) -> Option<u64> {
     match index.attribute(id, "GenMsgCycleTime") {
         Some(AttributeValue::Uint(time)) => Some(*time).filter(|time| (1..=86_400_000).contains(time)),

@@ -1,4 +1,4 @@
-//! Messages of a DBC as messages of a spec.
+//! Turns messages of a DBC into messages of a spec.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -13,7 +13,7 @@ use super::spec::{Field, Message, Spec, one_line};
 use super::variants::{Variant, variants};
 use super::yaml::quoted;
 
-/// The message in which some tools keep signals that belong to none.
+/// The message in which some tools keep signals without a message.
 const NO_MESSAGE: &str = "VECTOR__INDEPENDENT_SIG_MSG";
 
 /// Data bytes of a classic frame.
@@ -64,7 +64,7 @@ fn identifier(id: MessageId) -> u32 {
     }
 }
 
-/// What is said about the DBC, each thing once.
+/// Remarks about the DBC, each only once.
 #[derive(Default)]
 struct Limits {
     all: Vec<String>,
@@ -74,7 +74,7 @@ struct Limits {
 struct Importer<'a> {
     dbc: &'a Dbc,
     index: &'a Index<'a>,
-    /// Names of messages and of what has named values, which become types.
+    /// Names of messages and of sets of named values, which become types.
     names: Names,
     limits: Limits,
 }
@@ -144,7 +144,7 @@ impl<'a> Importer<'a> {
         })
     }
 
-    /// Returns what a value of a multiplexor is called in a title, and in a name.
+    /// Returns the label of a multiplexor's value, for a title and for a name.
     fn label(&self, source: &Source, index: usize, value: u64) -> (String, String) {
         let signal = &source.signals[index].name;
         let named = self.index.values(source.id, signal);
@@ -155,7 +155,7 @@ impl<'a> Importer<'a> {
         }
     }
 
-    /// Returns constants and signals without those that are impossible; `None` where a multiplexor is.
+    /// Returns the possible constants and signals, or `None` if a multiplexor is impossible.
     fn fields(&mut self, source: &Source, variant: &Variant, message: &str, length: u8) -> Option<Vec<Field>> {
         let mut frame = Draft { id: source.id, message, length, taken: Vec::new(), names: Names::default() };
         let mut fields = Vec::new();
@@ -207,7 +207,7 @@ struct Draft<'a> {
     id: MessageId,
     message: &'a str,
     length: u8,
-    /// Bits and whose they are.
+    /// Bits and their owners.
     taken: Vec<(u64, &'a str)>,
     names: Names,
 }
@@ -227,7 +227,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Makes a field of a multiplexor that has one value.
+    /// Makes a constant field of a multiplexor.
     fn constant(&mut self, signal: &'a Signal, value: u64) -> Result<Field, String> {
         let place = self.place(signal)?;
         if value > u64::MAX >> (64 - place.width()) {

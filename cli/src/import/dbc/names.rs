@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use canspec_codegen::emit::is_word_of_rust;
 
-/// Converts `BatteryVoltage` and `VDM_Status` to `battery_voltage` and `vdm_status`; `prefix` goes before a digit, or stands
-/// where no letter is left.
+/// Converts `BatteryVoltage` and `VDM_Status` to `battery_voltage` and `vdm_status`. `prefix` goes
+/// before a leading digit, or is the name if no letter is left.
 pub fn snake_case(text: &str, prefix: &str) -> String {
     let letters: Vec<char> = text.chars().collect();
     let mut name = String::new();
@@ -33,7 +33,8 @@ pub fn snake_case(text: &str, prefix: &str) -> String {
 pub struct Names(BTreeSet<String>);
 
 impl Names {
-    /// Takes a name, with a number if it needs one: what `rust` makes of it must be a name of Rust that is free.
+    /// Takes a name, with a number if it needs one. `rust` must turn it into a free and valid name
+    /// in Rust.
     pub fn take(&mut self, wanted: &str, rust: impl Fn(&str) -> String) -> String {
         let numbered = (2..).map(|number| format!("{wanted}_{number}"));
         let mut names = std::iter::once(wanted.to_owned()).chain(numbered);
@@ -46,7 +47,7 @@ impl Names {
     }
 }
 
-/// Returns what tells names of types apart, where `a_1` and `a1` are one.
+/// Returns the name of a type in Rust, which is the same for `a_1` and `a1`.
 pub fn type_name(name: &str) -> String {
     name.replace('_', "").to_ascii_uppercase()
 }

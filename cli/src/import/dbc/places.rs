@@ -1,8 +1,8 @@
-//! Places of a DBC as bytes of the frame, or as bits of a word.
+//! Turns places of a DBC into bytes of the frame, or bits of a word.
 
 use can_dbc::{ByteOrder, Signal};
 
-/// Where a signal stands in the data bytes.
+/// The place of a signal in the data bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitRange {
     /// The first and the last byte that it touches.
@@ -15,13 +15,14 @@ pub struct BitRange {
 }
 
 impl BitRange {
-    /// Returns the place of a signal, or `None` outside of so many data bytes.
+    /// Returns the place of a signal, or `None` if it reaches beyond `length` data bytes.
     pub fn new(signal: &Signal, length: u8) -> Option<Self> {
         let end = 8 * length;
         let start = u8::try_from(signal.start_bit).ok().filter(|start| *start < end)?;
         let width = u8::try_from(signal.size).ok().filter(|width| (1..=64).contains(width))?;
         let low_byte_first = signal.byte_order == ByteOrder::LittleEndian;
-        // Counted in the order of the bytes: big endian has its highest bit first, which is bit 7 of a byte.
+        // Bits count in the order of the bytes. Big endian has its highest bit first, which is bit
+        // 7 of a byte.
         let begin = if low_byte_first { start } else { start / 8 * 8 + 7 - start % 8 };
         let behind = begin.checked_add(width).filter(|behind| *behind <= end)?;
         let (first, last) = (begin / 8, (behind - 1) / 8);
@@ -70,12 +71,12 @@ impl BitRange {
         self.low + 8 * if word.low_byte_first { self.first - word.first } else { word.last - self.last }
     }
 
-    /// Tests whether it has its low bits first on the bus.
+    /// Tests whether its low bits come first on the bus.
     fn begins_low(self) -> bool {
         self.low_byte_first && self.first != self.last
     }
 
-    /// Returns the word of two places with a byte in common, if they have one byte order.
+    /// Returns the word around two places that share a byte, if they have the same byte order.
     fn joined(self, other: BitRange) -> Option<BitRange> {
         let is_single = |place: BitRange| place.first == place.last;
         let has_one_order = is_single(self) || is_single(other) || self.low_byte_first == other.low_byte_first;
@@ -94,21 +95,23 @@ impl BitRange {
     }
 }
 
-/// One place, or a word of several ones.
+/// One place, or a word of several places.
 pub struct Group {
     pub place: BitRange,
     pub is_word: bool,
-    /// Which of the places it holds, in the order of their bits.
+    /// Indices of its places, in the order of their bits.
     pub of: Vec<usize>,
 }
 
-/// Gathers places that are no whole bytes in words, in the order of the bytes.
+/// Groups places that are no whole bytes into words, in the order of the bytes.
 ///
-/// A constant has the word of its own bytes in every message, by which it is known to be the same.
+/// A constant has the word of its own bytes in every message, so it is the same constant
+/// everywhere.
 pub fn groups(places: &[(BitRange, bool)]) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     let mut order: Vec<usize> = (0..places.len()).collect();
-    // Those of several bytes first, so that single bytes take the order of a word; constants last, so that no word grows after them.
+    // Places of several bytes come first, so single bytes take the order of a word. Constants come
+    // last, so no word grows after them.
     order.sort_by_key(|index| {
         let (place, is_constant) = places[*index];
         (is_constant, place.first == place.last, place.first)
@@ -132,7 +135,7 @@ pub fn groups(places: &[(BitRange, bool)]) -> Vec<Group> {
     groups
 }
 
-/// Finds a word that can take another one in, and the word of both.
+/// Finds a word that another word can join, and the word around both.
 fn joinable(groups: &[Group], one: &Group, must_keep_bytes: bool) -> Option<(usize, BitRange)> {
     let words = groups.iter().enumerate().filter(|(_, group)| group.is_word && one.is_word);
     let mut joined = words.filter_map(|(index, group)| Some((index, group.place.joined(one.place)?)));
@@ -175,7 +178,8 @@ mod tests {
         assert_eq!(shown(&["0|12@1", "12|12@1", "24|1@1"]), ["2..0: 11..0 23..12", "3: 0"]);
         assert_eq!(shown(&["7|12@0", "11|12@0"]), ["0..2: 23..12 11..0"]);
         assert_eq!(shown(&["0|4@1", "7|4@0"]), ["0: 7..4 3..0"]);
-        // A single bit takes the order of the word around it: bit 1 of byte 3 is bit 17 of bytes 3..1, and bit 1 of bytes 1..3.
+        // A single bit takes the order of the word around it. Bit 1 of byte 3 is bit 17 of bytes
+        // 3..1, and bit 1 of bytes 1..3.
         assert_eq!(shown(&["25|1@1", "26|1@0", "8|17@1"]), ["3..1: 16..0 17 18"]);
         assert_eq!(shown(&["25|1@1", "15|22@0"]), ["1..3: 23..2 1"]);
     }

@@ -1,4 +1,4 @@
-//! Reading a DBC.
+//! Reads a DBC.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use can_dbc_pest::{DbcParser, Parser as _, Rule};
 
 use crate::failure::{Failure, shown};
 
-/// Why bytes are no DBC, and in which line.
+/// Why bytes are no DBC, and the line of the mistake.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Refusal {
     pub line: Option<usize>,
@@ -30,7 +30,7 @@ pub fn read(path: &Path) -> Result<Dbc, Failure> {
     })
 }
 
-/// Reads bytes in UTF-8 or else in Windows-1252, in which most tools write them.
+/// Reads bytes in UTF-8, or else in Windows-1252, which most tools write.
 pub fn parse(bytes: Vec<u8>) -> Result<Dbc, Refusal> {
     let text = String::from_utf8(bytes).or_else(|error| {
         decode_cp1252(error.as_bytes()).map(Into::into).ok_or("it is neither UTF-8 nor Windows-1252")
@@ -40,7 +40,8 @@ pub fn parse(bytes: Vec<u8>) -> Result<Dbc, Refusal> {
     impossible_identifier(text).map_or(Ok(dbc), Err)
 }
 
-/// Finds a number that is no identifier, and of which the reader drops bits; its own grammar says where they stand.
+/// Finds a number that is no identifier, because the reader would drop bits of it. The reader's own
+/// grammar finds the numbers.
 fn impossible_identifier(text: &str) -> Option<Refusal> {
     let words = DbcParser::parse(Rule::file, text).ok()?.flatten();
     let mut identifiers = words.filter(|word| word.as_rule() == Rule::message_id);
@@ -49,7 +50,8 @@ fn impossible_identifier(text: &str) -> Option<Refusal> {
     Some(Refusal { line: Some(wrong.line_col().0), why: format!("{} is no identifier: {why}", wrong.as_str()) })
 }
 
-/// Tests for 11 bits, for 29 bits beside bit 31, and for the number of the message of signals that belong to none.
+/// Tests for 11 bits, for 29 bits with bit 31, and for the number of the message for signals
+/// without a message.
 fn is_identifier(number: u64) -> bool {
     number < 0x800 || (0x8000_0000..0xA000_0000).contains(&number) || number == 0xC000_0000
 }

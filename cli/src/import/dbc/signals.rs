@@ -11,15 +11,15 @@ use super::names::{Names, snake_case, type_name};
 use super::spec::one_line;
 use super::yaml::{map, quoted};
 
-/// The keys of a field but for its place, and what is said about it.
+/// The keys of a field without its place, and remarks about it.
 #[derive(Default)]
 pub struct Translated {
     pub keys: Vec<(&'static str, String)>,
     pub unit: Option<Unit>,
-    /// Its values have names, and it is no number.
+    /// Whether its values are only names, and no numbers.
     pub is_named: bool,
     pub decide: Vec<String>,
-    /// What of it the spec does not say.
+    /// What the spec does not say about it.
     pub lost: Vec<String>,
 }
 
@@ -98,7 +98,7 @@ fn range_key((minimum, maximum): Range) -> (&'static str, String) {
     ("range", format!("{minimum}..{maximum}"))
 }
 
-/// Returns the limits that the DBC states; two zeros state none.
+/// Returns the limits that the DBC states. Two zeros state none.
 fn stated(signal: &Signal, meaning: &mut Translated) -> Option<Range> {
     let number = |limit: NumericValue| Rational::parse(&limit.to_string());
     let range = number(signal.min).zip(number(signal.max));
@@ -109,7 +109,7 @@ fn stated(signal: &Signal, meaning: &mut Translated) -> Option<Range> {
     range.filter(|range| *range != (Rational::ZERO, Rational::ZERO))
 }
 
-/// Cuts limits to what the bits hold; limits that exclude nothing are left out.
+/// Cuts limits to what the bits hold. Limits that exclude nothing are left out.
 fn within(range: Range, held: Range, meaning: &mut Translated) -> Option<Range> {
     let cut = (range.0.max(held.0), range.1.min(held.1));
     if cut.0 > cut.1 {
@@ -119,7 +119,7 @@ fn within(range: Range, held: Range, meaning: &mut Translated) -> Option<Range> 
     (cut != held).then_some(cut)
 }
 
-/// Drops limits that hold named values, which would have two meanings.
+/// Drops limits that contain named values, because these would have two meanings.
 fn beside(
     range: Option<Range>,
     named: &[Named],
@@ -159,15 +159,15 @@ fn values(named: &[Named]) -> String {
     map(entries.iter().map(|(raw, name)| (raw.as_str(), name.as_str())))
 }
 
-/// Returns the unit that the DBC states; `-` and `1` state none.
+/// Returns the unit that the DBC states. `-` and `1` state none.
 pub fn unit_of(signal: &Signal) -> Option<&str> {
     Some(signal.unit.trim()).filter(|symbol| !["", "-", "1"].contains(symbol))
 }
 
-/// Adds the unit, where the language has it.
+/// Adds the unit if the language has it.
 fn unit(signal: &Signal, meaning: &mut Translated) {
     let Some(symbol) = unit_of(signal) else { return };
-    // `C` may as well be coulomb.
+    // `C` may also be coulomb.
     meaning.unit = Unit::find(symbol).or_else(|| respelled(symbol).filter(|_| symbol != "C"));
     meaning.keys.extend(meaning.unit.map(|unit| ("unit", quoted(unit.symbol))));
     if let Some((unit, factor)) = prefixed(symbol).filter(|_| meaning.unit.is_none()) {

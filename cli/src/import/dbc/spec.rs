@@ -1,4 +1,4 @@
-//! What a first spec consists of.
+//! The parts of a first spec.
 
 use canspec_codegen::source::forbidden;
 
@@ -9,13 +9,13 @@ pub struct Spec {
     /// Name of the DBC.
     pub file: String,
     pub protocol: String,
-    /// What the DBC says of its version.
+    /// The version that the DBC states.
     pub version: String,
     pub extended: bool,
     /// Data bytes of most messages.
     pub length: u8,
     pub messages: Vec<Message>,
-    /// What the DBC says and the spec does not, a sentence each.
+    /// What the DBC says and the spec does not, each a sentence.
     pub limits: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ pub struct Message {
     pub name: String,
     pub title: String,
     pub note: String,
-    /// Who sends it, by the DBC.
+    /// Its sender in the DBC.
     pub sender: Option<String>,
     pub id: u32,
     pub length: u8,

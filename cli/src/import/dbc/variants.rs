@@ -1,4 +1,4 @@
-//! Multiplexors: which signals a message has, by their values.
+//! Multiplexors: their values choose the signals of a message.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -15,16 +15,16 @@ pub struct Variant {
     pub signals: Vec<usize>,
 }
 
-/// Where a signal hangs: at nothing, or at some values of a multiplexor.
+/// What a signal depends on: nothing, or some values of a multiplexor.
 type Parent = Option<(usize, Ranges)>;
 
 /// First and last values.
 type Ranges = Vec<(u64, u64)>;
 
-/// More messages of one identifier nobody reads.
+/// Largest number of messages of one identifier. Nobody reads more.
 const MOST: usize = 256;
 
-/// More multiplexors do not fit into the bits of a frame.
+/// Largest number of multiplexors. More do not fit the bits of a frame.
 const DEEPEST: usize = 64;
 
 /// Returns the variants of a message, or why they cannot be listed.
@@ -46,7 +46,7 @@ pub fn variants(index: &Index, message: &Message) -> Result<Vec<Variant>, String
     Ok(found)
 }
 
-/// Where the multiplexors of a message are found.
+/// What is needed to find the multiplexors of a message.
 struct Context<'a> {
     index: &'a Index<'a>,
     message: MessageId,
@@ -57,7 +57,8 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Returns the multiplexor of a signal, by the extended multiplexing of the file or else by the only multiplexor.
+    /// Returns the multiplexor of a signal, from the file's extended multiplexing or else the only
+    /// multiplexor.
     fn parent(&self, signal: &Signal) -> Result<Parent, String> {
         let missing = || format!("the multiplexor of `{}` is missing", signal.name);
         if let Some(known) = self.index.multiplexor(self.message, &signal.name) {
@@ -79,12 +80,12 @@ fn too_many() -> String {
     format!("its multiplexors have more than {MOST} values")
 }
 
-/// What hangs where.
+/// Which signals depend on which multiplexor.
 #[derive(Default)]
 struct Tree {
-    /// Signals that hang at nothing.
+    /// Signals that depend on nothing.
     free: Vec<usize>,
-    /// Signals that hang at a multiplexor, and at which of its values.
+    /// Signals by their multiplexor, with the values that they depend on.
     below: HashMap<usize, Vec<(usize, Ranges)>>,
 }
 
@@ -96,7 +97,7 @@ impl Tree {
         }
     }
 
-    /// Returns the signals that hang at a multiplexor.
+    /// Returns the signals that depend on a multiplexor.
     fn below(&self, multiplexor: usize) -> &[(usize, Ranges)] {
         self.below.get(&multiplexor).map_or(&[], Vec::as_slice)
     }
@@ -107,7 +108,7 @@ impl Tree {
         self.below(multiplexor).iter().filter(move |(_, values)| hangs(values)).map(|(signal, _)| *signal)
     }
 
-    /// Returns the values at which a signal has others hanging.
+    /// Returns the values of a multiplexor that signals depend on.
     fn values(&self, multiplexor: usize) -> Result<BTreeSet<u64>, String> {
         let mut found = BTreeSet::new();
         for (first, last) in self.below(multiplexor).iter().flat_map(|(_, values)| values) {
@@ -116,7 +117,8 @@ impl Tree {
         if found.len() > MOST { Err(too_many()) } else { Ok(found) }
     }
 
-    /// Adds to a variant what is still to be looked at, one variant for each value of a multiplexor.
+    /// Adds the signals that are left to a variant. A multiplexor makes one variant for each of its
+    /// values.
     fn expand(&self, mut variant: Variant, left: Vec<usize>, found: &mut Vec<Variant>) -> Result<(), String> {
         if variant.constants.len() > DEEPEST {
             return Err(format!("more than {DEEPEST} of its multiplexors depend on each other"));

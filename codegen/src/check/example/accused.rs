@@ -1,4 +1,5 @@
-//! Whom to blame where examples and fields disagree: a field, or a type that several fields share.
+//! Decides what is wrong if examples and fields disagree: a field, or a type that several fields
+//! share.
 
 use std::collections::HashSet;
 
@@ -9,13 +10,14 @@ use crate::model::{Protocol, Signal};
 use crate::resolve::rules;
 use crate::syntax::tree::{Path, Step};
 
-/// Most examples that are shown beside a field.
+/// Largest number of examples that are shown beside a field.
 const SHOWN: usize = 3;
 
-/// Keys of a type that say which value bits mean.
+/// Keys of a type that say which value its bits mean.
 const MEANING: [&str; 6] = ["bytes", "bits", "as", "scale", "offset", "values"];
 
-/// Blames the fields that are rather wrong than their examples; returns the places of what these say, which is thereby explained.
+/// Blames the fields that are more probably wrong than their examples. It returns the places of the
+/// values that this explains.
 pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path> {
     let collected = collect(protocol);
     let fields: Vec<_> =
@@ -44,10 +46,11 @@ pub fn blame(protocol: &Protocol, diagnostics: &mut Diagnostics) -> HashSet<Path
     explained
 }
 
-/// What is found against somebody accused.
+/// A test that finds a mistake of the accused.
 type Verdict<'a> = fn(&Accused<'a>, &Diagnostics) -> Option<Diagnostic>;
 
-/// Who can be wrong if examples are right: a field, or a type with all fields that take keys from it.
+/// What can be wrong if examples are right: a field, or a type with all fields that take keys from
+/// it.
 struct Accused<'a> {
     protocol: &'a Protocol,
     name: String,
@@ -60,7 +63,8 @@ impl<'a> Accused<'a> {
         Self { protocol, name: format!("`{}`", field.name), path: field.signal.doc.path.clone(), fields: vec![field] }
     }
 
-    /// Accuses a type if the examples of several fields deny it, and its own do not bear it out.
+    /// Accuses a type if the examples of several fields contradict it, and its own do not support
+    /// it.
     fn of_type(protocol: &'a Protocol, path: &Path, fields: &'a [Field<'a>]) -> Option<Self> {
         let (_, Step::Key(name)) = path.split()? else { return None };
         let is_its = |field: &&Field| field.signal.types.contains(name) && !is_status(field.signal);
@@ -82,7 +86,7 @@ impl<'a> Accused<'a> {
         self.fields.iter().flat_map(|field| field.denials())
     }
 
-    /// What is certain of a field alone.
+    /// The field alone explains the difference.
     fn explained(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let (field, first) = (self.fields.first()?, self.denials().next()?);
         if let Some(word) = field.signal.encoding.status_word() {
@@ -92,7 +96,7 @@ impl<'a> Accused<'a> {
         self.repaired(diagnostics).or_else(|| field.misnumbered(first, diagnostics))
     }
 
-    /// No example holds, and each would after one change.
+    /// No example holds, and all would after one change.
     fn repaired(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let denials: Vec<_> = self.denials().collect();
         let is_slip = |denial: &Evidence| self.fields.iter().any(|field| denial.is_slip(field.signal));
@@ -132,12 +136,13 @@ impl<'a> Accused<'a> {
         })
     }
 
-    /// Tells whether an example agrees with other bits than zeros.
+    /// Tests whether an example agrees in bits that are not all zero.
     fn is_borne_out(&self) -> bool {
         self.fields.iter().any(|field| field.is_borne_out(|bits| bits != 0))
     }
 
-    /// Finds where all of the fields have a key from: of a type only if it is its own.
+    /// Finds the one place from which all of the fields have a key. For a type it must be the
+    /// type's own key.
     fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
         let at = self.fields.first()?.written(key, diagnostics)?;
         let is_shared = self.fields.len() == 1 || at == self.path.key(key);

@@ -1,7 +1,8 @@
-//! What examples say of fields.
+//! What examples say about fields.
 //!
-//! An example says everything twice, by its bytes and by its meaning, so that one slip of its writer leaves the two a digit apart. What
-//! lies further apart, or what several examples deny, is rather a mistake in the field.
+//! An example says everything twice, by its bytes and by its meaning. One slip of its writer leaves
+//! the two one digit apart. If they are further apart, or several examples contradict a field, the
+//! field is probably wrong.
 
 use indexmap::IndexMap;
 
@@ -12,17 +13,17 @@ use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
 use crate::resolve::rules;
 use crate::syntax::tree::{Content, Path};
 
-/// What one example says of a field.
+/// What one example says about a field.
 pub struct Evidence<'a> {
-    /// By its meaning.
+    /// What its meaning says.
     pub meaning: &'a Meaning,
-    /// By its bytes.
+    /// Its bytes.
     pub data: [u8; 8],
     /// Its bits that no field holds.
     reserved: [u8; 8],
-    /// What the field makes of these bytes.
+    /// The field's bits in these bytes.
     bits: u64,
-    /// The same as text.
+    /// The value of these bits as text.
     pub read: String,
 }
 
@@ -31,7 +32,8 @@ impl Evidence<'_> {
         self.meaning.raw == Ok(self.bits)
     }
 
-    /// Tells whether the two sides are a digit of the frame apart, where set bits that no field holds count as well.
+    /// Tests whether one digit of the frame separates bytes and meaning. Set bits that no field
+    /// holds count as well.
     pub fn is_slip(&self, signal: &Signal) -> bool {
         let Ok(raw) = self.meaning.raw else { return false };
         digits_apart(signal, self.data, raw) + nibbles(self.reserved).filter(|nibble| *nibble != 0).count() <= 1
@@ -45,7 +47,7 @@ pub fn digits_apart(signal: &Signal, data: [u8; 8], raw: u64) -> usize {
     nibbles(said).zip(nibbles(data)).filter(|(one, other)| one != other).count()
 }
 
-/// An example names a bit that the word does not have, and its frame sets one that has no name.
+/// Reports that an example names an unknown bit, while its frame sets a bit without a name.
 pub fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
     let names = denial.meaning.text.trim_matches(['[', ']']).split(", ").filter(|name| !name.is_empty());
     let number = |name: &str| {
@@ -71,7 +73,8 @@ fn nibbles(data: [u8; 8]) -> impl Iterator<Item = u8> {
     data.into_iter().flat_map(|byte| [byte >> 4, byte & 0xF])
 }
 
-/// Collects what the examples that must hold say of each field, by message and signal.
+/// Collects what examples say about each field, by message and signal. Only examples that must hold
+/// count.
 pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evidence<'_>>> {
     let mut fields: IndexMap<_, Vec<_>> = IndexMap::new();
     for example in protocol.examples.iter().filter(|example| example.fails.is_none() && example.data.is_some()) {
@@ -97,13 +100,13 @@ pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evide
     fields
 }
 
-/// A field and what the examples say of it.
+/// A field and what the examples say about it.
 pub struct Field<'a> {
-    /// Name of its message and its own.
+    /// The names of its message and of itself.
     pub name: String,
     pub signal: &'a Signal,
     pub evidence: &'a [Evidence<'a>],
-    /// Bits that its frames have for others, or do not have, byte 0 highest.
+    /// Bits that its frames use for other fields, or do not have, byte 0 highest.
     pub taken: u64,
 }
 
@@ -122,12 +125,12 @@ impl<'a> Field<'a> {
         self.evidence.iter().filter(|evidence| !evidence.agrees())
     }
 
-    /// Tells whether an example agrees with bits of such a kind.
+    /// Tests whether an example agrees in bits that count.
     pub fn is_borne_out(&self, counts: impl Fn(u64) -> bool) -> bool {
         self.evidence.iter().any(|evidence| evidence.agrees() && counts(evidence.bits))
     }
 
-    /// Finds where the field, or else one of its types, has a key.
+    /// Finds the place of a key in the field, or else in one of its types.
     pub fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
         let types = Path::default().key("types");
         let own = std::iter::once(self.signal.doc.path.clone());
@@ -135,7 +138,7 @@ impl<'a> Field<'a> {
         sources.find_map(|source| Some(source.key(key)).filter(|path| diagnostics.has(path)))
     }
 
-    /// A bit that an example names is set at another place of the frame, where no bit has a name.
+    /// Reports that the frame sets a bit without a name in place of the one that the example names.
     pub fn moved_bit(&self, denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
         let said = denial.meaning.raw.as_ref().ok()?;
         let (missing, surplus) = (said & !denial.bits, denial.bits & !said);
@@ -159,7 +162,7 @@ impl<'a> Field<'a> {
         )
     }
 
-    /// A name that an example says is a number without a name in the frame.
+    /// Reports that the frame has a number without a name where the example has a name.
     pub fn misnumbered(&self, denial: &Evidence, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let raw = *denial.meaning.raw.as_ref().ok()?;
         let at = self.written("values", diagnostics)?;

@@ -1,6 +1,7 @@
-//! A range that leaves out what an example shows inside it, or holds what one shows outside.
+//! Finds a range that excludes a value which an example shows inside, or includes one shown
+//! outside.
 //!
-//! The bytes and the meaning of such an example agree, so rather the range is wrong.
+//! The bytes and the meaning of such an example agree, so the range is probably wrong.
 
 use super::shown;
 use crate::diagnostic::{At, Diagnostic};
@@ -9,17 +10,18 @@ use crate::model::{Example, MessageId, Protocol, Range, Signal};
 use crate::resolve::rules;
 use crate::syntax::tree::Path;
 
-/// The range of the field whose value lies outside it, or nearest to one of its ends.
+/// The range whose value is farthest outside, or nearest to one of its ends.
 struct Limit<'a> {
     signal: &'a Signal,
     range: Range,
     at: Path,
     value: String,
-    /// How far outside the value lies, in parts of the range; below 0 inside.
+    /// How far outside the value lies, as a fraction of the range. It is negative inside.
     beyond: f64,
 }
 
-/// Says that an example shows a value outside a range, and does not say so, or the other way round; `place` is that of the example.
+/// Reports an example with a value outside a range that lacks the note, or with a note but no such
+/// value. `place` is the example's.
 pub fn report(protocol: &Protocol, example: &Example, decoded: &Decoded, place: At) -> Option<Diagnostic> {
     let readings = decoded.signals.iter().filter_map(|reading| limit(protocol, example, decoded.message, reading));
     let limit = readings.max_by(|one, other| one.beyond.total_cmp(&other.beyond))?;

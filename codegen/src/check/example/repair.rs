@@ -1,4 +1,4 @@
-//! One change of a field with which its examples hold.
+//! Finds one change of a field that makes its examples hold.
 
 use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
@@ -19,7 +19,7 @@ pub struct Repair {
     change: Change,
 }
 
-/// What a field has in place of what is written.
+/// What replaces a part of a field.
 enum Change {
     Place(Place),
     Unit(Unit),
@@ -35,22 +35,22 @@ impl Change {
         }
     }
 
-    /// Tells whether it moves a field onto bits of another one.
+    /// Tests whether it moves a field onto the bits of another one.
     fn overlaps(&self, field: &Field) -> bool {
         matches!(self, Self::Place(place) if u64::from_be_bytes(place.mask()) & field.taken != 0)
     }
 }
 
-/// Farthest that a place can be off, in bytes or bits.
+/// Largest distance that a place can be off, in bytes or bits.
 const FARTHEST: i8 = 7;
 
-/// Lists how far the first and the last end of a place can be off: one end by one, or both by the same.
+/// Lists how far the ends of a place can be off: one end by one, or both by the same distance.
 fn shifts() -> impl Iterator<Item = (i8, i8)> {
     let ends = [(0, 1), (0, -1), (-1, 0), (1, 0)];
     ends.into_iter().chain((1..=FARTHEST).flat_map(|shift| [(shift, shift), (-shift, -shift)]))
 }
 
-/// Finds the first change of fields, or of the type that they share, with which all of their examples hold.
+/// Finds the first change that makes all examples hold, in the fields or in their common type.
 pub fn find(
     protocol: &Protocol,
     fields: &[&Field],
@@ -80,7 +80,7 @@ pub fn find(
     places.into_iter().flatten().chain(unit).chain(scale).find(holds)
 }
 
-/// Turns the byte order round, or moves one end of the place, or both, by a byte or a bit.
+/// Reverses the byte order, or moves one or both ends of the place by bytes or bits.
 fn moved(signal: &Signal, key: &str, text: &str, at: &Path) -> Vec<Repair> {
     let ends = text.split_once("..").unwrap_or((text, text));
     let (Ok(first), Ok(last)) = (ends.0.parse::<i8>(), ends.1.parse::<i8>()) else { return Vec::new() };
@@ -111,14 +111,14 @@ fn bits(place: Place, of_first: i8, of_last: i8) -> Option<Place> {
     (low <= high && high < 64).then(|| word.bits(high, low))
 }
 
-/// Takes the unit that the examples have.
+/// Replaces the unit by that of the examples.
 fn with_unit(examples: &[(&Signal, &Evidence)], at: Path) -> Option<Repair> {
     let (_, example) = examples.first().filter(|_| examples.len() > 1)?;
     let (_, symbol) = example.meaning.text.split_once(' ')?;
     Some(Repair { at, text: format!("unit: {symbol}"), change: Change::Unit(Unit::find(symbol)?) })
 }
 
-/// Takes the scale that the first example has, if it is one that is easily mistaken for the other.
+/// Replaces the scale by that of the first example, if the two are easily mistaken for each other.
 fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
     let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
     let Linear { numeral, offset, .. } = signal.encoding.linear()?;

@@ -1,4 +1,5 @@
-//! Messages that no example can be read as: where several frames are taken for none or for another, rather `match` is wrong.
+//! Finds messages whose examples cannot be read as these messages. If there are several, their
+//! `match` is probably wrong.
 
 use indexmap::IndexMap;
 
@@ -8,10 +9,11 @@ use crate::model::{Example, Message, MessageId, Protocol};
 use crate::resolve::rules;
 use crate::syntax::tree::Path;
 
-/// Most examples that are shown beside a message.
+/// Largest number of examples that are shown beside a message.
 const SHOWN: usize = 3;
 
-/// Finds the messages of which at least two examples speak and none can be read, with the places of these frames.
+/// Finds the messages with at least two examples that cannot be read, and none that can. It returns
+/// the places of their frames.
 pub fn find(protocol: &Protocol) -> IndexMap<MessageId, Vec<Path>> {
     let mut unread: IndexMap<_, Vec<_>> = IndexMap::new();
     let mut read = Vec::new();

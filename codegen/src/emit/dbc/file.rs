@@ -1,4 +1,4 @@
-//! What a DBC consists of, and how it is written.
+//! The parts of a DBC, and how they are written.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -43,15 +43,15 @@ pub struct Signal {
     pub unit: &'static str,
     pub named: Vec<(i128, String)>,
     pub comment: String,
-    /// Raw value that is sent unless somebody says otherwise.
+    /// Raw value that is sent by default.
     pub start: Option<i128>,
-    /// Its value chooses which other signals the frame has.
+    /// Whether its value chooses the other signals of the frame.
     pub multiplexor: bool,
-    /// Name of the multiplexor on which it depends, and that one's value.
+    /// Name and value of the multiplexor that it depends on.
     pub under: Option<(String, u64)>,
 }
 
-/// Longer names are written as a short one and an attribute.
+/// Longer names are written as a short name and an attribute.
 const LONGEST: usize = 32;
 
 const ATTRIBUTES: &str = r#"BA_DEF_ BO_ "GenMsgCycleTime" INT 0 86400000;
@@ -80,7 +80,7 @@ impl Display for File {
 }
 
 impl DbcMessage {
-    /// Returns the identifier, in which bit 31 stands for 29 bits.
+    /// Returns the identifier. Its bit 31 says that it has 29 bits.
     fn number(&self) -> u32 {
         self.id | if self.extended { 1 << 31 } else { 0 }
     }
@@ -144,7 +144,7 @@ impl DbcMessage {
         floats.try_for_each(|(_, name)| writeln!(out, "SIG_VALTYPE_ {} {name} : 1;", self.number()))
     }
 
-    /// Says which multiplexor a signal depends on, where there are several.
+    /// Writes which multiplexor a signal depends on, if there are several.
     fn write_multiplexing(&self, out: &mut Formatter<'_>) -> fmt::Result {
         if self.signals.iter().filter(|signal| signal.multiplexor).count() < 2 {
             return Ok(());
@@ -202,8 +202,9 @@ impl Display for Signal {
     }
 }
 
-/// Returns the first bit and the byte order as a DBC has them: the least significant bit and 1 where the low byte comes first,
-/// the most significant bit and 0 where the high byte does. Bits count from the least significant one of the first byte.
+/// Returns the start bit and the byte order of a DBC. If the low byte comes first, they are the
+/// least significant bit and 1. If the high byte comes first, they are the most significant bit and
+/// 0. Bits count from the least significant one of the first byte.
 fn start_bit(place: Place) -> (u8, u8) {
     let bits = place.bits_of_payload();
     match place.order() {
@@ -215,7 +216,7 @@ fn start_bit(place: Place) -> (u8, u8) {
     }
 }
 
-/// Writes a number without a fraction line; one that does not end is rounded to the nearest double.
+/// Writes a number as a decimal. A decimal that does not end is rounded to the nearest double.
 fn decimal(number: Rational) -> String {
     let text = number.to_string();
     if text.contains('/') { number.to_f64().to_string() } else { text }

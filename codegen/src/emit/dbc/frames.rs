@@ -1,4 +1,4 @@
-//! Which identifiers there are, and which frames share one.
+//! Finds the identifiers, and the frames that share one.
 
 use std::ops::RangeInclusive;
 
@@ -22,7 +22,7 @@ pub struct Sent<'a> {
     fixed: u32,
 }
 
-/// Returns every frame in each addressing mode that it has, of each of the nodes if these are given.
+/// Returns every frame in each of its addressing modes, for each node if nodes are given.
 pub fn sent<'a>(protocol: &'a Protocol, nodes: Option<&RangeInclusive<i64>>) -> Vec<Sent<'a>> {
     let mut sent = Vec::new();
     for (id_of_layout, layout) in protocol.frames.entries() {
@@ -47,7 +47,8 @@ fn is_open(protocol: &Protocol, pattern: &AddressPattern) -> bool {
     pattern.addresses.iter().any(|address| protocol[address.address_type].send.is_none())
 }
 
-/// Returns an identifier and its fixed bits, or `None` where a node has no such address. A concrete one fixes the addresses.
+/// Returns an identifier and its fixed bits, or `None` if a node has no such address. A given node
+/// fixes the addresses.
 fn identifier(
     protocol: &Protocol,
     frame: &FrameLayout,
@@ -68,7 +69,7 @@ fn identifier(
     Some((id, fixed))
 }
 
-/// Returns the raw value of an address, and the bits that are not the same in all documented ones.
+/// Returns the raw value of an address, and the bits that differ among the documented ones.
 fn number(protocol: &Protocol, address: &Address, node: Option<i64>) -> Option<(u32, u32)> {
     let known = &protocol[address.address_type];
     let raw = u32::try_from(known.raw(known.send.or(node).unwrap_or(known.first))).ok();
@@ -86,15 +87,15 @@ pub fn mask(protocol: &Protocol, sent: &[Sent]) -> u32 {
 
 /// The frames that share an identifier.
 struct Group<'a> {
-    /// Those that the DBC has.
+    /// The frames that the DBC has.
     sent: Vec<&'a Sent<'a>>,
     lost: Vec<&'a Sent<'a>>,
-    /// Those of another length.
+    /// The frames of another length.
     others: Vec<Candidate<'a>>,
     tree: Tree<'a>,
 }
 
-/// Returns a frame for each value of the masked bits, and what could not be said.
+/// Returns a frame for each value of the masked bits, and the frames that are lost.
 pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<DbcMessage>, Vec<Dropped>) {
     let mut groups: IndexMap<u32, Vec<&Sent>> = IndexMap::new();
     for sent in sent {
@@ -179,7 +180,7 @@ fn common<T: PartialEq>(group: &[&Sent], of: impl Fn(&Sent) -> T) -> Option<T> {
     group.iter().all(|sent| of(sent) == first).then_some(first)
 }
 
-/// Returns every how many milliseconds a report comes; the shortest time where it may vary.
+/// Returns the milliseconds between two reports. It is the shortest time if the time may vary.
 fn cycle(protocol: &Protocol, sent: &Sent) -> Option<u32> {
     let access = &protocol[sent.layout.access];
     let timing = &protocol[sent.message.every.or(access.every).filter(|_| sent.layout.kind == Kind::Report)?];
@@ -215,7 +216,8 @@ fn comment(protocol: &Protocol, group: &[&Sent]) -> String {
     lines.join("\n")
 }
 
-/// Names each group after its message, kind and node, and where that is not enough also after its mode or its identifier.
+/// Names each group after its message, kind and node. If that is ambiguous, it adds the mode or the
+/// identifier.
 fn names(protocol: &Protocol, groups: &[Group]) -> Vec<String> {
     let mut plain = Vec::new();
     for group in groups {

@@ -1,9 +1,9 @@
-//! What a protocol says and a DBC cannot.
+//! Lists what a protocol says and a DBC cannot.
 
 use super::signals::written;
 use crate::model::{Kind, Message, Protocol, Signal};
 
-/// Returns a sentence for each.
+/// Returns a sentence for each loss.
 pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     let mut losses = Vec::new();
     losses.extend(identifier(protocol, mask));
@@ -27,7 +27,7 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     losses
 }
 
-/// Tests whether readers of a DBC hold a raw value that has a name: a signed number of 64 bits.
+/// Tests whether readers of a DBC can hold a named raw value, as a signed number of 64 bits.
 pub fn is_writable(raw: i128) -> bool {
     i64::try_from(raw).is_ok()
 }
@@ -49,7 +49,7 @@ fn models(protocol: &Protocol) -> Option<String> {
     (!names.is_empty()).then(|| format!("the device models {}", names.join(", ")))
 }
 
-/// Says what there is to say about signals.
+/// Lists signals with a loss, and says what it is.
 fn about(protocol: &Protocol, what: impl Fn(&Signal) -> Option<&'static str>) -> Vec<String> {
     let of = |message: &Message| {
         let signals = message.signals.iter().filter_map(|signal| Some((signal, what(signal)?)));

@@ -11,7 +11,7 @@ pub fn unique(wanted: &str, taken: &mut BTreeSet<String>) -> String {
     name
 }
 
-/// Shortens those names that are longer than `longest`, by a number at their end.
+/// Shortens the names that are longer than `longest`, with a number at their end.
 pub fn short<'a>(names: impl Iterator<Item = &'a str> + Clone, longest: usize) -> Vec<String> {
     let mut taken: BTreeSet<String> = names.clone().filter(|name| name.len() <= longest).map(str::to_owned).collect();
     let shortened = |name: &str| match name.get(..longest.saturating_sub(4)).filter(|_| name.len() > longest) {

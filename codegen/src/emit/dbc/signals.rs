@@ -1,4 +1,4 @@
-//! Signals of the model as signals of a DBC.
+//! Turns signals of the model into signals of a DBC.
 
 use canspec_runtime::Place;
 
@@ -9,14 +9,14 @@ use crate::model::{
 };
 use crate::number::Rational;
 
-/// What becomes of a signal.
+/// A signal as the file has it.
 pub struct Written {
     pub signals: Vec<Signal>,
-    /// What the file cannot say, as what follows the signal's name in a sentence.
+    /// What the file cannot say, as the part of a sentence after the signal's name.
     pub loss: Option<&'static str>,
 }
 
-/// Returns what becomes of a signal: one signal, or one for each status bit or part.
+/// Returns a signal as the file has it: as one signal, or one for each status bit or part.
 pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
     let whole = |signals| Written { signals, loss: None };
     let range = signal.range.or_else(|| signal.held());
@@ -52,7 +52,7 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
     }
 }
 
-/// Returns the signals that become of one.
+/// Returns the DBC signals of a signal.
 pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal> {
     written(protocol, signal, name).signals
 }
@@ -102,7 +102,8 @@ fn about(bit: &StatusBit) -> String {
     remarks.into_iter().chain(severity).chain(facts).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns a selector in the data bytes; if it has one value in these frames, that is its range.
+/// Returns a selector in the data bytes. If it has only one value in these frames, its range is
+/// that value.
 pub fn selector(protocol: &Protocol, selector: &Selector, place: Place, constant: Option<u64>, name: String) -> Signal {
     let values = selector.enumeration.map(|index| named(&protocol.enumerations[index].values));
     let plain = Signal::new(name, place);

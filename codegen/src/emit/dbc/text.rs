@@ -35,7 +35,7 @@ pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
     lines.join("\n")
 }
 
-/// Who sends frames towards a module.
+/// The sender of frames to a module.
 pub const CONTROLLER: &str = "controller";
 
 /// Returns the name of a module, or of all.

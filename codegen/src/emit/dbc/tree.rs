@@ -1,4 +1,4 @@
-//! Which signals the frames of one identifier have, by the values of multiplexors.
+//! Arranges the signals of the frames with one identifier by the values of multiplexors.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,18 +20,18 @@ pub struct Candidate<'a> {
 /// The signals of all these frames.
 pub struct Tree<'a> {
     pub signals: Vec<Signal>,
-    /// Frames that no multiplexor tells from another one, which follows.
+    /// Frames that no multiplexor tells from another frame, each with that frame.
     pub lost: Vec<(Candidate<'a>, Candidate<'a>)>,
     kept: Vec<Candidate<'a>>,
 }
 
 impl Tree<'_> {
-    /// Tests whether a frame is neither lost nor of another length.
+    /// Tests whether a frame is in the tree: neither lost nor of another length.
     pub fn has(&self, id: FrameId) -> bool {
         self.kept.iter().any(|kept| kept.id == id)
     }
 
-    /// Returns the name of the only message, or the first one of those that look the same.
+    /// Returns the name of the only message, or of the first one if several look the same.
     pub fn message(&self) -> Option<&str> {
         let name = &self.kept.first()?.message.name;
         let is_only = self.kept.iter().all(|kept| kept.message.name == *name);
@@ -57,7 +57,7 @@ struct Grower<'p, 'a> {
     lost: Vec<(Candidate<'a>, Candidate<'a>)>,
 }
 
-/// Where in the tree a signal stands.
+/// The place of a signal in the tree.
 struct Branch {
     /// The multiplexor and its value.
     under: Option<(String, u64)>,
@@ -66,7 +66,7 @@ struct Branch {
 }
 
 impl<'a> Grower<'_, 'a> {
-    /// Adds the signals of frames of which the multiplexors so far have told all others apart.
+    /// Adds the signals of frames that share the values of all multiplexors so far.
     fn grow(&mut self, candidates: &[Candidate<'a>], left: Vec<SelectorId>, branch: &Branch) {
         if is_uniform(candidates) {
             return self.leaf(candidates, &left, branch);
@@ -100,7 +100,7 @@ impl<'a> Grower<'_, 'a> {
         self.lost.extend(lost.iter().map(|lost| (*lost, kept)));
     }
 
-    /// Adds what all these frames carry alike.
+    /// Adds the signals that all these frames share.
     fn leaf(&mut self, candidates: &[Candidate<'a>], left: &[SelectorId], branch: &Branch) {
         let count = self.signals.len();
         self.selectors(candidates, left, branch);
@@ -121,7 +121,7 @@ impl<'a> Grower<'_, 'a> {
         }
     }
 
-    /// Adds a reserved byte, since programs know a value of a multiplexor only by a signal that depends on it.
+    /// Adds a reserved byte. Programs only know a multiplexor's value if a signal depends on it.
     fn reserved(&mut self, Candidate { layout, .. }: Candidate<'a>, branch: &Branch) {
         let covered = layout.covered.to_be_bytes();
         let free = covered.iter().take(layout.length.into()).rposition(|byte| *byte == 0);
@@ -132,7 +132,7 @@ impl<'a> Grower<'_, 'a> {
         }
     }
 
-    /// Adds those selectors that all frames have.
+    /// Adds the selectors that all frames have.
     fn selectors(&mut self, candidates: &[Candidate], selectors: &[SelectorId], branch: &Branch) {
         for id in selectors.iter().filter(|id| all_have(candidates, **id)) {
             let mut values: Vec<_> = candidates.iter().map(|candidate| constant(*candidate, *id)).collect();
@@ -164,7 +164,8 @@ impl<'a> Grower<'_, 'a> {
         Signal { start: start.map(i128::from), ..signals::selector(self.protocol, selector, place, only, name) }
     }
 
-    /// Names the values of a selector: as the spec does, or else by messages or accesses where these are all different.
+    /// Names the values of a selector as the spec does. Otherwise it names them by messages or
+    /// accesses, if these are all different.
     fn labels(&self, selector: SelectorId, branches: &Branches) -> Vec<(u64, String)> {
         let selector = &self.protocol[selector];
         let messages = distinct(branches, |candidate| candidate.message.name.clone());
@@ -184,7 +185,7 @@ impl<'a> Grower<'_, 'a> {
     }
 }
 
-/// Returns where in the data bytes a selector stands.
+/// Returns the place of a selector in the data bytes.
 fn place(protocol: &Protocol, selector: SelectorId) -> Option<Place> {
     match protocol[selector].place {
         SelectorPlace::Payload(place) => Some(place),
@@ -209,7 +210,8 @@ pub fn is_empty(candidate: &Candidate) -> bool {
     candidate.layout.signals.is_empty()
 }
 
-/// Returns the frames that are not told from the others by a selector, or from the first one without any.
+/// Returns the frames that a selector does not tell from the others. Without a selector, all but
+/// the first are lost.
 fn lost<'a>(candidates: &[Candidate<'a>], selector: Option<SelectorId>) -> Vec<Candidate<'a>> {
     match selector {
         Some(selector) => split(candidates, selector).1,
@@ -223,7 +225,7 @@ fn has_same_signals(one: &Candidate, other: &Candidate) -> bool {
     is_same && one.layout.signals == other.layout.signals
 }
 
-/// Tests whether all frames carry the same.
+/// Tests whether all frames carry the same signals.
 fn is_uniform(candidates: &[Candidate]) -> bool {
     let is_same = |other: &Candidate| {
         has_same_signals(&candidates[0], other) && candidates[0].layout.selectors == other.layout.selectors
@@ -242,7 +244,7 @@ fn distinct(branches: &Branches, of: impl Fn(&Candidate) -> String) -> Option<Ve
 /// Frames by the value of a selector.
 type Branches<'a> = BTreeMap<u64, Vec<Candidate<'a>>>;
 
-/// Splits frames by a selector's value; those without one are left over.
+/// Splits frames by a selector's value. Frames without the selector are left over.
 fn split<'a>(candidates: &[Candidate<'a>], selector: SelectorId) -> (Branches<'a>, Vec<Candidate<'a>>) {
     let mut branches = Branches::new();
     let mut lost = Vec::new();
@@ -255,7 +257,8 @@ fn split<'a>(candidates: &[Candidate<'a>], selector: SelectorId) -> (Branches<'a
     (branches, lost)
 }
 
-/// Chooses the selector that loses the fewest frames, leaves the least to be told apart and has the fewest values.
+/// Chooses the selector that loses the fewest frames, then leaves the fewest alike, then has the
+/// fewest values.
 fn choose(candidates: &[Candidate], left: &[SelectorId]) -> Option<SelectorId> {
     let splits = left.iter().map(|id| (*id, split(candidates, *id)));
     let telling = splits.filter(|(_, (branches, _))| branches.len() > 1);

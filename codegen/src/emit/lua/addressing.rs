@@ -1,4 +1,4 @@
-//! Identifiers: their constants, directions, addresses and modes.
+//! Writes identifiers: their constants, directions, addresses and modes.
 
 use super::table::Value;
 use crate::model::{Address, AddressPattern, AddressType, Direction, FieldTest, Foreign, Mode, Who};
@@ -83,7 +83,7 @@ fn address(address: &Address) -> Value {
         .with("excluded", ranges(&address.excluded))
 }
 
-/// Returns the word for who answers.
+/// Returns the word that says who answers.
 pub fn who(who: Who) -> &'static str {
     match who {
         Who::One => "one",

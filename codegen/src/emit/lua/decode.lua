@@ -1,6 +1,7 @@
--- Decoding: which message a frame is, and what its bits mean.
+-- Decoding: finds the message of a frame, and the meaning of its bits.
 --
--- Raw values of up to 32 bits are numbers, wider ones UInt64 or Int64; so each of them is exact.
+-- Raw values of up to 32 bits are numbers, and wider ones UInt64 or Int64. So all of them are
+-- exact.
 
 -- Returns bits of a number of up to 32 bits.
 local function bits(number, shift, width)
@@ -27,7 +28,7 @@ local function signed(value, width)
   return Int64(value:lower(), value:higher())
 end
 
--- Returns a raw value as it stands in the tables of names.
+-- Returns a raw value in the form that the tables of names have.
 local function key(value)
   return type(value) == "number" and value or tostring(value)
 end
@@ -40,7 +41,7 @@ local function hexadecimal(value)
   return string.format("0x%02X", value)
 end
 
--- Returns hexadecimal digits, as many as it takes and `count` at least.
+-- Returns as many hexadecimal digits as a value needs, and at least `count`.
 local function digits(value, count)
   if type(value) == "number" then return string.format("%0" .. count .. "X", value) end
   local all = value:tohex(-16):gsub("^0+", "")
@@ -60,7 +61,7 @@ local function lies_within(value, ranges)
   return false
 end
 
--- Tests a value against limits, which are no Lua numbers where the value is none.
+-- Tests a value against limits. Both are Lua numbers, or neither is.
 local function keeps_to(value, limits)
   return lies_within(type(limits[1]) == "number" and double(value) or value, { limits })
 end
@@ -70,7 +71,7 @@ local function identifier_field(frame, index)
   return bits(frame.id, field.shift, field.width)
 end
 
--- Tests parts of an identifier that are constant.
+-- Tests the constant parts of an identifier.
 local function shows(id, constants)
   for _, part in ipairs(constants) do
     if bits(id, part.shift, part.width) ~= part.value then return false end
@@ -78,7 +79,7 @@ local function shows(id, constants)
   return true
 end
 
--- Numerals: the integer that a raw value is, or nil.
+-- Numerals: the integer of a raw value, or nil.
 
 local numerals = {}
 
@@ -97,7 +98,7 @@ local function integer(signal, raw)
   return numerals[signal.numeral](raw)
 end
 
--- Values: the physical value of a raw one, or nil and the note that says why there is none.
+-- Values: the physical value of a raw value, or nil and a note that says why there is none.
 
 local values = {}
 
@@ -128,7 +129,8 @@ function values.named(signal, raw)
   return nil, "unknown_value", signal.name .. " 0x" .. digits(raw, 1) .. " has no name"
 end
 
--- Returns the text of hexadecimal digits, without the NULs at its end; nil if it is not printable.
+-- Returns the text of hexadecimal digits without the NULs at its end, or nil if it is not
+-- printable.
 local function ascii(hex)
   local text = hex:gsub("..", function(pair) return string.char(tonumber(pair, 16)) end)
   text = text:gsub("\0+$", "")
@@ -163,7 +165,7 @@ function values.packed(signal, _, frame)
   local text, is_open = "", false
   for _, piece in ipairs(signal.pieces) do
     local part = piece.literal or piece_text(frame, piece)
-    -- A number without a fixed length ends where the next digit is none.
+    -- A number without a fixed length ends before the first character that is no digit.
     if not part or (is_open and part:find("^%d")) then return not_of_form(signal) end
     if part ~= "" then is_open = not (piece.literal or piece.text or piece.digits) end
     text = text .. part
@@ -199,7 +201,8 @@ local function range_note(signal, model, value)
   return "out_of_range", signal.name .. " " .. plain(value) .. unit .. " is outside " .. limits
 end
 
--- Returns what a frame says of a signal: raw, value, name of a special value, rule and text of a note.
+-- Returns what a frame says about a signal: raw, value, name of a special value, rule and text of a
+-- note.
 local function reading(frame, signal)
   local raw = get(frame, signal.place)
   if signal.signed then raw = signed(raw, signal.place.width) end
@@ -211,11 +214,12 @@ local function reading(frame, signal)
   return { signal = signal, raw = raw, value = value, rule = rule, text = text }
 end
 
--- Addressing: the mode that an identifier shows.
+-- Addressing: finds the mode that an identifier shows.
 
 local REQUEST, REPLIES = { "request" }, { "one", "each", "coordinator" }
 
--- Tests a pattern; "documented", "tolerated" if an address is one that the document does not name, or nil.
+-- Tests a pattern. It returns "documented", "tolerated" if the document does not name an address,
+-- or nil.
 local function pattern_fit(frame, pattern)
   if not shows(frame.id, pattern.constants) then return nil end
   local fit = "documented"
@@ -229,13 +233,13 @@ local function pattern_fit(frame, pattern)
   return fit
 end
 
--- Tests whether such a frame goes towards a module.
+-- Tests whether a kind of frame goes to a module.
 local function is_to_module(layout)
   return layout.kind == "request"
 end
 
--- Calls `found` with each mode that the identifier shows, who answers, and how well it fits: 1 is best, from 3 on the
--- message does not have the mode.
+-- Calls `found` with each mode that the identifier shows, who answers, and how well the mode fits.
+-- 1 is the best fit. From 3 on, the message does not have the mode.
 local function each_mode(frame, layout, found)
   for _, mode in ipairs(protocol.modes) do
     for _, who in ipairs(is_to_module(layout) and REQUEST or REPLIES) do
@@ -250,7 +254,7 @@ local function each_mode(frame, layout, found)
   end
 end
 
--- Returns the mode that fits best, and of those the one with most constants.
+-- Returns the mode that fits best. Among equal modes it has the most constants.
 local function addressing(frame, layout)
   local best = { fit = 5, constants = 0 }
   each_mode(frame, layout, function(mode, who, fit)
@@ -262,7 +266,7 @@ local function addressing(frame, layout)
   return best
 end
 
--- Choosing: from an identifier to the one message.
+-- Choosing: finds the one message of an identifier.
 
 local function is_of_model(message, model)
   if not message.models or model == 0 then return true end
@@ -312,8 +316,8 @@ local function filtered(layouts, test)
   return left
 end
 
--- Kinds of frames in the order in which the plan counts them, and those that refuse a request in place of its reply;
--- each knows its message.
+-- Kinds of frames in the order of the plan, and the refusals. A refusal answers a request in place
+-- of its reply. Each kind knows its message.
 local kinds_of_frames, refusals = {}, {}
 for _, message in ipairs(protocol.messages) do
   for _, signal in ipairs(message.signals) do
@@ -358,7 +362,7 @@ local function with_data(frame, layouts)
   end)
 end
 
--- Returns the values of payload selectors, as far as the frame has the bytes.
+-- Returns the values of payload selectors whose bytes the frame has.
 local function selectors(frame, indices)
   local found = {}
   for _, index in ipairs(indices) do
@@ -370,12 +374,12 @@ local function selectors(frame, indices)
   return found
 end
 
--- Says why a frame is not recognised, with the selectors that it could have had.
+-- Says why a frame is not recognised, with the selectors that it could have.
 local function problem(kind, text, frame, indices)
   return { problem = kind, text = text, selectors = indices and selectors(frame, indices) or {} }
 end
 
--- Follows the plan to its outcome for a frame, or to nil.
+-- Follows the plan for a frame to its outcome, or to nil.
 local function find(frame, choice)
   while choice and choice.cases do
     local value
@@ -389,7 +393,7 @@ local function find(frame, choice)
   return choice
 end
 
--- The same for an identifier that has not the fields of this protocol.
+-- The same for an identifier without the fields of this protocol.
 local function other_identifier(kind, text)
   return { problem = kind, text = text, selectors = {}, has_other_identifier = true }
 end
@@ -429,7 +433,7 @@ local function candidates(frame)
   return chosen
 end
 
--- Tests whether the first of two layouts fits better: the device model has it, or else its addresses fit better.
+-- Tests whether the first of two layouts fits better, by device model and then by addresses.
 local function compare(one, other)
   if one.is_of_model ~= other.is_of_model then return one.is_of_model end
   if one.fit ~= other.fit then return one.fit < other.fit end
@@ -448,7 +452,7 @@ local function of_models(message)
   return "`" .. message.name .. "` if the model is " .. table.concat(names, " or ")
 end
 
--- Returns the layout that fits best, and the note that it depends on the device model.
+-- Returns the layout that fits best, and a note if that depends on the device model.
 local function best(frame, layouts)
   local chosen, ranked = layouts[1], rank(frame, layouts[1])
   for index = 2, #layouts do

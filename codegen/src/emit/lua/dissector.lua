@@ -1,6 +1,6 @@
--- The dissector: fields, the tree of a frame, and how Wireshark finds it.
+-- The dissector: its fields, the tree of a frame, and how Wireshark finds it.
 
--- Returns the protocol for Wireshark and its name, which begins filters; names that Wireshark has itself are taken.
+-- Returns the protocol for Wireshark, and its name in filters. Wireshark's own names are taken.
 local function new_proto()
   local about = string.upper(protocol.name) .. ": " .. protocol.title
   local is_free, proto = pcall(Proto, protocol.name, about)
@@ -18,7 +18,7 @@ local function define(field)
   return field
 end
 
--- Returns the filter name of a group of fields; a message of the same name keeps its own.
+-- Returns the filter name of a group of fields. A message of the same name keeps its own.
 local function group(name)
   for _, message in ipairs(protocol.messages) do
     if message.name == name then return group(name .. "_") end
@@ -30,7 +30,8 @@ local function title(item)
   return item.title or item.name
 end
 
--- Returns a field for integers of so many bits; hexadecimal digits are for those that are no quantities.
+-- Returns a field for integers of `bits` bits. Integers that are no quantities are shown in
+-- hexadecimal.
 local function number_field(name, text, width, is_signed, display, names, about)
   local size = width <= 8 and 8 or width <= 16 and 16 or width <= 32 and 32 or 64
   local make = ProtoField[(is_signed and "int" or "uint") .. size]
@@ -135,7 +136,8 @@ local function add_bits(item, range, reading)
   return #set > 0 and table.concat(set, " ") or "none"
 end
 
--- Adds a signal, and returns its value as a text. One without a physical value has its raw value alone.
+-- Adds a signal, and returns its value as a text. Without a physical value, only the raw value is
+-- added.
 local function add_reading(tree, tvb, reading)
   local signal = reading.signal
   local range = tvb(signal.place.first, signal.place.count)
@@ -181,7 +183,8 @@ local function show_problem(frame, decoded, tvb, tree)
   tree:add_proto_expert_info(unrecognised, decoded.text)
 end
 
--- Says in place of the values what a frame says that reports an error; nil of any other.
+-- Returns what a frame that reports an error says in place of its values, or nil for any other
+-- frame.
 local function refusal(decoded)
   if is_to_module(decoded.layout) then return nil end
   for _, note in ipairs(decoded.notes) do
@@ -228,13 +231,13 @@ local can_id, can_extended, can_remote = Field.new("can.id"), Field.new("can.fla
 local fd_switch, interface_id, frame_time =
   Field.new("canfd.flags.brs"), Field.new("frame.interface_id"), Field.new("frame.time_epoch")
 
--- Returns the last value of a field of the dissectors before.
+-- Returns the last value of a field of the earlier dissectors.
 local function last(field)
   local all = { field() }
   if #all > 0 then return all[#all].value end
 end
 
--- Returns a whole classic data frame; nil of any other.
+-- Returns a complete classic data frame, or nil for any other.
 local function read_frame(tvb, pinfo)
   local length = tvb:len()
   if length > 8 or length < tvb:reported_len() or last(can_remote) ~= false or fd_switch() then return nil end
@@ -250,7 +253,7 @@ end
 
 proto.init = forget
 
--- Chosen by "Decode As", the dissector shows every frame, and the problem of one that is not recognised.
+-- If "Decode As" chose the dissector, it shows every frame, and says why one is not recognised.
 function proto.dissector(tvb, pinfo, tree)
   local frame = read_frame(tvb, pinfo)
   if not frame then return 0 end
@@ -260,7 +263,7 @@ end
 
 DissectorTable.get("can.subdissector"):add_for_decode_as(proto)
 
--- Of the frames that nobody was chosen for, those that are recognised.
+-- If no dissector was chosen for a frame, this one shows it if it recognises it.
 proto:register_heuristic("can", function(tvb, pinfo, tree)
   local frame = read_frame(tvb, pinfo)
   local decoded = frame and decode(frame)

@@ -1,4 +1,4 @@
--- Linking: which request a reply answers, and how long that took.
+-- Linking: finds the request that a reply answers, and how long that took.
 
 local waiting, requests, responses, seen
 
@@ -14,7 +14,7 @@ local function bound(frame, pattern, kind)
   end
 end
 
--- Returns what a request and its reply have in common; `pattern` is what the frame at hand shows.
+-- Returns what a request and its reply share. `pattern` is what this frame shows.
 local function exchange(frame, layout, mode, who, pattern)
   local parts = { frame.interface, layout.exchange or layout.message.name, layout.access, mode.name, who }
   for _, address in ipairs(mode[who].addresses) do
@@ -25,7 +25,7 @@ local function exchange(frame, layout, mode, who, pattern)
   return table.concat(parts, " ")
 end
 
--- Returns who answers a request; nil if nobody does, or if the document does not say.
+-- Returns who answers a request, or nil if nobody does or the document does not say it.
 local function answering(decoded)
   local known, layout = decoded.addressing, decoded.layout
   if layout.kind ~= "request" or known.fit >= 3 then return nil end
@@ -40,7 +40,7 @@ local function ask(frame, decoded)
     { number = frame.number, time = frame.time, senders = {} }
 end
 
--- Returns the addresses of a reply, by which its sender is known.
+-- Returns the addresses of a reply, which identify its sender.
 local function sender(frame, pattern)
   local parts = {}
   for _, address in ipairs(pattern.addresses) do
@@ -49,7 +49,8 @@ local function sender(frame, pattern)
   return table.concat(parts, " ")
 end
 
--- Calls `found` with each request that still waits for a reply of this layout, and with what its sender has sent so far.
+-- Calls `found` with each request that still waits for a reply of this layout, and with what the
+-- reply's sender has sent so far.
 local function each_request(frame, layout, found)
   each_mode(frame, layout, function(mode, who, fit)
     if fit >= 3 or not mode.request then return end
@@ -63,7 +64,8 @@ local function each_request(frame, layout, found)
   end)
 end
 
--- Notes a reply; a module is done when it has sent each message of a set, or else one message, or has refused.
+-- Notes a reply. A module is done when it has sent all messages of a set, or one message, or has
+-- refused.
 local function note_reply(known, is_refusal)
   local sent, name = known.sent, known.layout.message.name
   if not sent.messages[name] then
@@ -95,7 +97,8 @@ local function answer(frame, decoded)
   table.insert(responses[request.number], frame.number)
 end
 
--- Notes a frame when it is seen for the first time. That can be in the second pass: tshark's first one may have no fields.
+-- Notes a frame when it is seen for the first time. That can be in the second pass, because
+-- tshark's first pass may have no fields.
 local function link(frame, decoded)
   if seen[frame.number] then return end
   seen[frame.number] = true

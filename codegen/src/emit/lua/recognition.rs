@@ -1,4 +1,4 @@
-//! The plan by which frames are recognised, as nested tables.
+//! Writes the plan to recognise frames as nested tables.
 
 use super::signal::wide;
 use super::table::Value;
@@ -26,7 +26,7 @@ fn frames(frames: &Vec<FrameId>) -> Value {
     Value::record().with("frames", Value::list(frames, |id| Value::id(*id)))
 }
 
-/// Returns a choice by one selector after the other, down to what `end` makes of an outcome.
+/// Returns a choice by one selector after another. `end` writes each outcome.
 fn choice<T>(known: &Choice<T>, end: &impl Fn(&T) -> Value) -> Value {
     let (selector, place, cases, otherwise) = match known {
         Choice::End(outcome) => return end(outcome),

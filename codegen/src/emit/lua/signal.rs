@@ -1,4 +1,4 @@
-//! Signals: where their bits are, and what they mean.
+//! Writes signals: where their bits are, and what they mean.
 
 use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
@@ -7,16 +7,17 @@ use super::table::Value;
 use crate::model::{Encoding, NamedValue, Numeral, PartId, Piece, Protocol, Range, Signal, StatusBit, Table};
 use crate::number::Rational;
 
-/// What shows a value; numbers are those that have limits.
+/// How a value is shown. Numbers are what has limits.
 const INTEGER: &str = "integer";
 const DOUBLE: &str = "double";
 const TEXT: &str = "text";
 const BITS: &str = "bits";
 
-/// Raw values of more bits are no Lua numbers before 5.3.
+/// Before Lua 5.3, a raw value of more bits is no Lua number.
 const LUA_BITS: u8 = 32;
 
-/// Returns a place: its bits in the eight bytes read in one order, and the bytes that it touches.
+/// Returns a place: its byte order, its bits in the eight bytes read in that order, and the bytes
+/// that it touches.
 pub fn place(place: Place) -> Value {
     let bits = place.bits_of_payload();
     let touched: Vec<usize> = (0..8).filter(|byte| place.mask()[*byte] != 0).collect();
@@ -29,7 +30,7 @@ pub fn place(place: Place) -> Value {
         .with("count", Value::Plain(touched.len().to_string()))
 }
 
-/// Writes a raw value as the interpreter compares it: in quotes where it is no Lua number.
+/// Writes a raw value as the interpreter compares it, in quotes if it is no Lua number.
 pub fn wide(raw: impl Into<i128>, width: u8) -> Value {
     let raw = raw.into();
     if width > LUA_BITS { Value::text(&raw.to_string()) } else { Value::number(raw) }
@@ -49,7 +50,8 @@ pub fn signal(protocol: &Protocol, signal: &Signal) -> Value {
     limits(meaning(protocol, record, signal), signal)
 }
 
-/// Adds what the bits mean: the function that makes a value of them, and what shows the value.
+/// Adds the meaning of the bits: the function that turns them into a value, and how the value is
+/// shown.
 fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
     let made = |by, shown| record.with("kind", Value::text(by)).with("shown", Value::text(shown));
     match &signal.encoding {
@@ -81,7 +83,8 @@ fn written(record: Value, numeral: Numeral) -> Value {
     }
 }
 
-/// Adds the scale and the offset over one denominator: (raw * numerator + offset) / denominator, with one division.
+/// Adds scale and offset over one denominator. So (raw * numerator + offset) / denominator divides
+/// once.
 fn scaled(record: Value, scale: Rational, offset: Rational) -> Value {
     let denominator = scale.common_denominator(offset).unwrap_or(1);
     let over = |number: Rational| number.numerator() * (denominator / number.denominator());
@@ -137,7 +140,8 @@ fn wide_limits(signal: &Signal, range: Range) -> Option<[Value; 2]> {
     Some([limit(range.minimum)?, limit(range.maximum)?])
 }
 
-/// Returns limits: of integers that are no Lua numbers, such integers; of a float, the floats nearest to them are legal too.
+/// Returns limits. They are integers of 64 bits if the values are no Lua numbers. For a float, the
+/// floats nearest to the limits are legal too.
 fn range(signal: &Signal, range: Range) -> Value {
     if let Some(limits) = wide_limits(signal, range) {
         return Value::list(limits, |limit| limit);

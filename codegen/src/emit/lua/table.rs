@@ -1,4 +1,4 @@
-//! Lua tables, laid out as people write them.
+//! Writes Lua tables in the layout that people use.
 
 use crate::model::Id;
 use crate::text::{Text, quoted_in_lua};
@@ -8,11 +8,11 @@ const WIDTH: usize = 120;
 
 /// A Lua value.
 pub enum Value {
-    /// What stands as it is: numbers, texts in quotes, `true`, calls.
+    /// A value that is written unchanged: a number, a text in quotes, `true` or a call.
     Plain(String),
     /// A table counted from 1.
     List(Vec<Value>),
-    /// A table with names or keys, written as they stand before the `=`.
+    /// A table with names or keys, in the form that stands before the `=`.
     Record(Vec<(String, Value)>),
 }
 
@@ -59,7 +59,7 @@ impl Value {
         Self::Plain(number.into().to_string())
     }
 
-    /// Writes the double with the fewest digits that are enough.
+    /// Writes a double with the fewest digits that identify it.
     pub fn double(number: f64) -> Self {
         Self::Plain(number.to_string())
     }
@@ -69,7 +69,7 @@ impl Value {
         Self::Plain(format!("0x{:02X}", number.into()))
     }
 
-    /// Writes a number of 64 bits, which is none that Lua has before 5.3.
+    /// Writes a number of 64 bits. Lua has no such numbers before 5.3.
     pub fn unsigned_of_64_bits(number: u64) -> Self {
         Self::Plain(format!("UInt64(0x{:08X}, 0x{:08X})", number & u64::from(u32::MAX), number >> 32))
     }
@@ -80,7 +80,7 @@ impl Value {
         Self::Plain(format!("Int64(0x{:08X}, 0x{:08X})", bits & u64::from(u32::MAX), bits >> 32))
     }
 
-    /// Writes the place of a row in the list of its table, which Lua counts from 1.
+    /// Writes the place of a row in its table. Lua counts from 1.
     pub fn id(id: impl Id) -> Self {
         Self::Plain((id.place() + 1).to_string())
     }

@@ -54,7 +54,7 @@ fn address(Address { place, kind, excluded }: &Address) -> TokenStream {
     quote!(Address::new(Identifier::#place, &#kind) #excluding)
 }
 
-/// Emits whom requests address.
+/// Emits the targets of requests.
 pub fn targets(Targets { variants, sender }: &Targets, derives: Derives) -> TokenStream {
     let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
     let definitions = variants.iter().map(definition);
@@ -128,7 +128,7 @@ fn destination(variants: &[Target]) -> TokenStream {
     }
 }
 
-/// Emits the arm of the targets whose number has this type.
+/// Emits the arm for targets whose number has this type.
 fn numbers(variants: &[Target], number: Option<Number>) -> Option<TokenStream> {
     let names: Vec<_> = variants.iter().filter(|target| target.number == number).map(|known| &known.variant).collect();
     let arm = match number {

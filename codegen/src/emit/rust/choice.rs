@@ -1,4 +1,4 @@
-//! A choice by the values of selectors: a `match`, or less where less is enough.
+//! A choice by the values of selectors: a `match`, or less if less is enough.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -8,7 +8,8 @@ use super::plan::rows::{Arm, Constants};
 use super::plan::selector::{Selector, Selectors, Source};
 use crate::model::SelectorId;
 
-/// Chooses the first arm of which a set holds, else `otherwise`; reads the identifier `id` and the bytes `data`.
+/// Chooses the first arm with a set that holds, else `otherwise`. It reads the identifier `id` and
+/// the bytes `data`.
 pub fn choice(selectors: &Selectors, arms: &[Arm<TokenStream>], otherwise: &TokenStream) -> TokenStream {
     if let [Arm { sets, outcome }] = arms
         && let [only] = sets.as_slice()
@@ -35,7 +36,7 @@ pub fn condition(selectors: &Selectors, constants: &Constants) -> TokenStream {
     quote!(#(#tests)&&*)
 }
 
-/// Distributes arms over functions of which none gets too long.
+/// Distributes arms over functions, so that none gets too long.
 pub fn split(selectors: &Selectors, arms: Vec<Arm<TokenStream>>) -> Vec<Vec<Arm<TokenStream>>> {
     let columns = columns(selectors, &arms);
     parts(arms, |arm| written(selectors, &columns, arm))

@@ -1,4 +1,4 @@
-//! Optional traits: what the options add to items, each behind its switch.
+//! Optional traits, which the options add to items, each behind its switch.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -16,7 +16,7 @@ impl<'a> Derives<'a> {
         Self { options }
     }
 
-    /// Emits the imports of the crates, which the runtime passes on.
+    /// Emits the imports of the crates, which the runtime re-exports.
     pub fn imports(self) -> TokenStream {
         let Options { serde, defmt, arbitrary, .. } = self.options;
         let crates = [("arbitrary", arbitrary), ("defmt", defmt), ("serde", serde)];

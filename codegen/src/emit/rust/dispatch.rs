@@ -9,7 +9,7 @@ use super::plan::recognition::{Cases, Outcome, Reads, Recognised};
 use super::plan::rows::Arm;
 use super::plan::selector::Selectors;
 
-/// Emits the functions that find the message of a frame: the first one, and those in which it goes on.
+/// Emits the functions that find the message of a frame: the first one, and those that it calls.
 pub fn recognising(name: &str, Cases { arms, rest }: &Cases<Outcome>, selectors: &Selectors) -> Vec<TokenStream> {
     let written = arms.iter().map(|arm| Arm { sets: arm.sets.clone(), outcome: decoded(&arm.outcome) });
     let parts = split(selectors, written.collect());
@@ -25,7 +25,7 @@ pub fn recognising(name: &str, Cases { arms, rest }: &Cases<Outcome>, selectors:
     functions.collect()
 }
 
-/// Emits a function that finds the message of a frame; it may go on in another one.
+/// Emits a function that finds the message of a frame, and may call the next one.
 fn function(name: &Ident, reads: Reads, goes_on: bool, found: &TokenStream) -> TokenStream {
     let asks = reads.model || goes_on;
     let id = reads.id.then(|| quote!(let id = frame.raw_id();));
@@ -35,7 +35,7 @@ fn function(name: &Ident, reads: Reads, goes_on: bool, found: &TokenStream) -> T
     quote!(fn #name(#frame: &Frame, #model: Option<u8>) -> Option<Recognised<Self>> { #id #data #found })
 }
 
-/// Emits what a function finds: by its arms, in the next function, and else the frame without constants.
+/// Emits a function's body: its arms, then the next function or the frame without constants.
 fn found(
     selectors: &Selectors,
     arms: &[Arm<TokenStream>],
@@ -57,20 +57,20 @@ fn found(
     if arms.is_empty() { quote!(Some(#choice)) } else { quote!(let recognised = #choice; Some(recognised)) }
 }
 
-/// Takes the message out of a frame; several are told apart by length, model and addresses.
+/// Decodes the message of a frame. Length, model and addresses tell several apart.
 fn decoded(outcome: &Outcome) -> TokenStream {
     let mut frames = outcome.frames.iter().map(recognised);
     let first = frames.next();
     quote!(#first #(.or(#frames, frame, model))*)
 }
 
-/// Takes the message of a kind of frame out of the data.
+/// Decodes the message of a kind of frame from the data.
 fn recognised(Recognised { kind, home, exchange, variant, carries }: &Recognised) -> TokenStream {
     let carried = carries.then(|| quote!((Layout::decode(data))));
     quote!(Recognised::#kind(&#home::#exchange, Self::#variant #carried))
 }
 
-/// Emits the functions that say how long frames are that show some constants in the identifier.
+/// Emits the functions that return the lengths of frames by the constants of the identifier.
 pub fn measuring(name: &str, Cases { arms, rest }: &Cases<Vec<u8>>, selectors: &Selectors) -> Vec<TokenStream> {
     let rest = rest.as_ref().map_or_else(|| quote!(&[]), |lengths| list(lengths));
     let arms = arms.iter().map(|arm| Arm { sets: arm.sets.clone(), outcome: list(&arm.outcome) });

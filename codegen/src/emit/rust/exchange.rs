@@ -7,7 +7,7 @@ use super::filter::filter;
 use super::plan::exchange::{Access, Exchange};
 use crate::model::Who;
 
-/// Emits what messages share of an access.
+/// Emits the part of an access that messages share.
 pub fn access(access: &Access) -> TokenStream {
     let Access { constant, comment, name, answers, has_values, member_of, frames } = access;
     let answers = answers_list(answers);
@@ -43,7 +43,7 @@ pub fn exchange(exchange: &Exchange) -> TokenStream {
     }
 }
 
-/// Writes who answers, mode by mode.
+/// Writes who answers in each mode.
 fn answers_list(answers: &[Option<Who>]) -> TokenStream {
     let answers = answers.iter().map(|who| match who {
         None => quote!(None),

@@ -1,4 +1,4 @@
-//! What frames show: of every frame, of the selectors in the data, and of those with constants.
+//! What frames show: every frame, those with a selector in the data, and those with constants.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -18,7 +18,7 @@ pub fn base(Base { extended, bits, constants, sent, .. }: &Base) -> TokenStream 
     }
 }
 
-/// Emits the filter of replies that are no error replies.
+/// Emits the filter of replies that report no error.
 pub fn normal(base: &Base) -> TokenStream {
     let normal = base.normal.iter().map(|(place, value)| quote!(.id(Identifier::#place, #value)));
     quote!(FRAME #(#normal)*)

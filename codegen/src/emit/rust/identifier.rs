@@ -1,4 +1,4 @@
-//! The identifier: its fields, and what they show of the direction.
+//! The identifier: its fields, and how they show the direction.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -44,7 +44,7 @@ fn splitting(Identifier { fields, ones, .. }: &Identifier) -> TokenStream {
     }
 }
 
-/// Emits what code for every protocol asks an identifier.
+/// Emits the tests of an identifier that every protocol needs.
 fn directions(Identifier { foreign, to_module, to_controller, .. }: &Identifier) -> TokenStream {
     let foreign = foreign.as_ref().map(|known| test("is_foreign", known));
     let (to_module, to_controller) = (test("is_to_module", to_module), test("is_to_controller", to_controller));
@@ -60,7 +60,7 @@ fn directions(Identifier { foreign, to_module, to_controller, .. }: &Identifier)
     }
 }
 
-/// Emits a test of an identifier, or of none if it always comes out the same.
+/// Emits a test of an identifier. It takes none if the result is always the same.
 fn test(name: &str, test: &Test) -> TokenStream {
     let name = format_ident!("{name}");
     let id = if test.reads() { quote!(id) } else { quote!(_) };

@@ -1,6 +1,7 @@
 //! The layout of generated code, which is that of rustfmt with lines of 120 and the heuristics `Max`.
 //!
-//! prettyplease lays out items. What they compute is laid out here: on one line if it fits, else broken in one way.
+//! prettyplease lays out items. Their expressions are laid out here: on one line if it fits, else
+//! broken in one way.
 
 #![expect(clippy::wildcard_enum_match_arm, reason = "the enums of syn are open; code of other kinds stays on one line")]
 
@@ -18,7 +19,7 @@ use syn::{Block, Expr, Ident, ImplItem, Item, Stmt};
 
 use shape::Shape;
 
-/// Lays the code out; if it is no Rust it stays as it is, so that its compiler can say why.
+/// Lays the code out. If it is no Rust, it stays unchanged, so that its compiler can say why.
 pub fn formatted(code: &TokenStream) -> String {
     let Ok(mut file) = syn::parse2::<syn::File>(code.clone()) else { return code.to_string() };
     let mut computed = Computed::default();
@@ -27,23 +28,23 @@ pub fn formatted(code: &TokenStream) -> String {
     spacing::spaced(&computed.put_back(&items))
 }
 
-/// What items compute, while they are laid out without it.
+/// The expressions of items, while the items are laid out without them.
 #[derive(Default)]
 struct Computed {
     parts: Vec<Part>,
 }
 
-/// A thing that is computed.
+/// An expression, or something like it.
 enum Part {
     Value(Expr),
     Body(Block),
 }
 
-/// How the names begin that stand for parts.
+/// The start of the names that stand for parts.
 const STAND_IN: &str = "canspec_part_";
 
 impl Computed {
-    /// Takes out what an item computes.
+    /// Takes out the expressions of an item.
     fn take_out(&mut self, item: &mut Item) {
         match item {
             Item::Const(item) => self.take_value(&mut item.expr),
@@ -57,7 +58,7 @@ impl Computed {
         }
     }
 
-    /// Takes a part out, and returns what stands for it.
+    /// Takes a part out, and returns its stand-in.
     fn take(&mut self, part: Part) -> Expr {
         let name = Ident::new(&format!("{STAND_IN}{}", self.parts.len()), Span::call_site());
         self.parts.push(part);
@@ -88,7 +89,7 @@ impl Computed {
         whole
     }
 
-    /// Lays out the part for which a name stands in a line.
+    /// Lays out the part that a name in a line stands for.
     fn filled(&self, line: &str) -> Option<String> {
         let (before, name) = line.split_once(STAND_IN)?;
         let part = self.parts.get(name.trim_end_matches(';').parse::<usize>().ok()?)?;
@@ -106,7 +107,7 @@ fn is_broken_head(line: &str) -> bool {
     line.ends_with(['(', '<']) && !line.trim_start().starts_with("//")
 }
 
-/// Joins the lines of what goes on in others if they fit on one.
+/// Joins the lines of a broken head if they fit on one.
 fn head<'a>(first: &str, lines: &mut impl Iterator<Item = &'a str>) -> String {
     let indent = first.len() - first.trim_start().len();
     let is_last = |line: &str| line.len() - line.trim_start().len() == indent;

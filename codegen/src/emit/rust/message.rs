@@ -39,7 +39,7 @@ fn constants(message: &Message, own: &Struct) -> TokenStream {
     let signals = message.signals.iter().filter(|_| *is_home).map(signal);
     let reserved = reserved.iter().map(|reserved| {
         quote! {
-            /// The bits that the document reserves.
+            /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
             pub const RESERVED: Data = #reserved;
         }
     });
@@ -82,7 +82,6 @@ fn special_value(Special { constant, comment, value, .. }: &Special, signal: &Si
 fn within(Within { exchange, .. }: &Within) -> TokenStream {
     quote! {
         /// Returns the values for a device model if it takes them.
-        ///
         /// # Errors
         ///
         /// Refuses a model that does not have the message, and values outside its limits.

@@ -49,7 +49,7 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
     })
 }
 
-/// Emits what values become that a device model takes.
+/// Emits the type of values that a device model takes.
 fn within() -> TokenStream {
     quote! {
         /// Values that a device model takes. Requests with them keep to its limits, and not to those of other models.

@@ -1,4 +1,4 @@
-//! A `match` too long for one function, in parts of which each goes on in the next.
+//! Splits a `match` that is too long for one function into parts. Each part calls the next.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -9,7 +9,7 @@ use super::plan::naming::ident;
 /// How many lines the arms in one function may have.
 const LINES: usize = 72;
 
-/// Distributes what becomes arms evenly over as few parts as are short enough, at least one.
+/// Distributes items evenly over the fewest parts that are short enough, at least one.
 pub fn parts<T>(items: Vec<T>, arm: impl Fn(&T) -> TokenStream) -> Vec<Vec<T>> {
     let heights: Vec<_> = items.iter().map(|item| height(&arm(item))).collect();
     let total = heights.iter().sum::<usize>();

@@ -1,4 +1,4 @@
-//! What generated Rust consists of: every item with its names, types, comments and relations, settled once.
+//! The plan of generated Rust: every item with its names, types, comments and relations.
 
 pub mod address;
 pub mod doc;
@@ -49,13 +49,13 @@ pub struct Plan {
     pub identifier: Identifier,
     /// The field that says whether more frames of a set follow, and the value that says so, if there are sets.
     pub continuation: Option<(Source, TokenStream)>,
-    /// Whom requests address.
+    /// The targets of requests.
     pub targets: Option<Targets>,
     /// Kinds of addresses.
     pub address_types: Vec<AddressType>,
     /// Addressing modes.
     pub modes: Vec<Mode>,
-    /// What messages share of each access.
+    /// The parts of accesses that messages share.
     pub accesses: Vec<Access>,
     /// Device models.
     pub models: Models,
@@ -78,7 +78,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Settles what the module of a protocol consists of.
+    /// Plans the module of a protocol.
     pub fn new(protocol: &Protocol, options: &Options) -> Self {
         let (types, mut constants) = (&Types::new(protocol), Pool::of_constants());
         let selectors = selector::selectors(protocol, &mut constants);

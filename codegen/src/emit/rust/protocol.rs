@@ -23,7 +23,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> TokenStream {
     quote! {
         #definition
 
-        /// A recognised frame; [`canspec_runtime::Received`] shows how to ask it what it says.
+        /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
         pub type Received = canspec_runtime::Received<Message>;
 
         /// A request ready to be sent, whose replies carry `R`.
@@ -36,7 +36,6 @@ pub fn protocol(plan: &Plan, derives: Derives) -> TokenStream {
             /// Recognises a frame.
             ///
             /// # Errors
-            ///
             /// Says why the frame is not recognised.
             pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
                 Received::decode(frame)
@@ -59,7 +58,6 @@ fn decode_for() -> TokenStream {
         /// Recognises a frame of a device model: of messages that look the same, the one that it has.
         ///
         /// # Errors
-        ///
         /// Says why the frame is not recognised.
         pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
             Received::decode_for(model, frame)

@@ -1,6 +1,6 @@
-//! What a name or a title says about the quantity.
+//! Reads which quantity a name or a title means.
 
-/// What is measured, and its units; a percentage can be one of anything.
+/// What is measured, and its units. A percentage can be one of any quantity.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Quantity {
     pub name: &'static str,
@@ -13,7 +13,7 @@ pub enum Reading {
     Of(Quantity),
     /// There is no word of a quantity.
     Unknown,
-    /// There is one, but what is measured may be something else.
+    /// There is one, but the text may mean something else.
     Unclear,
 }
 
@@ -27,7 +27,7 @@ const TIME: Quantity = Quantity { name: "a time", units: &["s", "ms", "min", "h"
 const PERCENTAGE: Quantity = Quantity { name: "a percentage", units: &["%"] };
 const LENGTH: Quantity = Quantity { name: "a length", units: &["m"] };
 
-/// Words, and what they are the quantity of.
+/// Words and their quantities.
 const QUANTITIES: [(&[&str], Quantity); 9] = [
     (&["voltage", "volts", "overvoltage", "undervoltage"], VOLTAGE),
     (&["current", "amperes", "amps", "overcurrent"], CURRENT),
@@ -40,15 +40,16 @@ const QUANTITIES: [(&[&str], Quantity); 9] = [
     (&["altitude", "height", "distance", "metres", "meters"], LENGTH),
 ];
 
-/// Words that leave the quantity before them what it is.
+/// Words that do not change the quantity before them.
 const ATTRIBUTES: &str = "actual average default high highest in level limit limits low lower lowest max maximum min minimum \
     nominal out peak point rated reading reference ripple set setting setpoint threshold total upper value";
 
-/// Words after which something else is spoken of.
+/// Words after which the text is about something else.
 const PREPOSITIONS: &str =
     "after as at before between by during for from inside of since that to until when which with within";
 
-/// Reads what a name or a title is about: the last word of a quantity, unless that only describes what follows or there are two things.
+/// Reads the last word of a quantity. The result is unclear if the word only describes what
+/// follows, or if there are two things.
 pub fn read(text: &str) -> Reading {
     let lower = text.to_lowercase();
     let clause = lower.split(['(', ',', ';', ':']).next().unwrap_or_default();
@@ -68,7 +69,8 @@ fn quantity(word: &str) -> Option<Quantity> {
     Some(*quantity)
 }
 
-/// Tells whether the words after that of a quantity speak of the same; a `current value` may be the present one of anything.
+/// Tests whether the words after a quantity keep its meaning. A `current value` may be the present
+/// value of anything.
 fn keeps(quantity: Quantity, at: usize, after: &[&str]) -> bool {
     let is_of_now = quantity == CURRENT && at == 0;
     after

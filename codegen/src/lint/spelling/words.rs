@@ -1,4 +1,4 @@
-//! The words of a spec, and how often each one stands there.
+//! Counts the words of a spec.
 
 use std::collections::HashMap;
 
@@ -8,14 +8,14 @@ use crate::syntax::tree::{Content, Node};
 /// Keys of the language with words for people.
 const PROSE: [&str; 9] = ["title", "note", "because", "prints", "uses", "set_when", "clear_when", "effect", "led"];
 
-/// How often the words of a spec stand there, in lower case.
+/// How often each word of a spec occurs, in lower case.
 pub struct Vocabulary {
     in_names: HashMap<String, usize>,
     in_prose: HashMap<String, usize>,
 }
 
 impl Vocabulary {
-    /// Counts the words of all names and texts; keys of the language are none.
+    /// Counts the words of all names and texts, without keys of the language.
     pub fn new(tree: &Node, tables: &[Table]) -> Self {
         let mut vocabulary = Self { in_names: HashMap::new(), in_prose: HashMap::new() };
         vocabulary.add_texts(tree, false);
@@ -25,23 +25,25 @@ impl Vocabulary {
         vocabulary
     }
 
-    /// Tells whether a word stands anywhere but in a name.
+    /// Tests whether a word also stands outside a name.
     pub fn has_elsewhere(&self, word: &str, name: &str) -> bool {
         self.names_beside(word, name) > 0 || times(&self.in_prose, word) > 0
     }
 
-    /// Tells whether a word stands in prose, or in two other names; one name alone can be the one that is mistyped.
+    /// Tests whether a word stands in prose, or in two other names. A single other name could
+    /// itself be mistyped.
     pub fn has_often(&self, word: &str, name: &str) -> bool {
         self.names_beside(word, name) > 1 || times(&self.in_prose, word) > 0
     }
 
-    /// Tells whether a word stands in a name.
+    /// Tests whether a word stands in a name.
     pub fn has_in_names(&self, word: &str) -> bool {
         times(&self.in_names, word) > 0
     }
 
-    /// Returns the word in the title, or in two names, that a word becomes with a letter more or less; or the word in the title that
-    /// it becomes with another letter. Names alone have too many words that differ by a letter, and an ending can be meant.
+    /// Returns the similar word in the title or in two names. Similar words differ by one letter
+    /// more or less. In the title, one other letter is similar, too. In names alone too many words
+    /// differ by one letter. Endings do not count, because they can be intended.
     pub fn nearest(&self, word: &str, title: &str) -> Option<String> {
         let word = word.to_ascii_lowercase();
         let title = title.to_ascii_lowercase();
@@ -75,7 +77,7 @@ fn times(counted: &HashMap<String, usize>, word: &str) -> usize {
     counted.get(&word.to_ascii_lowercase()).copied().unwrap_or(0)
 }
 
-/// Splits a text into its words: what is between anything but letters.
+/// Splits a text into its words, which have only letters.
 pub fn words(text: &str) -> impl Iterator<Item = &str> + Clone {
     text.split(|letter: char| !letter.is_ascii_alphabetic()).filter(|word| !word.is_empty())
 }
@@ -86,7 +88,7 @@ fn count(counted: &mut HashMap<String, usize>, text: &str) {
     }
 }
 
-/// Tells whether two words differ in their last letter only, as `module` and `modules` do.
+/// Tests whether two words differ only in their last letter, as `module` and `modules` do.
 fn is_inflected(word: &str, other: &str) -> bool {
     let shared = word.bytes().zip(other.bytes()).take_while(|(left, right)| left == right).count();
     shared + 1 >= word.len().max(other.len())

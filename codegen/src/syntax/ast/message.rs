@@ -1,10 +1,10 @@
-//! Messages as they are written, and the document's frames of them.
+//! Messages as they are written, and their frames in the document.
 
 use serde::Deserialize;
 
 use super::{Field, Map, Names, Pattern};
 
-/// A message: what chooses it, how it travels, what it carries.
+/// A message: what chooses it, how it travels, and what it carries.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -13,17 +13,19 @@ pub struct Message {
     /// none if absent.
     #[serde(rename = "match", default)]
     pub pattern: Pattern,
-    /// Accesses by which the message travels, a list: `[read, set]`. A member of a set travels as part of it too, and
-    /// then needs none.
+    /// List of accesses by which the message travels: `[read, set]`. A member of a set needs none,
+    /// because it travels as part of the set.
     #[serde(default)]
     pub access: Vec<String>,
-    /// Who answers in the addressing modes that may be used, in place of what the accesses say: `{single: one}`; as
-    /// they say if absent.
+    /// The addressing modes that may be used, and who answers in each, in place of the accesses'
+    /// `answers`: `{single: one}`; those of the accesses if absent.
     #[serde(default)]
     pub answers: Map<String>,
-    /// Data bytes of its frames, 0 to 8, which never choose the message: `4`; the protocol's `length` if absent.
+    /// Number of data bytes of its frames, 0 to 8: `4`; the protocol's `length` if absent. It never
+    /// chooses the message.
     pub length: Option<String>,
-    /// The only device models that have the message, a list: `[SM_750]`; every model has it if absent.
+    /// List of the only device models that have the message: `[SM_750]`; every model has it if
+    /// absent.
     #[serde(default)]
     pub models: Vec<String>,
     /// Entry of `timing` that says how often its report comes: `cycle`; as its access says if absent.
@@ -31,19 +33,19 @@ pub struct Message {
     /// Fields by name that the message carries: `{voltage: {bytes: 0..1, scale: 1/10, unit: V}}`; none if absent.
     #[serde(default)]
     pub fields: Map<Field>,
-    /// The only field of the message, which is then called `value`, in place of `fields`:
-    /// `{bytes: 4..7, as: float, unit: V}`; none if absent.
+    /// The only field of the message, in place of `fields`: `{bytes: 4..7, as: float, unit: V}`;
+    /// none if absent. Its name is `value`.
     pub value: Option<Field>,
-    /// Messages of which one travels in each frame, in this order, in place of `fields`: `[voltage, current]`; none if
-    /// absent. Such a message is a set of frames.
+    /// Messages that travel in this order, one in each frame, in place of `fields`:
+    /// `[voltage, current]`; none if absent. They make the message a set of frames.
     #[serde(default)]
     pub members: Vec<String>,
-    /// Kinds of frames of which there is one for each of the `members`, of `request` and `reply`:
+    /// Kinds of frames that each of the `members` has, out of `request` and `reply`:
     /// `[request, reply]`; `[reply]` if absent.
     #[serde(rename = "in", default)]
     pub kinds: Vec<String>,
-    /// Frames of the document in its order, in which a reply answers the request before it:
-    /// `[{request: 000302F0#0000000000000000}]`; none if absent.
+    /// Frames of the document, in its order: `[{request: 000302F0#0000000000000000}]`; none if
+    /// absent. A reply answers the request before it.
     #[serde(default)]
     pub examples: Vec<Example>,
     /// What it is, in a few words without a full stop: `Output voltage and current of one module`.
@@ -62,27 +64,31 @@ pub struct Message {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Example {
-    /// A frame towards a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` where the document prints
-    /// no data. An example has one of `request`, `reply` and `report`.
+    /// A frame to a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` if the
+    /// document prints no data. An example has one of `request`, `reply` and `report`.
     pub request: Option<String>,
-    /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` where the document prints no data.
+    /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` if the document prints
+    /// no data.
     pub reply: Option<String>,
-    /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` where the document prints no data.
+    /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` if the document prints no
+    /// data.
     pub report: Option<String>,
-    /// Message that the frame belongs to, in a sequence or a set of frames only: `output`. If absent, it is the set, or
-    /// the frame of a sequence fails as `identifier`, `foreign` or `unknown_message`.
+    /// Message of the frame, only in a sequence or a set of frames: `output`. If absent, a frame of
+    /// a set belongs to the set, and a frame of a sequence fails. It then fails as `identifier`,
+    /// `foreign` or `unknown_message`.
     pub message: Option<String>,
-    /// Value of every signal in the frame with its unit: `{voltage: 500 V, alarms: [fan_fault]}`, or `500 V` if there
-    /// is only one. Absent where there are no signals or no data.
+    /// Value of every signal in the frame, with its unit: `{voltage: 500 V, alarms: [fan_fault]}`,
+    /// or `500 V` if there is only one signal. Absent if there are no signals or no data.
     pub means: Option<Means>,
-    /// Device model that the frame comes from or goes to: `SM_750`; if absent, the first one that has the message, or
-    /// none if every model has it.
+    /// Device model that the frame comes from or goes to: `SM_750`. If absent, it is the first
+    /// model that has the message, or none if every model has it.
     pub model: Option<String>,
     /// Rules of all notes that decoding gives, a list: `[reserved_bit]`; no note if absent.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// How the printed frame fails: `identifier`, `foreign`, `length`, `unknown_message`, `message` (it is another
-    /// one), `addressing` or `values`. If absent, it decodes and encodes back.
+    /// How the printed frame fails: `identifier`, `foreign`, `length`, `unknown_message`,
+    /// `message`, `addressing` or `values`. `message` means that the frame is one of another
+    /// message. If absent, the frame decodes and encodes back.
     pub fails: Option<String>,
     /// `ours` for a frame that the document does not print; if absent, it does.
     pub origin: Option<String>,
@@ -100,7 +106,8 @@ pub struct Example {
 pub enum Means {
     /// A number with its unit, a name or a text: `500 V`.
     Value(String),
-    /// Names of the set bits of a status word, or the numbers of those without a name: `[fan_fault, 28]`, or `[]` if none is set.
+    /// The set bits of a status word, by name, or by number if they have no name:
+    /// `[fan_fault, 28]`. It is `[]` if no bit is set.
     Bits(Vec<String>),
     /// A value for each signal: `{voltage: 500 V, alarms: []}`.
     Signals(Map<Means>),

@@ -1,4 +1,5 @@
-//! Reads what may be written in more than one way: one name or several, a place or a field, a value or a map.
+//! Reads what can be written in several ways: one name or a list, a place or a field, a value or a
+//! map.
 
 use std::fmt;
 

@@ -1,11 +1,11 @@
-//! Where a mistake begins that the parser notices only further on.
+//! Finds where a mistake begins. The parser often notices it only further on.
 
 use std::ops::Range;
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::rules;
 
-/// Finds a quote without an end; the parser stops at its start.
+/// Finds a quote without an end. The parser stops at its start.
 pub(super) fn open_quote(text: &str, at: usize, complaint: &str) -> Option<Diagnostic> {
     let is_open = complaint.contains("indentation in quoted") || complaint.contains("unexpected end of stream");
     let quote = text[at..].chars().next().filter(|character| is_open && matches!(character, '"' | '\''))?;
@@ -31,7 +31,7 @@ pub(super) fn open_bracket(text: &str, at: Range<usize>, opened: Option<usize>) 
     Some(diagnostic.help(format!("close it with `{end}`")))
 }
 
-/// Tests whether the text ends, or goes on no deeper than the line in which a bracket is opened.
+/// Tests whether the text ends, or goes on no deeper than the line that opens a bracket.
 fn goes_on_outside(text: &str, start: usize, at: usize) -> bool {
     let depth = indentation(line_of(text, start));
     let end = at + line_from(text, at).len();

@@ -1,4 +1,4 @@
-//! What the YAML parser complains about, in words that say what to do.
+//! Says what the YAML parser complains about, and what to do.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::{DEPTH_LIMIT, cause};
 use crate::diagnostic::Diagnostic;
 use crate::syntax::rules;
 
-/// Part of the parser's message, our message, and the help.
+/// A part of the parser's message, our message, and the help.
 const TRANSLATIONS: [(&str, &str, &str); 19] = [
     ("tab", "a tab stands where only spaces may", "indent with spaces"),
     ("unexpected end of stream", "this quoted text is never closed", "close it with the same quote"),
@@ -53,10 +53,10 @@ const TRANSLATIONS: [(&str, &str, &str); 19] = [
     ),
 ];
 
-/// Complaints about what the line above may have begun.
+/// Complaints whose cause may be in the line above.
 const BEGUN_ABOVE: [&str; 3] = ["mapping values are not allowed", "simple key expect", "did not find expected key"];
 
-/// Turns the parser's message into a diagnostic; `opened` is the bracket in which the parser is.
+/// Turns the parser's message into a diagnostic. `opened` is the bracket that the parser is in.
 pub(super) fn translate(text: &str, at: usize, complaint: &str, opened: Option<usize>) -> Diagnostic {
     let span = at..at + text[at..].chars().next().filter(|character| *character != '\n').map_or(0, char::len_utf8);
     if complaint.contains("recursion limit") {

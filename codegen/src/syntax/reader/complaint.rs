@@ -1,4 +1,4 @@
-//! What serde complains about, in words for people.
+//! Says for people what serde complains about.
 
 use crate::diagnostic::Diagnostic;
 use crate::nearest;
@@ -11,11 +11,11 @@ pub(super) enum Complaint {
     UnknownKey { key: String, allowed: Vec<String> },
     /// A key that has to stand there.
     MissingKey(String),
-    /// A value of another kind, what is allowed in words, and a kind that fits.
+    /// A value of a wrong kind, with the allowed kinds in words, and one kind that fits.
     WrongKind { allowed: String, expected: Kind },
 }
 
-/// Keys of other descriptions of frames, the key that says it here, and what to write.
+/// Keys of other description formats, our key for the same, and what to write.
 const ELSEWHERE: [(&str, &str, &str); 11] = [
     ("signed", "as", "write `as: signed`;"),
     ("factor", "scale", "did you mean `scale`?"),
@@ -60,7 +60,7 @@ impl Complaint {
         Self::WrongKind { allowed: allowed.to_owned(), expected }
     }
 
-    /// Says it with its place.
+    /// Makes a diagnostic with a place.
     pub(super) fn report(&self, path: &Path, tree: &Node) -> Diagnostic {
         match self {
             Self::UnknownKey { key, allowed } => unknown_key(path, key, allowed),
@@ -80,7 +80,7 @@ fn unknown_key(path: &Path, key: &str, allowed: &[String]) -> Diagnostic {
     Diagnostic::error(&rules::UNKNOWN_KEY, path.at_key(), format!("unknown key `{key}`")).help(help)
 }
 
-/// Says how to write what other descriptions of frames have a key of their own for.
+/// Says how to write a key of another description format.
 fn said_otherwise(key: &str, allowed: &[String]) -> Option<String> {
     let known = ELSEWHERE.iter().find(|(word, of, _)| *word == key && allowed.iter().any(|key| key == of));
     known.map(|(_, _, help)| (*help).to_owned())

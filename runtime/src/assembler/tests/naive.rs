@@ -90,7 +90,7 @@ impl Story {
     }
 }
 
-/// What an assembler with room for so many nodes knows.
+/// What an assembler with room for `room` nodes knows.
 pub struct Naive {
     pub stories: BTreeMap<i32, Story>,
     pub room: usize,

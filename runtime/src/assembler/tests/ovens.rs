@@ -152,7 +152,7 @@ impl FrameSet for All {
     }
 }
 
-/// The two values of a smaller set, of which byte 3 says whether more follow.
+/// The two values of a smaller set, whose byte 3 says whether more follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pair(pub [Option<u16>; 2]);
 

@@ -1,11 +1,11 @@
-//! Values behind what they are assigned to.
+//! Values that are assigned.
 
 use syn::Expr;
 
 use super::flat::flat;
 use super::shape::{Shape, breaks, first_line, is_broken, line_break, width};
 
-/// Lays out a value behind what stands before it, on the same line or on the next one; `after` columns follow.
+/// Lays out a value after `before`, on the same line or the next one. `after` columns follow.
 pub fn assigned(before: &str, value: &Expr, line: Shape, after: usize) -> Option<String> {
     let same = Shape { column: width(before) + 1, ..line }.keeping(after).rewrite(value);
     if let Some(same) = same.as_ref().filter(|same| !is_broken(same)) {
@@ -22,7 +22,7 @@ pub fn assigned(before: &str, value: &Expr, line: Shape, after: usize) -> Option
     }
 }
 
-/// Tests whether a broken text is better begun on a line of its own.
+/// Tests whether a broken text looks better if it begins on a line of its own.
 pub fn is_better_below(same: &str, below: &str) -> bool {
     let opens = |text: &str, bracket| first_line(text).ends_with(bracket);
     !is_broken(below)

@@ -29,7 +29,7 @@ pub fn broken(before: &str, brackets: [char; 2], items: &Punctuated<Expr, Token!
     Some(format!("{before}{open}{start}{lines},{end}{close}"))
 }
 
-/// Breaks the last item alone.
+/// Breaks only the last item.
 fn last_broken(before: &str, items: &[&Expr], inside: Shape, outer: Shape) -> Option<String> {
     let (last, others) = items.split_last()?;
     let joins = items.len() == 1 && width(before) < STEP;

@@ -5,17 +5,17 @@ use syn::Expr;
 /// The longest line.
 pub const LONGEST: usize = 120;
 
-/// How far a block or what is in brackets is indented.
+/// How far the content of a block or of brackets is indented.
 pub const STEP: usize = 4;
 
 /// The place where an expression begins.
 #[derive(Clone, Copy)]
 pub struct Shape {
-    /// How far the line is indented on which it ends, and those in between at least.
+    /// Indentation of its last line, and least indentation of the lines before.
     pub indent: usize,
     /// The column in which it begins.
     pub column: usize,
-    /// How many columns are kept for what follows it.
+    /// Number of columns that are kept for the text after it.
     pub after: usize,
     /// Whether the links of chains must stay on one line.
     pub keeps_chains: bool,
@@ -44,7 +44,7 @@ impl Shape {
         Self { column: self.column + columns, ..self }
     }
 
-    /// Returns the place where some more columns are kept for what follows.
+    /// Returns the same place with more columns kept for the text after it.
     pub fn keeping(self, columns: usize) -> Self {
         Self { after: self.after + columns, ..self }
     }
@@ -71,7 +71,7 @@ pub fn first_line(text: &str) -> &str {
     text.lines().next().unwrap_or("")
 }
 
-/// Returns the line break before a line that is indented so far.
+/// Returns the line break before a line with this indentation.
 pub fn line_break(indent: usize) -> String {
     format!("\n{}", " ".repeat(indent))
 }

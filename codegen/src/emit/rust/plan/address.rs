@@ -24,7 +24,7 @@ pub struct AddressType {
     pub offset: Option<TokenStream>,
     /// Whether numbers fall as raw values rise.
     pub descending: bool,
-    /// Whether a number outside the range is something else.
+    /// Whether a number outside the range is no such address.
     pub strict: bool,
     /// The number that is sent unless the caller says otherwise.
     pub send: Option<TokenStream>,
@@ -58,7 +58,7 @@ pub struct Address {
     pub place: Ident,
     /// Constant of the kind of address.
     pub kind: Ident,
-    /// First and last raw value of the ranges that belong to somebody else.
+    /// First and last raw value of the ranges that are no such address.
     pub excluded: Vec<(TokenStream, TokenStream)>,
 }
 

@@ -16,7 +16,7 @@ pub struct Comment {
 }
 
 impl Comment {
-    /// Makes a comment of paragraphs.
+    /// Makes a comment of paragraphs, with an empty line between two of them, but none where a [`list`] begins.
     pub fn new(paragraphs: impl IntoIterator<Item = String>) -> Self {
         let mut lines: Vec<String> = Vec::new();
         for paragraph in paragraphs {
@@ -46,7 +46,7 @@ impl ToTokens for Comment {
     }
 }
 
-/// Returns the paragraphs of an item's comment; what the outer item says already is not repeated.
+/// Returns the paragraphs of an item's comment, without what the outer item says already.
 pub fn paragraphs(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> Vec<String> {
     let section =
         doc.section.as_ref().filter(|section| outer.is_none_or(|outer| outer.section.as_ref() != Some(section)));
@@ -73,17 +73,17 @@ fn erratum(protocol: &Protocol, name: &Text) -> Option<String> {
     Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\"")))
 }
 
-/// Returns what an item is called, for people.
+/// Returns the title of an item, for people.
 pub fn title(doc: &Doc, name: &str) -> String {
     doc.title.as_ref().map_or_else(|| name.replace('_', " "), Text::in_rust_doc)
 }
 
-/// Returns what an item is called, for a string.
+/// Returns the title of an item, for a string.
 pub fn plain_title(doc: &Doc, name: &str) -> String {
     doc.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.as_rust_str().to_owned())
 }
 
-/// Begins with a capital and ends with a full stop.
+/// Returns a text with a capital letter at its start and a full stop at its end.
 pub fn sentence_of(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();
@@ -110,6 +110,8 @@ fn wrapped(paragraph: &str) -> Vec<String> {
 
 /// Tests for marks of Markdown at the start of a line, which count in the midst of code as well.
 fn begins_block(word: &str) -> bool {
+///
+/// The further lines of an item of a list are indented.
     let numbered = word.trim_end_matches(['.', ')']);
     let is_number = numbered.len() < word.len() && numbered.bytes().all(|byte| byte.is_ascii_digit());
     is_number || word.starts_with(|mark: char| mark.is_ascii_punctuation() && !"\\`\"'(".contains(mark))

@@ -23,9 +23,9 @@ pub struct WordTypes<'a> {
 pub struct Coding {
     /// Type of the raw value.
     pub raw: TokenStream,
-    /// Whether the value is calculated from the raw one.
+    /// Whether the value is calculated from the raw value.
     pub is_scaled: bool,
-    /// Whether the value can be an infinity or no number.
+    /// Whether the value can be infinite or NaN.
     pub is_float: bool,
     /// Numerator and denominator of the step, unless it is 1.
     pub scale: Option<[TokenStream; 2]>,
@@ -40,7 +40,7 @@ pub struct Coding {
 }
 
 impl Coding {
-    /// Returns what a signal is in Rust.
+    /// Returns how a signal looks in Rust.
     pub fn new(protocol: &Protocol, words: &WordTypes, signal: &Signal) -> Self {
         let width = signal.place.width();
         match &signal.encoding {
@@ -67,7 +67,7 @@ impl Coding {
         }
     }
 
-    /// Returns what is read and written as it is.
+    /// Returns the coding of a value that is its raw value.
     fn raw(raw: TokenStream) -> Self {
         Self {
             raw,
@@ -81,7 +81,7 @@ impl Coding {
         }
     }
 
-    /// Returns what has a type of its own.
+    /// Returns the coding of a value with a type of its own.
     fn named(name: &Ident, doc: &Doc) -> Self {
         Self { documented: Some(doc.path.clone()), ..Self::raw(quote!(#name)) }
     }
@@ -139,7 +139,7 @@ pub enum Limits {
     Double,
 }
 
-/// Tests whether limits can be raw values; if there are none, any unscaled number is one.
+/// Tests whether limits can be raw values. Without limits, any unscaled number passes.
 fn is_compared_raw(signal: &Signal) -> bool {
     whole(signal).is_some() || signal.encoding.is_unscaled() && signal.ranges().next().is_none()
 }
@@ -206,7 +206,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// Returns what a part is in Rust.
+    /// Returns how a part looks in Rust.
     pub fn new(part: &Signal) -> Self {
         let width = part.place.width();
         if part.encoding.is_text() {

@@ -11,11 +11,11 @@ use crate::model::{
     AccessId, Answers, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
 };
 
-/// What messages share of each access, and which of it each message has.
+/// The shared parts of accesses, and the part that each message uses.
 pub struct Accesses {
     /// What they share.
     pub shared: Vec<Access>,
-    /// The constant of what each message has, by its exchanges.
+    /// The constants of the parts that each message uses, by exchange.
     constants: Table<MessageId, Table<ExchangeId, Ident>>,
 }
 
@@ -33,7 +33,7 @@ pub struct Access {
     pub has_values: bool,
     /// The set whose members the messages are.
     pub member_of: Option<String>,
-    /// The method that adds a kind of frame, and what such frames show.
+    /// The methods that add kinds of frames, and what such frames show.
     pub frames: Vec<(Ident, Filter)>,
 }
 
@@ -43,7 +43,7 @@ pub struct Exchange {
     pub constant: Ident,
     /// Comment of the constant.
     pub comment: Comment,
-    /// The constant of what it shares with others.
+    /// The constant of the part that it shares with others.
     pub shared: Ident,
     /// The message's name in the spec.
     pub message: String,
@@ -55,7 +55,7 @@ pub struct Exchange {
     pub length: Option<TokenStream>,
     /// Variants of the only device models that have it; empty if all have.
     pub models: Vec<Ident>,
-    /// What the frame shows that refuses its request.
+    /// What a frame that refuses its request shows.
     pub refusal: Option<Filter>,
 }
 
@@ -78,7 +78,7 @@ struct Shown {
 }
 
 impl Accesses {
-    /// Plans what messages share.
+    /// Plans the parts that messages share.
     pub fn new(protocol: &Protocol, selectors: &Selectors, constants: &mut Pool) -> Self {
         let ways = ways(protocol, constants);
         let constant = |message: &Message, id: ExchangeId| {
@@ -92,7 +92,7 @@ impl Accesses {
         Self { shared, constants }
     }
 
-    /// Returns the constant of what a message shares with others.
+    /// Returns the constant of the part that a message shares with others.
     pub fn constant(&self, message: MessageId, exchange: ExchangeId) -> &Ident {
         &self.constants[message][exchange]
     }
@@ -142,7 +142,7 @@ impl Shown {
         }
     }
 
-    /// Returns what every reply of a set shows, if the message is one.
+    /// Returns what every reply of the message shows, if it is a set.
     fn whole(message: &Message) -> Option<Self> {
         let constants = message.set.as_ref()?.replies.clone();
         let payload = constants.iter().filter(|constant| constant.in_payload().is_some());
@@ -173,7 +173,7 @@ impl Access {
     }
 }
 
-/// Says by which constants one way to use an access differs from the others.
+/// Names the constants by which one way to use an access differs from the others.
 fn shows(protocol: &Protocol, frames: &[Shown]) -> String {
     let facts = frames.iter().flat_map(|frame| {
         let facts = frame.constants.iter().map(|Constant { selector, value, .. }| {

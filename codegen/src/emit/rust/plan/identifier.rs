@@ -17,7 +17,7 @@ pub struct Identifier {
     pub fields: Vec<Field>,
     /// The fixed bits that are no field and are 1.
     pub ones: Option<TokenStream>,
-    /// How it shows that it is somebody else's, if it can.
+    /// How it shows that it belongs to another device, if it can.
     pub foreign: Option<Test>,
     /// How it shows that a frame goes to a module.
     pub to_module: Test,
@@ -43,7 +43,7 @@ pub struct Field {
 
 /// What every frame shows.
 pub struct Base {
-    /// 29 bits rather than 11.
+    /// Whether it has 29 bits, not 11.
     pub extended: bool,
     /// Mask and value of the fixed bits that are no field.
     pub bits: Option<(TokenStream, TokenStream)>,
@@ -55,7 +55,7 @@ pub struct Base {
     pub normal: Vec<(Ident, TokenStream)>,
 }
 
-/// A test of an identifier: all tests of one of these lists hold.
+/// A test of an identifier. It holds if all tests of one list hold.
 #[derive(Default)]
 pub struct Test {
     /// The lists.
@@ -73,7 +73,7 @@ impl Test {
 pub struct Comparison {
     /// Place of the field; `None` for the identifier as a whole.
     pub place: Option<Ident>,
-    /// Whether the value lies in one of the ranges, rather than in none.
+    /// Whether the value must lie in one of the ranges, or else in none.
     pub inside: bool,
     /// First and last value of each.
     pub ranges: Vec<Range>,

@@ -17,9 +17,9 @@ use crate::model::{self, ExchangeId, FrameLayout, Kind, MessageId, SignalId, Tab
 pub struct Message {
     /// The struct of its own.
     pub home: Ident,
-    /// First paragraphs of the comment of its structs.
+    /// First paragraphs of the comment of its own struct.
     pub paragraphs: Vec<String>,
-    /// What it is called in the list of all messages.
+    /// Its title in the list of all messages.
     pub title: String,
     /// The selectors that choose it, and their values.
     pub constants: Vec<(String, TokenStream)>,
@@ -47,7 +47,7 @@ pub struct Struct {
     pub reserved: Option<TokenStream>,
     /// The methods that build requests.
     pub requests: Vec<Request>,
-    /// What it becomes within the limits of a device model.
+    /// The values within the limits of a device model.
     pub within: Option<Within>,
 }
 
@@ -60,7 +60,7 @@ pub struct Request {
     pub comment: Comment,
     /// The path of the exchange.
     pub exchange: TokenStream,
-    /// Type of what replies carry.
+    /// Type of the replies' values.
     pub reply: TokenStream,
     /// Whether the request carries the values of the struct.
     pub carries: bool,
@@ -76,7 +76,7 @@ pub struct Within {
 
 /// What messages are planned from.
 pub struct Planner<'a> {
-    /// Of what signals are planned.
+    /// The context of signals.
     pub context: &'a Context<'a>,
     /// Selectors.
     pub selectors: &'a Selectors,
@@ -187,7 +187,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Describes a method; what holds for all messages stands at the access.
+    /// Describes a method. The access describes what holds for all messages.
     fn request_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> Vec<String> {
         let protocol = self.context.protocol;
         let shared = self.accesses.constant(frame.message, frame.exchange);

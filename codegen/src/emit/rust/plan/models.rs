@@ -21,7 +21,7 @@ pub struct Models {
     sources: Vec<Source>,
 }
 
-/// What limits are made of: the ranges, and the type of those that are integers.
+/// The source of limits: the ranges, and the integer type of those that are integers.
 #[derive(PartialEq)]
 struct Source {
     ranges: Table<ModelId, Option<Range>>,

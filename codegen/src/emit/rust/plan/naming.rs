@@ -1,4 +1,4 @@
-//! Rust names for the names of a spec; two items never get the same one.
+//! Rust names for the names of a spec. Two items never get the same name.
 
 use std::collections::BTreeSet;
 
@@ -106,7 +106,7 @@ const OF_MESSAGES: [&str; 13] = [
     "borrow",
 ];
 
-/// Gives every name once.
+/// A pool that gives every name only once.
 #[derive(Default)]
 pub struct Pool {
     taken: BTreeSet<String>,
@@ -133,12 +133,12 @@ impl Pool {
         Self { taken: taken.collect() }
     }
 
-    /// Takes the name of a constant for a name of the spec, which can differ from another in case alone.
+    /// Takes the name of a constant. Names of the spec can differ only in case.
     pub fn constant(&mut self, name: &str) -> Ident {
         self.take(name.to_ascii_uppercase(), "_")
     }
 
-    /// Takes a name, with the suffix if it is taken already, and with as many more as it needs.
+    /// Takes a name. If it is taken already, it gets as many suffixes as it needs.
     pub fn take(&mut self, name: String, suffix: &str) -> Ident {
         let mut name = name;
         while self.taken.contains(&name) {
@@ -149,13 +149,13 @@ impl Pool {
     }
 }
 
-/// Tests whether a name is a word of the language, so that nothing can be called so.
+/// Tests whether a name is a keyword of Rust.
 pub fn is_word_of_rust(name: &str) -> bool {
     // `syn` does not know this one, because the edition decides.
     name == "gen" || syn::parse_str::<Ident>(name).is_err()
 }
 
-/// Makes an identifier; a word of the language becomes a raw identifier.
+/// Makes an identifier. A keyword of Rust becomes a raw identifier.
 pub fn ident(name: &str) -> Ident {
     match name {
         "self" | "super" | "crate" | "Self" | "_" => Ident::new(&format!("{name}_"), Span::call_site()),
@@ -180,7 +180,8 @@ pub fn variants<'a>(names: impl Iterator<Item = &'a str>) -> (Vec<Ident>, Ident)
     (variants, pool.take("Unknown".to_owned(), "Value"))
 }
 
-/// Names the variant of a device model, `SM_750_30A` as `Sm750_30a`: `_` stays between two digits alone.
+/// Names the variant of a device model, `SM_750_30A` as `Sm750_30a`. Only between two digits `_`
+/// stays.
 pub fn model_variant(name: &str) -> String {
     let words = name.split('_').filter(|word| !word.is_empty());
     words.fold(String::new(), |known, word| {
@@ -196,7 +197,7 @@ pub fn screaming(name: &str) -> Ident {
     ident(&name.to_ascii_uppercase())
 }
 
-/// Names the member of a signal: with the unit behind it, if there is one.
+/// Names the member of a signal, with its unit as the ending.
 pub fn member(signal: &Signal) -> String {
     signal.unit.map_or_else(|| signal.name.clone(), |unit| format!("{}_{}", signal.name, unit.suffix))
 }

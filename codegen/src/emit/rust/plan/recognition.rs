@@ -19,17 +19,17 @@ pub struct Direction {
 
 /// A choice by the constants of selectors.
 pub struct Cases<T> {
-    /// What is so where constants hold; the first one that fits is meant.
+    /// The outcomes of constants that hold. The first one that fits counts.
     pub arms: Vec<Arm<T>>,
-    /// What is so for all other frames.
+    /// The outcome of all other frames.
     pub rest: Option<T>,
 }
 
-/// What a frame is that shows some constants.
+/// The meaning of a frame with some constants.
 pub struct Outcome {
     /// The kinds of frames, which are told apart by length, model and addresses.
     pub frames: Vec<Recognised>,
-    /// What is read to tell.
+    /// What is read to tell them apart.
     pub reads: Reads,
 }
 
@@ -47,7 +47,7 @@ pub struct Recognised {
     pub carries: bool,
 }
 
-/// What code reads of a frame, and of what is known of the device.
+/// What code reads: parts of the frame, and the device model.
 #[derive(Clone, Copy, Default)]
 pub struct Reads {
     /// The identifier.
@@ -59,7 +59,7 @@ pub struct Reads {
 }
 
 impl Reads {
-    /// Returns what two pieces of code read.
+    /// Returns what two pieces of code read together.
     pub fn or(self, other: Self) -> Self {
         Self { id: self.id || other.id, data: self.data || other.data, model: self.model || other.model }
     }

@@ -1,4 +1,4 @@
-//! The plan of recognition as rows of a `match`: what a frame must show, and what it is then.
+//! The plan of recognition as rows of a `match`: what a frame must show, and its meaning then.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use crate::model::{Constant, Course, FrameId, Protocol, SelectorId};
 /// Selectors and the values they must have.
 pub type Constants = BTreeMap<SelectorId, u64>;
 
-/// What frames with some constants are.
+/// The meaning of frames with some constants.
 pub struct Row<T> {
     pub constants: Constants,
     pub outcome: T,
@@ -16,15 +16,16 @@ pub struct Row<T> {
     own: Option<FrameId>,
 }
 
-/// Returns the kinds of frames by their constants. A row comes before those whose constants it contains, so that the
-/// first one that fits a frame is all that the frame shows.
+/// Returns the kinds of frames by their constants. A row comes before those whose constants it
+/// contains. So the first row that fits a frame has all constants that the frame shows.
 pub fn rows(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<FrameId>>> {
     let groups = course.choice.iter().flat_map(|choice| choice.ends());
     let frames = groups.flat_map(|group| group.choice.iter().flat_map(|choice| choice.ends()));
     in_order(frames.map(|frames| row(protocol, frames, |_| true, frames.clone())))
 }
 
-/// Returns the lengths of frames, the shortest first, by their constants in the identifier, in the same order.
+/// Returns the lengths of frames by their constants in the identifier, in the same order. The
+/// shortest length comes first.
 fn all_lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
     let groups = course.choice.iter().flat_map(|choice| choice.ends());
     in_order(groups.map(|group| {
@@ -47,15 +48,15 @@ pub fn lengths(protocol: &Protocol, course: &Course) -> Vec<Row<Vec<u8>>> {
     measured
 }
 
-/// What is so where one of these sets of constants holds.
+/// The outcome of frames with one of these sets of constants.
 pub struct Arm<T> {
     /// The sets.
     pub sets: Vec<Constants>,
-    /// What is so.
+    /// The outcome.
     pub outcome: T,
 }
 
-/// Joins rows with the same outcome, where no row between them holds for the same frame.
+/// Joins rows with the same outcome, unless a row between them can hold for the same frame.
 pub fn joined<T: PartialEq>(rows: Vec<Row<T>>) -> Vec<Arm<T>> {
     let mut joined: Vec<Arm<T>> = Vec::new();
     for row in rows {
@@ -69,7 +70,7 @@ pub fn joined<T: PartialEq>(rows: Vec<Row<T>>) -> Vec<Arm<T>> {
     joined
 }
 
-/// Makes a row of what frames show between them.
+/// Makes a row from the constants that frames show.
 fn row<T>(protocol: &Protocol, frames: &[FrameId], shows: impl Fn(&Constant) -> bool, outcome: T) -> Row<T> {
     let constants = |frame: &FrameId| -> Constants {
         let known = protocol[*frame].constants.iter().filter(|constant| shows(constant));
@@ -89,7 +90,7 @@ fn in_order<T>(rows: impl Iterator<Item = Row<T>>) -> Vec<Row<T>> {
     once.into_values().collect()
 }
 
-/// Tests whether whatever shows the one set of constants shows the other one too.
+/// Tests whether every frame with the first set of constants also has the other.
 fn implies(set: &Constants, other: &Constants) -> bool {
     other.iter().all(|(selector, value)| set.get(selector) == Some(value))
 }

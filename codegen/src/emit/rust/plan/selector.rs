@@ -17,11 +17,11 @@ pub enum Source {
     Data(Ident),
 }
 
-/// A selector as frames are told apart by it.
+/// A selector that tells frames apart.
 pub struct Selector {
     /// What is read.
     pub source: Source,
-    /// Where it stands among others: fields of the identifier come first.
+    /// Its rank among others. Fields of the identifier come first.
     pub rank: (Option<SelectorId>, Option<FieldId>),
     width: u8,
 }
@@ -54,7 +54,7 @@ pub fn selectors(protocol: &Protocol, constants: &mut Pool) -> Selectors {
     protocol.selectors.ids().map(|id| Selector::new(protocol, id, constants)).collect()
 }
 
-/// Names a payload selector's constant; two places under one name are told apart by number.
+/// Names a payload selector's constant. Numbers tell two places under one name apart.
 fn constant(protocol: &Protocol, id: SelectorId, constants: &mut Pool) -> Ident {
     let name = &protocol[id].name;
     let earlier = protocol.selectors.entries().take_while(|(other, _)| *other < id);
@@ -73,7 +73,7 @@ pub struct InData {
     pub name: String,
     /// Where it stands.
     pub place: Written,
-    /// The value of a reply that is no error reply.
+    /// The value of a reply that reports no error.
     pub normal: Option<TokenStream>,
 }
 
@@ -102,7 +102,7 @@ impl InData {
     }
 }
 
-/// What some frames show beside what all do.
+/// What some frames show beside what all frames show.
 pub struct Filter {
     /// The constants of the selectors that they have in the data.
     pub selectors: Vec<Ident>,

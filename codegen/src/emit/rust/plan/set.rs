@@ -55,7 +55,7 @@ pub struct Assembly {
     pub exchange: Ident,
     /// Constant of the kind of address that shows who sends a reply.
     pub node: Ident,
-    /// The pattern of what frames can carry beside the members: none, the only one, or `_`.
+    /// The pattern for messages beside the members: none, the only one, or `_`.
     pub others: Option<TokenStream>,
 }
 
@@ -69,7 +69,7 @@ struct Planner<'a> {
 }
 
 impl Set {
-    /// Plans the set that a message is, if it is one.
+    /// Plans the set of a message, if it is one.
     pub fn new(
         protocol: &Protocol,
         types: &Types,

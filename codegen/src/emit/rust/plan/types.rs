@@ -1,4 +1,4 @@
-//! The types of a module, each with a name of its own, and what each frame carries.
+//! The types of a module, each with its own name, and the type that each frame carries.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -17,9 +17,10 @@ pub struct Types {
     pub status_words: Table<StatusWordId, Ident>,
     /// Packed values of messages.
     pub packed: Table<MessageId, Table<SignalId, Option<Ident>>>,
-    /// Structs of messages: one for each set of signals that some frame carries; the first one is the message's own.
+    /// Structs of messages, one for each set of signals that some frame carries. The first one is
+    /// the message's own.
     pub structs: Table<MessageId, Vec<Struct>>,
-    /// What frames are in the enum of all messages.
+    /// How frames look in the enum of all messages.
     pub frames: Table<FrameId, FrameTypes>,
 }
 
@@ -31,7 +32,7 @@ pub struct Struct {
     pub signals: Vec<SignalId>,
 }
 
-/// What a kind of frame is in the enum of all messages.
+/// How a kind of frame looks in the enum of all messages.
 pub struct FrameTypes {
     /// Its variant.
     pub variant: Ident,
@@ -54,12 +55,12 @@ impl Types {
         Self { enumerations, status_words, packed, structs, frames }
     }
 
-    /// Returns the struct of a message's own.
+    /// Returns the message's own struct.
     pub fn home(&self, message: MessageId) -> &Ident {
         &self.structs[message][0].name
     }
 
-    /// Returns the types of words as a signal has them.
+    /// Returns the types of a signal's words.
     pub fn words(&self, message: MessageId, signal: SignalId) -> WordTypes<'_> {
         let packed = self.packed[message][signal].as_ref();
         WordTypes { enumerations: &self.enumerations, statuses: &self.status_words, packed }
@@ -72,7 +73,8 @@ impl Types {
     }
 }
 
-/// Names a struct for each set of signals, the largest first; a message without signals has an empty struct.
+/// Names a struct for each set of signals, the largest first. A message without signals has an
+/// empty struct.
 fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Struct> {
     let mut sets: Vec<&FrameLayout> = Vec::new();
     for frame in protocol.frames_of(message) {

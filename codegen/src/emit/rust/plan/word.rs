@@ -21,7 +21,7 @@ pub struct Enumeration {
     pub raw: TokenStream,
     /// The values that have names.
     pub values: Vec<Value>,
-    /// Variant of the others.
+    /// Variant of the other values.
     pub unknown: Ident,
 }
 
@@ -81,7 +81,7 @@ pub struct StatusBit {
     pub constant: Ident,
     /// Comment of the constant.
     pub comment: Comment,
-    /// The word in which it alone is set.
+    /// The word with only this bit set.
     pub mask: TokenStream,
     /// The function that makes its row of the legend.
     pub constructor: Ident,
@@ -89,7 +89,7 @@ pub struct StatusBit {
     pub number: Literal,
     /// The name in the spec.
     pub name: String,
-    /// What it is called.
+    /// Its title.
     pub title: String,
 }
 
@@ -154,7 +154,7 @@ pub struct Packed {
     pub bytes: Literal,
     /// Its parts.
     pub parts: Vec<PackedPart>,
-    /// What its text consists of.
+    /// The pieces of its text.
     pub pieces: Vec<Piece>,
 }
 
