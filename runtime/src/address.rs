@@ -48,14 +48,14 @@ impl AddressType {
 
     /// Returns the number that a field value stands for.
     pub const fn number(&self, raw: u32) -> i32 {
-        let raw = raw.cast_signed();
+        let raw = raw as i32;
         self.offset.wrapping_add(if self.descending { raw.wrapping_neg() } else { raw })
     }
 
     /// Returns the field value that stands for a number.
     pub const fn raw(&self, number: i32) -> u32 {
         let raw = number.wrapping_sub(self.offset);
-        (if self.descending { raw.wrapping_neg() } else { raw }).cast_unsigned()
+        (if self.descending { raw.wrapping_neg() } else { raw }) as u32
     }
 
     /// Tests whether the document names this number.

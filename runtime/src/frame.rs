@@ -20,7 +20,7 @@ impl Frame {
     pub const fn new_raw(id: u32, extended: bool, data: Data, length: u8) -> Self {
         let id = id & if extended { 0x1FFF_FFFF } else { 0x7FF };
         let length = if length < 8 { length } else { 8 };
-        let kept = u64::MAX.unbounded_shl(64 - 8 * length as u32);
+        let kept = if length == 0 { 0 } else { u64::MAX << (64 - 8 * length) };
         Self { id, extended, length, data: (u64::from_be_bytes(data) & kept).to_be_bytes() }
     }
 

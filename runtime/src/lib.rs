@@ -16,6 +16,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
+#![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "`cast_signed` is newer than Rust 1.85")]
 
 #[cfg(test)]
 extern crate std;

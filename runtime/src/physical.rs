@@ -157,7 +157,7 @@ macro_rules! scaled {
             #[inline]
             fn of(raw: R, scale: Option<Scale>) -> Self {
                 match scale {
-                    Some(scale) => Scaled::scaled(raw.to_bits().cast_signed(), scale),
+                    Some(scale) => Scaled::scaled(raw.to_bits() as i64, scale),
                     None => Scaled::nearest(raw.number()),
                 }
             }

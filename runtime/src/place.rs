@@ -75,7 +75,7 @@ impl Bits {
     #[inline]
     pub const fn get_signed(self, word: u64) -> i64 {
         let unused = 64_u32.wrapping_sub(self.width as u32);
-        self.get(word).wrapping_shl(unused).cast_signed().wrapping_shr(unused)
+        (self.get(word).wrapping_shl(unused) as i64).wrapping_shr(unused)
     }
 
     /// Returns `word` with these bits replaced by the low bits of `raw`.
@@ -220,7 +220,7 @@ impl Place {
     /// Returns the raw value at this place.
     #[inline]
     pub fn read<R: Raw>(self, data: &Data) -> R {
-        R::from_bits(if R::SIGNED { self.get_signed(data).cast_unsigned() } else { self.get(data) })
+        R::from_bits(if R::SIGNED { self.get_signed(data) as u64 } else { self.get(data) })
     }
 
     /// Writes the low bits of a raw value to this place, and does not change other bits.

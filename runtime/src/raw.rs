@@ -36,7 +36,7 @@ pub trait Raw: Copy + 'static {
     /// Returns the bits of an integer, or `None` if it has none. They can be more than the place
     /// holds.
     fn bits_of(integer: i64) -> Option<u64> {
-        (Self::SIGNED || integer >= 0).then_some(integer.cast_unsigned())
+        (Self::SIGNED || integer >= 0).then_some(integer as u64)
     }
 
     /// Returns the bits of the least and the greatest number at a place. `all` has all bits of the
@@ -48,7 +48,7 @@ pub trait Raw: Copy + 'static {
 
     /// Returns the number that limits apply to: the integer, or the float.
     fn number(self) -> Number {
-        if Self::SIGNED { Number::Signed(self.to_bits().cast_signed()) } else { Number::Unsigned(self.to_bits()) }
+        if Self::SIGNED { Number::Signed(self.to_bits() as i64) } else { Number::Unsigned(self.to_bits()) }
     }
 
     /// Tests whether this is a finite number.
@@ -60,7 +60,7 @@ pub trait Raw: Copy + 'static {
     fn is_within(self, minimum: Self, maximum: Self) -> bool {
         let [value, minimum, maximum] = [self, minimum, maximum].map(Self::to_bits);
         if Self::SIGNED {
-            (minimum.cast_signed()..=maximum.cast_signed()).contains(&value.cast_signed())
+            (minimum as i64..=maximum as i64).contains(&(value as i64))
         } else {
             (minimum..=maximum).contains(&value)
         }
@@ -157,11 +157,11 @@ macro_rules! signed {
             #[expect(clippy::allow_attributes, reason = "not every width truncates")]
             #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
             fn from_bits(bits: u64) -> Self {
-                bits.cast_signed() as Self
+                bits as Self
             }
 
             fn to_bits(self) -> u64 {
-                i64::from(self).cast_unsigned()
+                i64::from(self) as u64
             }
 
             fn meaning(&self) -> Meaning<'_> {

@@ -401,9 +401,8 @@ impl<P: Protocol, R> Request<P, R> {
         R: Layout,
     {
         let filter = self.built.replies.filter()?;
-        if let Some(refusal) = self.refusal()
-            && let Some(frame) = answer::<P>(refusal, frame)
-        {
+        let refused = self.refusal().and_then(|refusal| Some((refusal, answer::<P>(refusal, frame)?)));
+        if let Some((refusal, frame)) = refused {
             return Some(Reply::refused(refusal.data_selectors(), frame));
         }
         let frame = answer::<P>(filter, frame)?;

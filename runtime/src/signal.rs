@@ -119,7 +119,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     fn bits(&self, data: Data) -> u64 {
-        if R::SIGNED { self.place.get_signed(&data).cast_unsigned() } else { self.place.get(&data) }
+        if R::SIGNED { self.place.get_signed(&data) as u64 } else { self.place.get(&data) }
     }
 
     /// Writes bits if they can be read back unchanged.
@@ -187,7 +187,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Returns the name of a special raw value.
     fn special(&self, bits: u64) -> Option<&'static str> {
-        self.specials.iter().find(|(raw, _)| raw.cast_unsigned() == bits).map(|(_, name)| *name)
+        self.specials.iter().find(|(raw, _)| *raw as u64 == bits).map(|(_, name)| *name)
     }
 
     const fn exact_scale(&self) -> Scale {
@@ -214,7 +214,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
 
     /// Returns the physical value: the number of type `F` nearest to the exact one.
     pub fn decode(&self, data: &Data) -> F {
-        F::scaled(self.bits(*data).cast_signed(), self.exact_scale())
+        F::scaled(self.bits(*data) as i64, self.exact_scale())
     }
 
     /// Writes the raw value nearest to a physical value, with ties away from zero.

@@ -82,7 +82,7 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
             (None, Some(_)) => Meaning::Number(self.physical(value).number()),
             (None, None) => value.meaning(),
         };
-        let raw = if R::SIGNED { Number::Signed(bits.cast_signed()) } else { Number::Unsigned(bits) };
+        let raw = if R::SIGNED { Number::Signed(bits as i64) } else { Number::Unsigned(bits) };
         visitor(Reading { name: self.name, unit: self.unit, raw, meaning, is_of_error_reply: false });
     }
 }
@@ -100,10 +100,10 @@ pub trait WriteSignal: AnySignal {
 
 impl<R: Raw, F: Physical<R>> WriteSignal for Signal<R, F> {
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
-        if let Meaning::Number(number) = meaning
-            && R::IS_NUMBER
-        {
-            return F::write(self, number, payload);
+        if R::IS_NUMBER {
+            if let Meaning::Number(number) = meaning {
+                return F::write(self, number, payload);
+            }
         }
         let raw = self.special_value(meaning).or_else(|| R::from_meaning(meaning));
         raw.ok_or_else(|| self.meaningless(payload)).and_then(|raw| self.put(raw, payload))
@@ -115,7 +115,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     fn special_value(&self, meaning: Meaning<'_>) -> Option<R> {
         let Meaning::Name(wanted) = meaning else { return None };
         let special = self.specials.iter().find(|(_, name)| *name == wanted);
-        special.map(|(raw, _)| R::from_bits(raw.cast_unsigned()))
+        special.map(|(raw, _)| R::from_bits(*raw as u64))
     }
 
     /// Writes a number as its own raw value, or as the nearest one.
