@@ -12,15 +12,15 @@ use serde::Serialize;
 
 use crate::rule::Rule;
 pub use crate::rule::Severity;
-use crate::source::text::{Source, visible};
+use crate::source::Source;
 pub use crate::syntax::tree::At;
 use crate::syntax::tree::{Node, Path};
+use crate::text::Text;
 
 /// Most errors, and most warnings, that the later stages report of one spec.
 const MOST: usize = 1000;
 
 /// One thing that is wrong.
-#[derive(Clone, Debug, PartialEq, Eq)]
 ///
 /// What it says is clean, however it is made, so that nothing that it repeats of a spec begins a line:
 ///
@@ -29,23 +29,24 @@ const MOST: usize = 1000;
 /// diagnostic.help = Some(text);
 /// # }
 /// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// The rule that is broken.
     pub rule: &'static Rule,
     /// How bad it is.
     pub severity: Severity,
     /// One sentence in lower case without a full stop.
-    pub message: String,
+    pub message: Text,
     /// Where it is.
     pub at: At,
     /// What to say at that place.
-    pub label: Option<String>,
+    pub label: Option<Text>,
     /// Other places that have to do with it, and what to say there.
-    pub others: Vec<(At, String)>,
+    pub others: Vec<(At, Text)>,
     /// What to do about it.
-    pub help: Option<String>,
+    pub help: Option<Text>,
     /// What to write at the place, where that is certain.
-    pub replacement: Option<String>,
+    pub replacement: Option<Text>,
 }
 
 impl Diagnostic {
@@ -62,30 +63,36 @@ impl Diagnostic {
     /// Sets what to say at the place.
     #[must_use]
     pub fn label(self, text: impl Into<String>) -> Self {
-        Self { label: Some(visible(&text.into())), ..self }
+        Self { label: Some(Text::new(&text.into())), ..self }
     }
 
     /// Adds another place and what to say there.
     #[must_use]
     pub fn other(mut self, at: impl Into<At>, text: impl Into<String>) -> Self {
-        self.others.push((at.into(), visible(&text.into())));
+        self.others.push((at.into(), Text::new(&text.into())));
         self
     }
 
     /// Sets what to do about it.
     #[must_use]
     pub fn help(self, text: impl Into<String>) -> Self {
-        Self { help: Some(visible(&text.into())), ..self }
+        Self { help: Some(Text::new(&text.into())), ..self }
+    }
+
+    /// Sets what to do about it, if that is known.
+    #[must_use]
+    pub fn help_if(self, text: Option<String>) -> Self {
+        if let Some(text) = text { self.help(text) } else { self }
     }
 
     /// Sets what to write at the place.
     #[must_use]
     pub fn replacement(self, text: impl Into<String>) -> Self {
-        Self { replacement: Some(text.into()), ..self }
+        Self { replacement: Some(Text::new(&text.into())), ..self }
     }
 
     fn new(rule: &'static Rule, severity: Severity, at: At, message: &str) -> Self {
-        let message = visible(message);
+        let message = Text::new(message);
         Self { rule, severity, message, at, label: None, others: Vec::new(), help: None, replacement: None }
     }
 }
@@ -229,13 +236,17 @@ impl Diagnostics {
         Located {
             rule: item.rule.name,
             severity: item.severity,
-            message: &item.message,
+            message: item.message.for_people(),
             file: self.source.name(),
             place: self.place(&item.at),
-            label: item.label.as_deref(),
-            others: item.others.iter().map(|(at, text)| Other { place: self.place(at), text }).collect(),
-            help: item.help.as_deref(),
-            replacement: item.replacement.as_deref(),
+            label: item.label.as_ref().map(Text::for_people),
+            others: item
+                .others
+                .iter()
+                .map(|(at, text)| Other { place: self.place(at), text: text.for_people() })
+                .collect(),
+            help: item.help.as_ref().map(Text::for_people),
+            replacement: item.replacement.as_ref().map(Text::for_people),
         }
     }
 

@@ -57,8 +57,8 @@ fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagn
     });
     let Some((request, reply, field)) = common else {
         let text = "nothing in the identifier tells a request from a reply";
-        let help = "give one field a constant in `request` and another one in the replies; or, where the controller has \
-                    addresses that no module has, give their type `outside: refused`";
+        let help = "give one field different constants in requests and replies; \
+                    or, if no module has a controller's address, write `outside: refused` in the controller's type";
         let at = Path::default().key("addressing").at_key();
         return diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(help));
     };

@@ -164,7 +164,7 @@ impl<'a> Checker<'a> {
                 let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
                 contradicted(meaning.path.at_value(), text, field)
             };
-            return Err(Box::new(Diagnostic { help: unnamed_bits(&reading.value, &read), ..*diagnostic }));
+            return Err(Box::new(diagnostic.help_if(unnamed_bits(&reading.value, &read))));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {
@@ -344,7 +344,7 @@ fn contradicted(at: At, text: String, (other, what): (At, &str)) -> Box<Diagnost
 /// Says that a text is no value of its signal.
 fn no_value(meaning: &Meaning, misfit: &Misfit) -> Diagnostic {
     let Misfit { why, help } = misfit.clone();
-    Diagnostic { help, ..Diagnostic::error(&rules::VALUE, meaning.path.at_value(), why) }
+    Diagnostic::error(&rules::VALUE, meaning.path.at_value(), why).help_if(help)
 }
 
 /// Runs an example of a type, which has only bytes and their meaning.

@@ -19,7 +19,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     message.name, signal.name
                 );
                 let help =
-                    "take the range out, since what is read is not limited, or allow it with a reason in `allow`";
+                    "take the range out, because only values to send have limits, or allow it with a reason in `allow`";
                 diagnostics.push(Diagnostic::warning(&READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
             }
         }

@@ -41,8 +41,8 @@ fn complaint(protocol: &Protocol, message: &Message, refusal: &FrameLayout) -> O
         let text =
             format!("no message says why `{name}` is refused: none has a reply with {}", shown(protocol, refusal));
         let help = format!(
-            "write a message for the reason, with an access whose `reply` has the constants of this `refusal`; \
-             in its own `match` it has none but those of `{name}`"
+            "write a message for the reason, whose access has the constants of this `refusal` in its `reply`; \
+             its `match` has only constants of `{name}`"
         );
         (text, help)
     })

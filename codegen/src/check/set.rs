@@ -43,7 +43,7 @@ fn check_fields(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             "`{}` is sent as 0, as all of the header, so every frame would say that more follow",
             selector.name
         );
-        let help = "let a field of the identifier say it, or another value of `continues`";
+        let help = "use a field of the identifier, or another value of `continues`";
         let at = selector.doc.path.key("continues").at_value();
         diagnostics.push(Diagnostic::error(&rules::SET, at, text).help(help));
     }
@@ -77,7 +77,7 @@ impl Checker<'_> {
         let members = self.key("members");
         if protocol.continuation().is_none() {
             let text = format!("nothing says which frame of `{}` is the last", message.name);
-            let help = "give the field that says so its value for \"more frames follow\", \
+            let help = "give one field the key `continues`, the value that it has if more frames follow, \
                         as in `more: {bits: 0, continues: 1}`";
             diagnostics.push(wrong(members.at_value(), text).help(help));
         }
@@ -121,7 +121,7 @@ impl Checker<'_> {
         }
         let names: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
         let text = format!("the set `{set}` has `in: [{}]`, but the frames of a set are replies", names.join(", "));
-        let help = "write `in: [reply]`, or `in: [request, reply]` if it is asked for in as many frames";
+        let help = "write `in: [reply]`, or `in: [request, reply]` if each member has a request, too";
         Some(wrong(self.key("in").at_value(), text).help(help))
     }
 

@@ -35,9 +35,9 @@ fn without_mode(message: &Message) -> Diagnostic {
 
 fn claimed(message: &Message, foreign: &Foreign) -> Diagnostic {
     let text = format!("no frame is ever decoded as `{}`: all frames that it could have are foreign", message.name);
-    let help = "correct the constants of the message, or let the foreign identifiers leave it some";
+    let help = "correct the constants of the message, or narrow the foreign identifiers";
     let diagnostic = Diagnostic::error(&UNREACHABLE, message.doc.path.at_key(), text).help(help);
-    diagnostic.other(foreign.doc.path.key("match").at_key(), "this claims them first")
+    diagnostic.other(foreign.doc.path.key("match").at_key(), "this takes them first")
 }
 
 /// Finds the foreign identifiers that claim all frames of a kind in an addressing pattern.

@@ -6,6 +6,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet, Title};
 
 use super::{Diagnostic, Diagnostics, Severity};
+use crate::text::Text;
 
 /// Most bytes of the file in one excerpt.
 const EXCERPT_LIMIT: usize = 4096;
@@ -25,24 +26,25 @@ impl Diagnostics {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let title = level.primary_title(&item.message).id(item.rule.name);
+        let title = level.primary_title(item.message.for_people()).id(item.rule.name);
         let group = match self.span(&item.at) {
             Some(span) => self.excerpts(title, item, span),
             None => title.element(Origin::path(self.source.name())),
         };
         let placeless = item.others.iter().filter(|(at, _)| self.span(at).is_none());
         group
-            .elements(placeless.map(|(_, text)| Level::NOTE.message(text)))
-            .elements(item.help.iter().map(|help| Level::HELP.message(help)))
+            .elements(placeless.map(|(_, text)| Level::NOTE.message(text.for_people())))
+            .elements(item.help.iter().map(|help| Level::HELP.message(help.for_people())))
     }
 
     /// Draws the places that are close to each other in one excerpt, and each of the others in its own.
     fn excerpts<'a>(&'a self, title: Title<'a>, item: &'a Diagnostic, primary: Range<usize>) -> Group<'a> {
-        let others = item.others.iter().filter_map(|(at, text)| Some((self.span(at)?, text.as_str())));
+        let others = item.others.iter().filter_map(|(at, text)| Some((self.span(at)?, text.for_people())));
         let others = others.map(|(span, text)| (AnnotationKind::Context, span, Some(text)));
         let (near, far): (Vec<Mark>, Vec<Mark>) =
             others.partition(|(_, span, _)| distance(span, &primary) < EXCERPT_LIMIT);
-        let marks = iter::once((AnnotationKind::Primary, primary, item.label.as_deref())).chain(near);
+        let marks =
+            iter::once((AnnotationKind::Primary, primary, item.label.as_ref().map(Text::for_people))).chain(near);
         far.into_iter().fold(self.excerpt(marks.collect(), Group::with_title(title)), |group, mark| {
             self.excerpt(vec![mark], group)
         })

@@ -67,6 +67,6 @@ fn contradiction(measured: &Measured) -> Option<Diagnostic> {
     }
     let text = format!("`{name}` is in `{unit}`, but its {source} says {}", quantity.name);
     let units = quantity.units.join("`, `");
-    let help = format!("{} is in `{units}`: correct the unit, or say in name and title what it is", quantity.name);
+    let help = format!("{} is in `{units}`: correct the unit, or the name and the title", quantity.name);
     Some(Diagnostic::warning(&QUANTITY, path.at_value(), text).help(help))
 }

@@ -48,7 +48,7 @@ pub fn lint(tree: &Node, tables: &[Table]) -> Vec<Diagnostic> {
 
 fn mistyped(name: &Name, meant: &str) -> Diagnostic {
     let text = format!("`{}`: is `{meant}` meant?", name.text);
-    let help = format!("write `{meant}`; if `{}` is right, its `title` can say so", name.text);
+    let help = format!("write `{meant}`; if `{}` is right, use the word in its `title`", name.text);
     let label = "the spec has no such word elsewhere";
     Diagnostic::warning(&SPELLING, name.at.clone(), text).label(label).help(help)
 }

@@ -84,7 +84,7 @@ pub struct Selector {
 }
 
 /// Where a selector stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SelectorPlace {
     /// In a field of the identifier.
     Identifier(FieldId),

@@ -129,7 +129,7 @@ pub struct Exchange {
 }
 
 /// A value that a selector must have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Constant {
     /// The selector.
     pub selector: SelectorId,

@@ -82,8 +82,9 @@ impl Resolver<'_> {
                 _ => continue,
             };
             let text = format!("nothing shows where the number `{name}` ends and {after} begins");
-            let help =
-                format!("say how many digits it has, as in `{{{name}:3}}`, or put what is no digit between the two");
+            let help = format!(
+                "write its number of digits, as in `{{{name}:3}}`, or put a text without digits between the two"
+            );
             self.error_with_help(&rules::FORMAT, path.at_value(), text, help);
         }
     }
@@ -112,8 +113,7 @@ fn unfilled(path: &Path, parts: &[Signal]) -> Diagnostic {
     let has_gap = |pair: &&[&Signal]| mask(pair[0]).trailing_zeros() + mask(pair[1]).leading_zeros() > 64;
     match parts.windows(2).find(has_gap) {
         Some(pair) => {
-            let text =
-                format!("between the parts `{}` and `{}` are bits that are in neither", pair[0].name, pair[1].name);
+            let text = format!("bits between the parts `{}` and `{}` are in neither", pair[0].name, pair[1].name);
             let places = pair.iter().map(|part| part.doc.path.at_key());
             let diagnostic = Diagnostic::error(&rules::FORMAT, path.at_value(), text);
             places.fold(diagnostic, |known, at| known.other(at, "beside the gap"))

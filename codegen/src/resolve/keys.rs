@@ -97,9 +97,7 @@ impl Role {
             Key::As => among(QUANTITIES) || among(&[Self::Text, Self::PackedDecimal, Self::PackedText]),
             Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
             Key::Unit => among(QUANTITIES),
-            Key::Range => {
-                [QUANTITIES, PACKED_NUMBERS].concat().contains(&self) || among(&[Self::Address, Self::OfModel])
-            }
+            Key::Range => among(QUANTITIES) || among(PACKED_NUMBERS) || among(&[Self::Address, Self::OfModel]),
             Key::Values => {
                 among(IDENTIFIER) || among(&[Self::Header, Self::Constant, Self::Number, Self::Decimal, Self::Named])
             }
@@ -263,7 +261,9 @@ impl Resolver<'_> {
             (text, "name another type, or leave `type` out".to_owned())
         } else {
             let text = format!("`{key}` of the type `{name}` means nothing for the field that names it, {what}");
-            (text, format!("take `type`, or what makes the field {what}, out of it, or take `{key}` out of the type"))
+            let help =
+                format!("take `{key}` out of the type or `type` out of the field, or make it another kind of field");
+            (text, help)
         };
         let diagnostic = Diagnostic::error(&rules::MISPLACED_KEY, field.key("type").at_value(), text).help(help);
         self.diagnostics.push_first(diagnostic.other(path.at_key(), "the key of the type"));

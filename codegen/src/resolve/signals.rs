@@ -314,8 +314,8 @@ impl Resolver<'_> {
         match self.words().with(signal, |room| room.parse(text, false)) {
             Ok(bits) => Some(signal.raw_of(bits)),
             Err(Misfit { why, help }) => {
-                let misfit = Diagnostic { help, ..Diagnostic::error(&rules::VALUE, path.at_value(), why) };
-                self.diagnostics.push_first(misfit);
+                let misfit = Diagnostic::error(&rules::VALUE, path.at_value(), why);
+                self.diagnostics.push_first(misfit.help_if(help));
                 None
             }
         }

@@ -105,7 +105,7 @@ impl<'a> Accused<'a> {
         }
         let Repair { at, text, .. } =
             repair::find(self.protocol, &self.fields, |key| self.written(key, diagnostics), diagnostics)?;
-        let help = format!("with `{text}` each of them holds; correct it, or else the examples");
+        let help = format!("with `{text}` all of them hold; write that, or correct the examples");
         Some(self.denied(At::Value(at)).help(help))
     }
 
@@ -121,7 +121,7 @@ impl<'a> Accused<'a> {
         {
             return None;
         }
-        let help = "correct its place, its scale or its kind of number, or else the examples";
+        let help = "correct its place, its scale, its `as`, or the examples";
         Some(self.denied(self.path.at_key()).help(help))
     }
 
@@ -130,9 +130,12 @@ impl<'a> Accused<'a> {
             1 => "1 contradicts".to_owned(),
             count => format!("{count} contradict"),
         };
-        let text = format!("no example bears out {}, and {contradict} it", self.name);
+        let text = format!("no example confirms {}, and {contradict} it", self.name);
         self.denials().take(SHOWN).fold(Diagnostic::error(&rules::EXAMPLE, at, text), |diagnostic, denial| {
-            diagnostic.other(denial.meaning.path.at_value(), format!("by the field this frame says {}", denial.read))
+            diagnostic.other(
+                denial.meaning.path.at_value(),
+                format!("according to the field, this frame says {}", denial.read),
+            )
         })
     }
 

@@ -66,7 +66,12 @@ pub fn missing_bit(denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> 
     let text = format!("bit {number} has no name here, but an example has it as `{name}`");
     let help = format!("add `{name}: {{bit: {number}}}`, or correct the example");
     let diagnostic = Diagnostic::error(&rules::EXAMPLE, below.doc.path.at_key(), text).help(help);
-    Some(diagnostic.other(denial.meaning.path.at_key(), format!("by the status word this frame says {}", denial.read)))
+    Some(
+        diagnostic.other(
+            denial.meaning.path.at_key(),
+            format!("according to the status word, this frame says {}", denial.read),
+        ),
+    )
 }
 
 fn nibbles(data: [u8; 8]) -> impl Iterator<Item = u8> {
@@ -155,11 +160,10 @@ impl<'a> Field<'a> {
             surplus.trailing_zeros()
         );
         let at = bit.doc.path.key("bit").at_value();
-        Some(
-            Diagnostic::error(&rules::EXAMPLE, at, text)
-                .help("correct the bit, or else the example")
-                .other(denial.meaning.path.at_key(), format!("by the status word this frame says {}", denial.read)),
-        )
+        Some(Diagnostic::error(&rules::EXAMPLE, at, text).help("correct the bit, or else the example").other(
+            denial.meaning.path.at_key(),
+            format!("according to the status word, this frame says {}", denial.read),
+        ))
     }
 
     /// Reports that the frame has a number without a name where the example has a name.
@@ -175,7 +179,7 @@ impl<'a> Field<'a> {
         }
         let text = format!("`{}` is {number} here, but an example has it as {}", denial.meaning.text, denial.bits);
         let diagnostic = Diagnostic::error(&rules::EXAMPLE, At::Key(at.key(number)), text);
-        let shown = format!("by these names this frame says {}", denial.read);
+        let shown = format!("according to these names, this frame says {}", denial.read);
         Some(diagnostic.help("correct the number, or else the example").other(denial.meaning.path.at_value(), shown))
     }
 }

@@ -123,8 +123,8 @@ fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option
     let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
     let Linear { numeral, offset, .. } = signal.encoding.linear()?;
     let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
-    let raw = i128::from(signal.place.get(&example.data));
-    let scale = number.minus(offset)?.over(Rational::integer(raw))?;
+    let integer = numeral.integer(signal.raw_of(signal.place.get(&example.data)))?;
+    let scale = number.minus(offset)?.over(Rational::integer(integer))?;
     let right = scale.fraction();
     let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
     let is_near = examples.len() > 1 || strsim::osa_distance(&right, text) == 1;

@@ -30,8 +30,8 @@ pub fn find(protocol: &Protocol) -> IndexMap<MessageId, Vec<Path>> {
 
 /// Says that no example is read as the message.
 pub fn report(message: &Message, frames: &[Path]) -> Diagnostic {
-    let text = format!("none of the {} examples of `{}` is read as such", frames.len(), message.name);
-    let help = "correct `match` or what else chooses the message, or else the examples";
+    let text = format!("none of the {} examples of `{name}` is read as `{name}`", frames.len(), name = message.name);
+    let help = "correct `match` or another constant of the message, or the examples";
     let diagnostic = Diagnostic::error(&rules::EXAMPLE, At::Key(message.doc.path.key("match")), text).help(help);
     let others = frames.iter().take(SHOWN);
     others.fold(diagnostic, |diagnostic, frame| diagnostic.other(frame.at_value(), "this frame, for instance"))

@@ -104,7 +104,7 @@ fn wrong_kind(path: &Path, allowed: &str, expected: Kind, tree: &Node) -> Diagno
     };
     let message = format!("expected {allowed} for {whose}, found {found_text}");
     let help = found.and_then(|found| how_to_write(found, expected));
-    Diagnostic { help, ..Diagnostic::error(&rules::WRONG_KIND, path.at_value(), message) }
+    Diagnostic::error(&rules::WRONG_KIND, path.at_value(), message).help_if(help)
 }
 
 /// Says how to write the kind that is expected.
