@@ -12,6 +12,7 @@ mod no_unit;
 mod nobody_replies;
 mod outside_frame;
 mod overlap;
+mod range_step;
 mod range_width;
 mod read_only_range;
 mod refusal;
@@ -36,11 +37,12 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 23] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 24] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
     (&range_width::RANGE_WIDTH, Some(range_width::check)),
+    (&range_step::RANGE_STEP, Some(range_step::check)),
     (&read_only_range::READ_ONLY_RANGE, Some(read_only_range::check)),
     (&no_unit::NO_UNIT, Some(no_unit::check)),
     (&rules::MODEL_RANGE, Some(model_range::check)),

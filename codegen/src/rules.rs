@@ -43,14 +43,17 @@ fn chapter(rule: &Rule) -> String {
 const HEADING: &str = "\
 # The rules
 
-Every error and every warning about a spec names the rule that is broken, as in `error[overlap]`. `canspec rules overlap` prints what
-stands here. A block of YAML is added to the smallest spec of the [language reference](language.md); the first block of a rule breaks
-it, the one after `Write instead` does not. A warning can be allowed where it is meant, with a reason: see
-[`allow`](language.md#allow). An error cannot.
+Every error and every warning about a spec names the broken rule, as in `error[overlap]`.
+`canspec rules overlap` prints the chapter below.
 
-A stage begins when the one before it found no error. So a mended spec can have errors that were there all along.
+Each block of YAML extends the smallest spec of the [language reference](language.md). The first
+block of a rule breaks it, and the block after `Write instead` does not. An intended warning can be
+allowed with a reason: see [`allow`](language.md#allow). An error cannot be allowed.
 
-This page is made from the documents in `codegen/src/rules`.
+A stage begins if the stage before it found no error. So a corrected spec can show errors that were
+there before.
+
+This page is generated from the documents in `codegen/src/rules`.
 
 | rule | stage | gives | what breaks it |
 |---|---|---|---|
