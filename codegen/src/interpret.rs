@@ -8,7 +8,7 @@ mod value;
 
 pub use decode::decode;
 pub use encode::encode;
-pub use request::{Target, request, requests};
+pub use request::{Target, Targets, request, requests, targets};
 pub use value::{Limits, physical, raw_of};
 
 use std::fmt;

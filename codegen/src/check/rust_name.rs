@@ -1,5 +1,8 @@
 #![doc = include_str!("../rules/rust_name.md")]
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{camel_case, is_word_of_rust, member};
 use crate::model::{Doc, Id, ModelId, Protocol};
@@ -47,18 +50,23 @@ fn check_count(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Reports names that are reserved, or equal after conversion.
 fn check_names<'a>(what: &str, names: impl Iterator<Item = (String, &'a str, &'a Doc)>, diagnostics: &mut Diagnostics) {
-    let mut seen: Vec<(String, &str, &Doc)> = Vec::new();
+    let mut seen: HashMap<String, (&str, &Doc)> = HashMap::new();
     for (rust, name, doc) in names {
         if is_word_of_rust(&rust) {
             let text = format!("`{name}` is a keyword of Rust");
             diagnostics.push(Diagnostic::error(&RUST_NAME, doc.path.at_key(), text).help("choose another name"));
         }
-        if let Some((_, other, earlier)) = seen.iter().find(|(known, _, _)| *known == rust) {
-            let text = format!("`{other}` and `{name}` are one {what} in Rust: `{rust}`");
-            let diagnostic = Diagnostic::error(&RUST_NAME, doc.path.at_key(), text).help("rename one of the two");
-            diagnostics.push(diagnostic.other(earlier.path.at_key(), "the other name"));
+        match seen.entry(rust) {
+            Entry::Vacant(free) => {
+                free.insert((name, doc));
+            }
+            Entry::Occupied(taken) => {
+                let (other, earlier) = taken.get();
+                let text = format!("`{other}` and `{name}` are one {what} in Rust: `{}`", taken.key());
+                let diagnostic = Diagnostic::error(&RUST_NAME, doc.path.at_key(), text).help("rename one of the two");
+                diagnostics.push(diagnostic.other(earlier.path.at_key(), "the other name"));
+            }
         }
-        seen.push((rust, name, doc));
     }
 }
 

@@ -34,6 +34,53 @@ impl Target {
     }
 }
 
+/// Whom a request can go to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Targets {
+    /// Nobody else can be meant.
+    One(Target),
+    /// How the targets are written, `N` standing for an address.
+    Choice(Vec<String>),
+}
+
+/// Returns whom a message can be requested of.
+///
+/// # Errors
+///
+/// Nobody requests it, or several accesses do and none is named.
+pub fn targets(protocol: &Protocol, access: Option<&str>, message: &str) -> Result<Targets, Refusal> {
+    let (id, known) = find_message(protocol, message)?;
+    let layout = match known.set.as_ref().filter(|set| set.kinds.contains(&Kind::Request)) {
+        Some(set) => {
+            let member = set.members.first().ok_or_else(|| refuse(known, "nobody requests it"))?;
+            layout_of_member(protocol, id, &protocol[*member])?
+        }
+        None => request_layout(protocol, known, access)?,
+    };
+    let mut modes: Vec<&Mode> = layout.travels.iter().map(|travel| &protocol[travel.mode]).collect();
+    modes.dedup_by_key(|mode| &mode.name);
+    let only = |mode: &Mode| match mode.target.map(|target| &protocol[target]) {
+        None => Some(None),
+        Some(address) => (address.first == address.last).then_some(Some(address.first)),
+    };
+    match modes.as_slice() {
+        [mode] if let Some(number) = only(mode) => {
+            Ok(Targets::One(Target { name: protocol.target_name(mode).to_owned(), number }))
+        }
+        modes => Ok(Targets::Choice(modes.iter().map(|mode| written(protocol, mode)).collect())),
+    }
+}
+
+/// Returns the request of a member by the access of its set.
+fn layout_of_member<'a>(
+    protocol: &'a Protocol,
+    set: MessageId,
+    member: &'a Message,
+) -> Result<&'a FrameLayout, Refusal> {
+    let is_of_set = |frame: &&FrameLayout| frame.kind == Kind::Request && frame.set == Some(set);
+    protocol.frames_of(member).find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))
+}
+
 /// Makes the frames of a request to a device model or to any: one, or as many as a
 /// set has members. A signal that is left out takes its default.
 ///
@@ -75,8 +122,7 @@ fn of_members(
     }
     let mut frames = Vec::new();
     for member in set.members.iter().map(|member| &protocol[*member]) {
-        let is_of_set = |frame: &&FrameLayout| frame.kind == Kind::Request && frame.set == Some(id);
-        let layout = protocol.frames_of(member).find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))?;
+        let layout = layout_of_member(protocol, id, member)?;
         frames.push(made(protocol, model, (member, layout), to, signals)?);
     }
     if let Some((_, others)) = frames.split_last_mut() {

@@ -59,6 +59,9 @@ impl Resolver<'_> {
         };
         let offset = whole("offset", &field.offset).unwrap_or(0);
         let send = whole("send", &field.send);
+        if send.is_some_and(|number| !(first..=last).contains(&number)) {
+            self.diagnostics.push(unnamed_sender(&path, name));
+        }
         let strict = self.strict(&path, field.outside.as_deref());
         let doc = remarks!(field).doc(&path, None);
         Some(AddressType { name: name.to_owned(), doc, first, last, offset, sign, strict, send })
@@ -179,7 +182,7 @@ impl Resolver<'_> {
         let text = format!("`{mode}` asks one `{name}`, but the reply does not show which `{name}` sends it");
         let help = format!(
             "name `{name}` here for the field that holds the sender; \
-             as it is, the reply of every `{name}` is taken for the answer"
+             without it, the reply of any `{name}` counts as the answer"
         );
         self.diagnostics.push(Diagnostic::warning(&rules::ADDRESSING, path.key("one").at_key(), text).help(help));
     }
@@ -218,7 +221,7 @@ impl Resolver<'_> {
         if free.len() > 1 {
             let names: Vec<_> = free.iter().map(|index| format!("`{}`", types[*index].name)).collect();
             let message = format!("this request leaves {} addresses open: {}", free.len(), names.join(" and "));
-            let help = "give all but one of these types a `send`, the address with which all requests are sent";
+            let help = "give all but one of these types a `send`, the address that all requests carry";
             let diagnostic = Diagnostic::error(&rules::ADDRESSING, path.at_key(), message).help(help);
             let open = free.iter().map(|index| types[*index].doc.path.at_key());
             self.diagnostics.push(open.fold(diagnostic, |known, at| known.other(at, "has no `send`")));
@@ -304,4 +307,12 @@ fn strict_ranges(field: FieldId, types: &AddressTypes, modes: &Table<ModeId, Mod
     ranges.sort_unstable();
     ranges.dedup();
     ranges
+}
+
+/// Refuses requests with an address that the document does not name.
+fn unnamed_sender(address_type: &Path, name: &str) -> Diagnostic {
+    let message = format!("requests are sent with an address outside the range of `{name}`");
+    Diagnostic::error(&rules::ADDRESSING, address_type.key("send").at_value(), message)
+        .other(address_type.key("range").at_value(), "the range")
+        .help("correct `send`, or widen the range")
 }

@@ -9,6 +9,9 @@ use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
 
+/// The most sets that a message can be a member of.
+const MOST_SETS: usize = 64;
+
 impl Resolver<'_> {
     /// Reads `members` and `in` of a message. The members are looked up when all messages are
     /// known.
@@ -68,6 +71,10 @@ impl Resolver<'_> {
             } else if drafts[member].message.set.is_some() {
                 let help = "name its members instead";
                 self.error_with_help(&rules::SET, at.at_value(), format!("`{name}` is a set of frames itself"), help);
+            } else if drafts[member].message.exchanges.iter().filter(|known| known.set.is_some()).count() >= MOST_SETS {
+                let text = format!("`{name}` is a member of more than {MOST_SETS} sets");
+                let help = "describe the member once more under another name, or leave out sets that nobody asks for";
+                self.error_with_help(&rules::SET, at.at_value(), text, help);
             } else {
                 members.push(member);
             }
@@ -135,4 +142,34 @@ fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
         }
         known
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::source::Source;
+    use crate::{Outcome, compile};
+
+    /// Compiles a spec of `count` sets of one member.
+    fn sets(count: usize) -> Outcome {
+        let set = |number| {
+            format!("  s{number}: {{section: \"1\", match: {{command: {number}}}, access: [scan], members: [m]}}\n")
+        };
+        let spec = format!(
+            "canspec: 1\nprotocol: p\ntitle: T\ndocument: {{title: T, version: V}}\nlength: 8\n\
+             identifier: {{direction: {{bits: 10}}, command: {{bits: 9..3}}, node: {{bits: 2..1}}, more: {{bits: 0, continues: 1}}}}\n\
+             types: {{module: {{range: 0..3}}}}\n\
+             addressing: {{single: {{request: {{direction: 0, node: module}}, one: {{direction: 1, node: module}}}}}}\n\
+             access: {{scan: {{request: {{}}, reply: {{}}, in: [reply], answers: {{single: one}}}}}}\n\
+             messages:\n  m: {{section: \"1\", value: {{bytes: 0}}}}\n{}",
+            (0..count).map(set).collect::<Vec<_>>().concat()
+        );
+        compile(Source::new("sets.yaml", spec.into()).expect("plain text"))
+    }
+
+    #[test]
+    fn a_message_is_a_member_of_64_sets_and_no_more() {
+        assert_eq!(sets(64).diagnostics.concise(), "");
+        let errors = sets(65).diagnostics.concise();
+        assert!(errors.contains("error[set]: `m` is a member of more than 64 sets"), "{errors}");
+    }
 }

@@ -1,4 +1,6 @@
-//! Fields take keys from the types they name; named values and status words become types of their own.
+//! Gives fields the keys of their types, and makes types of named values and status words.
+
+use std::collections::HashMap;
 
 use super::Resolver;
 use super::texts::{remarks, text};
@@ -178,12 +180,13 @@ impl Resolver<'_> {
         let (first, last) = numeral.raw_limits(width);
         let mut named: Vec<NamedValue> = Vec::new();
         let mut places = Vec::new();
+        let (mut of_raw, mut of_name) = (HashMap::new(), HashMap::new());
         for (raw, name) in values {
             let at = path.key(raw);
             self.check_value_name(&at, name);
             let Some(number) = self.raw_key(&at, raw, first, last) else { continue };
-            let repeats = |earlier: &NamedValue| earlier.raw == number || earlier.name == *name;
-            if let Some(index) = named.iter().position(repeats) {
+            let repeated: [Option<usize>; 2] = [of_raw.get(&number).copied(), of_name.get(name).copied()];
+            if let Some(index) = repeated.into_iter().flatten().min() {
                 let message = if named[index].raw == number {
                     format!("the raw value {number} has two names")
                 } else {
@@ -194,6 +197,8 @@ impl Resolver<'_> {
                 self.diagnostics.push(diagnostic.other(Path::at_key(&places[index]), "the other one"));
                 continue;
             }
+            of_raw.insert(number, named.len());
+            of_name.insert(name, named.len());
             places.push(at);
             named.push(NamedValue { raw: number, name: name.clone() });
         }
