@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use canspec_codegen::Generated;
 use canspec_codegen::emit::{Float, Options, Switch};
 use canspec_codegen::source::Source;
 
@@ -18,7 +19,7 @@ fn main() {
         let visit = visit(&module, &path);
         list.visits.push_str(&visit);
         list.switched.push_str(&visit);
-        list.signals(&module, &generate(&path, &Options::default()));
+        list.signals(&module, &generate(&path, &Options::default()).code);
     }
     // A whole protocol may have numbers that single precision misses.
     let folders = [
@@ -31,8 +32,8 @@ fn main() {
             let module = format!("{kind}_{name}");
             let switched = format!("{module}_switched");
             for (module, options) in [(&module, Options::default()), (&switched, every_option(float))] {
-                let code = generate(&path, &options);
-                list.module(module, &path);
+                let Generated { manual, code, .. } = generate(&path, &options);
+                list.module(module, &manual);
                 list.signals(module, &code);
                 fs::write(out.join(format!("{module}.rs")), code).expect("OUT_DIR can be written");
             }
@@ -59,9 +60,9 @@ fn specs(folder: &Path) -> Vec<(String, PathBuf)> {
 }
 
 /// Compiles a feature spec; a wrong one stops the build with its diagnostics.
-fn generate(path: &Path, options: &Options) -> String {
+fn generate(path: &Path, options: &Options) -> Generated {
     match Source::read(path).and_then(|source| canspec_codegen::generate(source, options)) {
-        Ok(generated) => generated.code,
+        Ok(generated) => generated,
         Err(diagnostics) => panic!("{}", diagnostics.concise()),
     }
 }
@@ -85,13 +86,11 @@ struct Protocols {
 }
 
 impl Protocols {
-    fn module(&mut self, name: &str, path: &Path) {
+    fn module(&mut self, name: &str, manual: &str) {
         let _ = writeln!(
             self.modules,
-            "/// Generated from `{}`.\n\
-             #[deny(warnings, missing_docs, unsafe_code)]\n\
-             pub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}",
-            path.display()
+            "#[deny(warnings, missing_docs, unsafe_code)]\n\
+             pub mod {name} {{\n{manual}include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}",
         );
     }
 

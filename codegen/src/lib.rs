@@ -39,6 +39,11 @@ use source::Source;
 pub use summary::Summary;
 use text::Text;
 
+/// The README's Rust compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// What became of a spec.
 #[derive(Debug)]
 pub struct Outcome {

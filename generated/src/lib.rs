@@ -6,4 +6,9 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+/// The README's Rust runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));

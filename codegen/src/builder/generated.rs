@@ -9,7 +9,6 @@ use crate::emit::{self, Options};
 use crate::files::File;
 use crate::source::Source;
 use crate::syntax::tree;
-use crate::text::Text;
 use crate::{Outcome, check, compile};
 
 /// Rust that was generated from one spec.
@@ -17,8 +16,8 @@ use crate::{Outcome, check, compile};
 pub struct Generated {
     /// Name of the protocol.
     pub name: String,
-    /// Title of the protocol.
-    pub title: Text,
+    /// Documentation of the module, as inner doc comments to stand before its content.
+    pub manual: String,
     /// Content of a module.
     pub code: String,
     /// Warnings about the spec.
@@ -44,8 +43,8 @@ pub fn generate(source: Source, options: &Options) -> Result<Generated, Diagnost
     }
     match protocol.filter(|_| !diagnostics.has_errors()) {
         Some(protocol) => {
-            let code = emit::rust(&protocol, options);
-            Ok(Generated { name: protocol.name, title: protocol.title, code, warnings: diagnostics })
+            let (manual, code) = (emit::manual(&protocol, options), emit::rust(&protocol, options));
+            Ok(Generated { name: protocol.name, manual, code, warnings: diagnostics })
         }
         None => Err(diagnostics),
     }

@@ -29,6 +29,7 @@ fn path_in(folder: &Path) -> PathBuf {
 
 /// Returns a module that includes the file of a protocol from the list's folder.
 fn module(generated: &Generated) -> String {
-    let (name, title) = (&generated.name, format!("{}.", generated.title.in_rust_doc()));
-    format!("#[doc = {title:?}]\npub mod {name} {{\n    include!(\"{name}.rs\");\n}}\n")
+    let Generated { name, manual, .. } = generated;
+    let manual = manual.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
+    format!("pub mod {name} {{\n{manual}\n\n    include!(\"{name}.rs\");\n}}\n")
 }

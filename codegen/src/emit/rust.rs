@@ -9,6 +9,7 @@ mod exchange;
 mod filter;
 mod identifier;
 mod layout;
+mod manual;
 mod message;
 mod model;
 mod parts;
@@ -36,6 +37,11 @@ pub fn rust(protocol: &Protocol, options: &Options) -> String {
     header + &formatted(&tokens(protocol, options))
 }
 
+/// Returns the documentation of that module, as inner doc comments to stand before its content.
+pub fn manual(protocol: &Protocol, options: &Options) -> String {
+    manual::Manual { protocol, plan: &Plan::new(protocol, options), float: options.float }.text()
+}
+
 /// Returns the same content as tokens, for macros and for build scripts that go on with it.
 pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
     let derives = Derives::new(options);
@@ -43,6 +49,7 @@ pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
     let optional = derives.imports();
     quote! {
         use canspec_runtime::plumbing::prelude::*;
+        #[doc(no_inline)]
         pub use canspec_runtime::prelude::*;
         #optional
         #items
@@ -129,12 +136,16 @@ errata:
         let outcome = crate::compile(Source::new("heater.yaml", SPEC.into()).expect("plain text"));
         let code = super::rust(&outcome.protocol.expect("a spec without errors"), &super::Options::default());
         for part in [
-            "/// Set. Section 5.\n///\n/// The reply carries the values now in effect.\n///\n/// `module`: the module answers.\npub const SET_ACCESS",
+            "/// Set. Section 5.\n///\n/// The reply carries the values now in effect.\npub const SET_ACCESS",
             "    /// Builds the request [`set`](SET_ACCESS) with these values.\n",
             "    /// One heater: `0x00..=0x3F`. Section 4.\n    ///\n    /// Heaters of a group too.\n    Module(u8),\n",
             "steps of 10 W.\n    ///\n    /// Never above the rating.\n    pub power_w: f64,\n",
             "    /// Mode: byte 2.\n    pub mode: Mode",
-            "/// Heat. Section 2.\n///\n/// Erratum E1: printed is \"kilowatts\", used is \"watts\".\n#[derive",
+            "/// Heat: `command` 0x0007. Section 2.\n\
+             /// - [`set`](SET_ACCESS): the module answers (`module`).\n\
+             /// - Request `000703F0#0001010000000000`: `power` 10 W, `mode` boost.\n\
+             /// - Reply `0007F003#0001010000000000`: `power` 10 W, `mode` boost.\n///\n\
+             /// Erratum E1: printed is \"kilowatts\", used is \"watts\", because the examples are in watts.\n#[derive",
             "    /// A value without a name; it is sent as it is.\n    Unknown(u8),\n",
         ] {
             assert!(code.contains(part), "{part:?} is not in\n{code}");

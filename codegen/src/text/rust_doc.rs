@@ -5,13 +5,32 @@ impl Text {
     ///
     /// Text between two backquotes stays code, and names that look like code become code.
     pub(crate) fn in_rust_doc(&self) -> String {
+        self.shown(unmarked)
+    }
+
+    /// Writes the text as [`in_rust_doc`](Self::in_rust_doc) does, but for the midst of a paragraph.
+    pub(crate) fn within_rust_doc(&self) -> String {
+        self.shown(plain)
+    }
+
+    /// Writes the text for a cell of a table, which a bar would end even in code.
+    pub(crate) fn in_rust_table(&self) -> String {
+        if !self.0.contains('|') {
+            return self.within_rust_doc();
+        }
+        let words = self.0.split_whitespace().map(|word| escaped(&word.replace('`', "'")));
+        words.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Writes the text word by word; `first` writes the first one.
+    fn shown(&self, first: fn(&str) -> String) -> String {
         let ticks = self.0.matches('`').count();
         let is_paired = ticks.is_multiple_of(2) && !self.0.contains("``");
         let text = if is_paired { self.0.clone() } else { self.0.replace('`', "'") };
         let mut in_code = false;
         let words = text.split_whitespace().enumerate().map(|(index, word)| {
             if !in_code && !word.contains('`') {
-                return if index == 0 { unmarked(word) } else { plain(word) };
+                return if index == 0 { first(word) } else { plain(word) };
             }
             let parts = word.split('`').enumerate().map(|(index, part)| {
                 in_code ^= index > 0;

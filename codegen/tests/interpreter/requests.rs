@@ -1,6 +1,6 @@
 //! Requests by name, with values as a person types them.
 
-use canspec_codegen::interpret::{Target, requests};
+use canspec_codegen::interpret::{Target, Targets, requests, targets};
 use canspec_codegen::model::Protocol;
 
 use super::{WIDE, feature, model, notes, printed, protocol, requested, written};
@@ -245,4 +245,46 @@ fn a_member_is_asked_for_by_its_own_access_unless_that_of_the_set_is_named() {
     let refused = frames(&ovens, Some("write"), "temperature", &[]);
     assert_eq!(refused, ["temperature: it has no request of the access `write`; it has `read`, `scan`"]);
     assert_eq!(frames(&ovens, None, "power", &[]), ["power: nobody requests it"]);
+}
+
+/// Returns how the targets of a request are written, `=` before the only one.
+fn targets_of(protocol: &Protocol, access: Option<&str>, message: &str) -> Result<Vec<String>, String> {
+    match targets(protocol, access, message) {
+        Ok(Targets::One(Target { name, number })) => Ok(vec![format!("={name} {number:?}")]),
+        Ok(Targets::Choice(forms)) => Ok(forms),
+        Err(refusal) => Err(refusal.to_string()),
+    }
+}
+
+#[test]
+fn a_request_that_can_go_to_one_target_only_has_that_one() {
+    const SPEC: &str = r#"
+canspec: 1
+protocol: alone
+title: One device
+document: {title: Made up, version: "1"}
+length: 8
+identifier: {direction: {bits: 10..9}, command: {bits: 8..4}, node: {bits: 3..0}}
+types: {only: {range: 5..5}, any: {range: 1..9}}
+addressing:
+  single: {request: {direction: 0, node: only}, one: {direction: 1, node: only}}
+  other: {request: {direction: 2, node: any}, one: {direction: 3, node: any}}
+access:
+  read: {request: {}, reply: {}, in: [reply], answers: {single: one}}
+  ask: {request: {}, reply: {}, in: [reply], answers: {single: one, other: one}}
+messages:
+  near: {section: "1", match: {command: 1}, access: [read], value: {bytes: 0..1}}
+  far: {section: "1", match: {command: 2}, access: [ask], value: {bytes: 0..1}}
+"#;
+    let alone = written(SPEC);
+    assert_eq!(targets_of(&alone, None, "near"), Ok(vec!["=only Some(5)".to_owned()]));
+    assert_eq!(targets_of(&alone, None, "far"), Ok(vec!["only:N".to_owned(), "any:N".to_owned()]));
+    assert_eq!(
+        targets_of(&alone, Some("ask"), "near"),
+        Err("near: it has no request of the access `ask`; it has `read`".to_owned())
+    );
+    let all = feature("short_frames");
+    assert_eq!(targets_of(&all, None, "keep_alive"), Ok(vec!["=all None".to_owned()]));
+    let pumps = protocol("tests/specs/devices/split_request.yaml");
+    assert_eq!(targets_of(&pumps, None, "identity"), Ok(vec!["pump:N".to_owned()]));
 }

@@ -57,7 +57,7 @@ fn address(Address { place, kind, excluded }: &Address) -> TokenStream {
 /// Emits the targets of requests.
 pub fn targets(Targets { variants, sender }: &Targets, derives: Derives) -> TokenStream {
     let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
-    let definitions = variants.iter().map(definition);
+    let definitions = variants.iter().map(|target| definition(target, derives));
     let sender = sender.as_ref().map(sent_by);
     let destination = destination(variants);
     quote! {
@@ -69,12 +69,13 @@ pub fn targets(Targets { variants, sender }: &Targets, derives: Derives) -> Toke
     }
 }
 
-fn definition(Target { variant, comment, number, .. }: &Target) -> TokenStream {
+fn definition(Target { variant, renamed, comment, number, .. }: &Target, derives: Derives) -> TokenStream {
+    let renamed = derives.renamed(renamed.as_deref());
     let number = number.map(|number| {
         let kind = number_type(number);
         quote!((#kind))
     });
-    quote!(#comment #variant #number)
+    quote!(#comment #renamed #variant #number)
 }
 
 fn number_type(number: Number) -> TokenStream {

@@ -60,6 +60,11 @@ impl<'a> Derives<'a> {
         attributes(&self.options.serde, &[&quote!(serde(rename = #name))])
     }
 
+    /// Emits the attribute of a variant that can have another name than in Rust.
+    pub fn renamed(self, name: Option<&str>) -> Option<TokenStream> {
+        name.map(|name| self.variant(name))
+    }
+
     /// Emits the attribute of a field that can hold infinities and what is no number.
     pub fn float(self) -> TokenStream {
         attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::float"))])

@@ -5,7 +5,6 @@ use quote::quote;
 
 use super::derives::Derives;
 use super::exchange::exchange;
-use super::plan::doc::Comment;
 use super::plan::message::{Message, Request, Struct, Within};
 use super::plan::signal::{Member, Signal, Special};
 
@@ -20,8 +19,8 @@ pub fn message(message: &Message, derives: Derives) -> TokenStream {
     quote!(#(#structs)*)
 }
 
-fn definition(message: &Message, Struct { name, signals, is_exact, .. }: &Struct, derives: Derives) -> TokenStream {
-    let comment = Comment::new(message.paragraphs.clone());
+fn definition(message: &Message, own: &Struct, derives: Derives) -> TokenStream {
+    let Struct { name, comment, signals, is_exact, .. } = own;
     let members = signals.iter().map(|id| member(&message.signals[*id], derives));
     let eq = is_exact.then(|| quote!(, Eq, Hash));
     let body = if signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
@@ -82,8 +81,8 @@ fn special_value(Special { constant, comment, value, .. }: &Special, signal: &Si
 fn within(Within { exchange, .. }: &Within) -> TokenStream {
     quote! {
         /// Returns the values for a device model if it takes them.
-        /// # Errors
         ///
+        /// # Errors
         /// Refuses a model that does not have the message, and values outside its limits.
         pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
             #exchange.within(model, &self)?;

@@ -16,7 +16,7 @@ pub fn parts<T>(items: Vec<T>, arm: impl Fn(&T) -> TokenStream) -> Vec<Vec<T>> {
     let enough = total.div_ceil(total.div_ceil(LINES).max(1));
     let (mut parts, mut part, mut lines) = (Vec::new(), Vec::new(), 0);
     for (item, height) in items.into_iter().zip(heights) {
-        if lines >= enough || (lines > 0 && lines + height > LINES) {
+        if !part.is_empty() && (lines >= enough || lines + height > LINES) {
             parts.push(std::mem::take(&mut part));
             lines = 0;
         }
@@ -50,6 +50,16 @@ mod tests {
         assert_eq!(lengths(0), [0]);
         assert_eq!(lengths(18), [18]);
         assert_eq!(lengths(41), [14, 14, 13]);
+    }
+
+    #[test]
+    fn no_part_is_empty_beside_arms_that_are_too_wide_to_be_laid_out() {
+        let wide = ident(&"a".repeat(200));
+        let arm = |_: &usize| quote!(0x01 => Recognised::reply(&#wide::#wide, Self::#wide(Layout::decode(data))),);
+        for count in [1, 2, 30] {
+            let parts = parts((0..count).collect(), arm);
+            assert!(parts.iter().all(|part| !part.is_empty()), "{count}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ pub mod doc;
 mod encoding;
 pub mod exchange;
 pub mod identifier;
-mod literal;
+pub mod literal;
 pub mod message;
 pub mod models;
 pub mod naming;
@@ -16,6 +16,7 @@ pub mod selector;
 pub mod set;
 pub mod signal;
 mod types;
+pub mod usage;
 pub mod variant;
 pub mod word;
 
@@ -92,6 +93,9 @@ impl Plan {
         let messages = protocol.messages.ids().map(|id| planner.message(id)).collect();
         let planner = recognition::Planner { protocol, types, selectors: &selectors, messages: &messages };
         let course = &protocol.recognition;
+        let variants = variant::variants(protocol, types);
+        let set = |id| Set::new(protocol, types, &messages, addresses, &variants, id);
+        let sets = protocol.messages.ids().map(set).collect();
         let address_types = protocol.address_types.iter().zip(addresses);
         Self {
             base: Base::new(&protocol.identifier),
@@ -104,8 +108,8 @@ impl Plan {
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),
             packed: Packed::all(protocol, types),
-            sets: protocol.messages.ids().map(|id| Set::new(protocol, types, &messages, addresses, id)).collect(),
-            variants: variant::variants(protocol, types),
+            sets,
+            variants,
             requests: planner.direction(&course.requests),
             replies: planner.direction(&course.replies),
             accesses: accesses.shared,

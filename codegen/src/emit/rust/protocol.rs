@@ -69,9 +69,9 @@ fn definition(plan: &Plan, derives: Derives) -> TokenStream {
     let mut signals = plan.messages.iter().flat_map(|message| &message.signals);
     let eq = signals.all(|signal| signal.coding.is_exact()).then(|| quote!(, Eq, Hash));
     let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq #eq));
-    let variants = plan.variants.iter().map(|Variant { name, comment, carried }| {
-        let carried = carried.iter();
-        quote!(#comment #name #((#carried))*)
+    let variants = plan.variants.iter().map(|Variant { name, renamed, comment, carried }| {
+        let (renamed, carried) = (derives.renamed(renamed.as_deref()), carried.iter());
+        quote!(#comment #renamed #name #((#carried))*)
     });
     quote! {
         /// Every message that a frame can carry.

@@ -74,6 +74,8 @@ pub struct Targets {
 pub struct Target {
     /// Its variant.
     pub variant: Ident,
+    /// The name of the variant in texts, where that is not made of it.
+    pub renamed: Option<String>,
     /// Comment of the variant.
     pub comment: Comment,
     /// The mode.
@@ -149,7 +151,7 @@ fn range(address: &model::AddressType) -> String {
 }
 
 /// Writes an address number: hexadecimal as in documents, decimal if it is negative.
-fn number(number: i64) -> TokenStream {
+pub fn number(number: i64) -> TokenStream {
     u32::try_from(number).map_or_else(|_| decimal(number), |number| hexadecimal(number, 8))
 }
 
@@ -192,7 +194,8 @@ impl Targets {
     pub fn new(protocol: &Protocol) -> Option<Self> {
         let names = target_names(protocol);
         let modes = protocol.modes.entries().filter(|(_, mode)| mode.request.is_some());
-        let variants: Vec<_> = modes.map(|(id, mode)| Target::new(protocol, &names[id], id, mode)).collect();
+        let mut texts = Pool::default();
+        let variants: Vec<_> = modes.map(|(id, _)| Target::new(protocol, &names[id], &mut texts, id)).collect();
         (!variants.is_empty()).then(|| Self { variants, sender: sender(protocol).map(Sender::new) })
     }
 }
@@ -203,13 +206,15 @@ fn target_names(protocol: &Protocol) -> Table<ModeId, Ident> {
 }
 
 impl Target {
-    fn new(protocol: &Protocol, name: &Ident, id: ModeId, mode: &model::Mode) -> Self {
+    fn new(protocol: &Protocol, name: &Ident, texts: &mut Pool, id: ModeId) -> Self {
+        let mode = &protocol[id];
         let address = mode.target.map(|address| &protocol[address]);
         let numbers = address.map_or_else(String::new, |address| format!(": {}", range(address)));
         let sentence = doc::sentence_of(&format!("{}{numbers}", doc::title(&mode.doc, &mode.name)));
         let errata_elsewhere = Doc { errata: Vec::new(), ..mode.doc.clone() };
         Self {
             variant: name.clone(),
+            renamed: texts.renamed(name, protocol.target_name(mode), "_mode"),
             comment: Comment::item(protocol, &errata_elsewhere, &sentence, None),
             mode: id,
             number: address.map(Number::of),

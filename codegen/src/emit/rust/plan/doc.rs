@@ -9,6 +9,12 @@ use crate::text::Text;
 /// The longest line of text behind `/// `.
 const WIDTH: usize = 100;
 
+/// What an item of a list begins with; no text of a spec does.
+const ITEM: &str = "- ";
+
+/// What a heading begins with, behind which no line is left empty; no text of a spec does.
+const HEADING: &str = "# ";
+
 /// A documentation comment, line by line.
 #[derive(Clone)]
 pub struct Comment {
@@ -20,12 +26,18 @@ impl Comment {
     pub fn new(paragraphs: impl IntoIterator<Item = String>) -> Self {
         let mut lines: Vec<String> = Vec::new();
         for paragraph in paragraphs {
-            if !lines.is_empty() {
+            let is_set_off = !paragraph.starts_with(ITEM);
+            if is_set_off && lines.last().is_some_and(|last| !last.starts_with(HEADING)) {
                 lines.push(String::new());
             }
-            lines.extend(wrapped(&paragraph));
+            lines.extend(paragraph.lines().flat_map(wrapped));
         }
         Self { lines }
+    }
+
+    /// Returns the lines, without what marks a comment.
+    pub fn lines(&self) -> &[String] {
+        &self.lines
     }
 
     /// Makes a comment of one sentence.
@@ -37,6 +49,11 @@ impl Comment {
     pub fn item(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> Self {
         Self::new(paragraphs(protocol, doc, sentence, outer))
     }
+}
+
+/// Makes a paragraph of the items of a list.
+pub fn list(items: impl IntoIterator<Item = String>) -> String {
+    items.into_iter().map(|item| format!("{ITEM}{item}")).collect::<Vec<_>>().join("\n")
 }
 
 impl ToTokens for Comment {
@@ -63,14 +80,15 @@ fn reference(section: &Text) -> String {
     if section.starts_with(|first: char| first.is_ascii_digit()) { format!("Section {section}") } else { section }
 }
 
-/// Writes an erratum in one line, unless it is about the scan of the document alone.
-fn erratum(protocol: &Protocol, name: &Text) -> Option<String> {
+/// Writes an erratum as a paragraph, unless it is about the scan of the document alone.
+pub fn erratum(protocol: &Protocol, name: &Text) -> Option<String> {
     let erratum = protocol.errata.iter().find(|erratum| erratum.name == *name)?;
     if matches!(erratum.kind.as_str(), "ocr" | "note") {
         return None;
     }
     let [name, prints, uses] = [name, &erratum.prints, &erratum.uses].map(Text::in_rust_doc);
-    Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\"")))
+    let because = erratum.because.within_rust_doc();
+    Some(sentence_of(&format!("Erratum {name}: printed is \"{prints}\", used is \"{uses}\", because {because}")))
 }
 
 /// Returns the title of an item, for people.
@@ -92,7 +110,10 @@ pub fn sentence_of(text: &str) -> String {
 }
 
 /// Breaks a paragraph into lines, but never before a word that would begin a list or anything else than words.
+///
+/// The further lines of an item of a list are indented.
 fn wrapped(paragraph: &str) -> Vec<String> {
+    let indent = if paragraph.starts_with(ITEM) { "  " } else { "" };
     let mut lines = vec![String::new()];
     for word in paragraph.split(' ').filter(|word| !word.is_empty()) {
         let fits = |line: &String| line.is_empty() || line.chars().count() + 1 + word.chars().count() <= WIDTH;
@@ -102,7 +123,7 @@ fn wrapped(paragraph: &str) -> Vec<String> {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(format!("{indent}{word}")),
         }
     }
     lines
@@ -110,8 +131,6 @@ fn wrapped(paragraph: &str) -> Vec<String> {
 
 /// Tests for marks of Markdown at the start of a line, which count in the midst of code as well.
 fn begins_block(word: &str) -> bool {
-///
-/// The further lines of an item of a list are indented.
     let numbered = word.trim_end_matches(['.', ')']);
     let is_number = numbered.len() < word.len() && numbered.bytes().all(|byte| byte.is_ascii_digit());
     is_number || word.starts_with(|mark: char| mark.is_ascii_punctuation() && !"\\`\"'(".contains(mark))
@@ -127,6 +146,15 @@ mod tests {
         assert_eq!(lines, [format!("{} -", "x".repeat(WIDTH)), "and 12. so".to_owned()]);
         let lines = wrapped(&format!("`{} [^1]: x`", "x".repeat(WIDTH)));
         assert_eq!(lines, [format!("`{} [^1]:", "x".repeat(WIDTH)), "x`".to_owned()]);
+    }
+
+    #[test]
+    fn the_lines_of_an_item_are_indented() {
+        let items = list(["a".to_owned(), format!("b {}", "x".repeat(WIDTH))]);
+        assert_eq!(
+            Comment::new([items]).lines,
+            ["- a".to_owned(), "- b".to_owned(), format!("  {}", "x".repeat(WIDTH))]
+        );
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! How messages travel: each access once, and what each message adds to it.
 
+use std::collections::HashMap;
+
+use indexmap::{IndexMap, IndexSet};
 use proc_macro2::{Ident, TokenStream};
 
 use super::doc::{self, Comment};
@@ -8,7 +11,7 @@ use super::models::Models;
 use super::naming::{Pool, ident};
 use super::selector::{Filter, Selectors};
 use crate::model::{
-    AccessId, Answers, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
+    AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
 };
 
 /// The shared parts of accesses, and the part that each message uses.
@@ -60,8 +63,8 @@ pub struct Exchange {
 }
 
 /// A way to use an access, which messages share.
+#[derive(PartialEq, Eq, Hash)]
 struct Way {
-    constant: Ident,
     access: AccessId,
     /// The set whose members the messages are.
     set: Option<MessageId>,
@@ -69,7 +72,7 @@ struct Way {
 }
 
 /// What one kind of frame shows, whatever the message.
-#[derive(PartialEq)]
+#[derive(PartialEq, Eq, Hash)]
 struct Shown {
     kind: Kind,
     has_values: bool,
@@ -81,14 +84,16 @@ impl Accesses {
     /// Plans the parts that messages share.
     pub fn new(protocol: &Protocol, selectors: &Selectors, constants: &mut Pool) -> Self {
         let ways = ways(protocol, constants);
-        let constant = |message: &Message, id: ExchangeId| {
-            let (known, frames) = (&message[id], frames(protocol, message, id));
-            let is_its = |way: &&Way| (way.access, way.set) == (known.access, known.set) && way.frames == frames;
-            ways.iter().find(is_its).map(|way| way.constant.clone())
-        };
+        let constant = |message: &Message, id: ExchangeId| ways.get(&Way::new(protocol, message, id)).cloned();
         let of_message = |message: &Message| message.exchanges.ids().filter_map(|id| constant(message, id)).collect();
         let constants = protocol.messages.map(of_message);
-        let shared = ways.iter().map(|way| Access::new(protocol, selectors, &ways, way)).collect();
+        let mut counts = HashMap::new();
+        ways.keys().for_each(|way| *counts.entry(way.access).or_insert(0) += 1);
+        let shared = ways.iter().map(|(way, constant)| {
+            let is_one_of_several = counts.get(&way.access).is_some_and(|count| *count > 1);
+            Access::new(protocol, selectors, (way, constant), is_one_of_several)
+        });
+        let shared = shared.collect();
         Self { shared, constants }
     }
 
@@ -98,32 +103,28 @@ impl Accesses {
     }
 }
 
-/// Returns the ways to use each access; several are told apart by number.
-fn ways(protocol: &Protocol, constants: &mut Pool) -> Vec<Way> {
-    let mut known: Vec<Way> = Vec::new();
-    for (access, of) in protocol.accesses.entries() {
-        for (message, id, set) in protocol.messages.iter().flat_map(|message| exchanges(message, access)) {
-            let frames = frames(protocol, message, id);
-            let same: Vec<_> = known.iter().filter(|way| way.access == access && way.set == set).collect();
-            if same.iter().all(|way| way.frames != frames) {
-                let suffix = if same.is_empty() { String::new() } else { format!("_{}", same.len() + 1) };
-                let name = exchange_name(protocol, &of.name, set);
-                known.push(Way {
-                    constant: constants.constant(&format!("{name}_ACCESS{suffix}")),
-                    access,
-                    set,
-                    frames,
-                });
-            }
-        }
-    }
-    known
+/// Returns the ways to use each access, in order of accesses; several are told apart by number.
+fn ways(protocol: &Protocol, constants: &mut Pool) -> IndexMap<Way, Ident> {
+    let exchanges = protocol.messages.iter().flat_map(|message| message.exchanges.ids().map(move |id| (message, id)));
+    let mut distinct: IndexSet<_> = exchanges.map(|(message, id)| Way::new(protocol, message, id)).collect();
+    distinct.sort_by(|one, other| one.access.cmp(&other.access));
+    let mut numbers = HashMap::new();
+    let named = distinct.into_iter().map(|way| {
+        let number = numbers.entry((way.access, way.set)).and_modify(|number| *number += 1).or_insert(1);
+        let suffix = if *number == 1 { String::new() } else { format!("_{number}") };
+        let name = exchange_name(protocol, &protocol[way.access].name, way.set);
+        let constant = constants.constant(&format!("{name}_ACCESS{suffix}"));
+        (way, constant)
+    });
+    named.collect()
 }
 
-/// Returns how a message travels by an access, alone and as a member of sets.
-fn exchanges(message: &Message, access: AccessId) -> impl Iterator<Item = (&Message, ExchangeId, Option<MessageId>)> {
-    let known = message.exchanges.entries().filter(move |(_, exchange)| exchange.access == access);
-    known.map(move |(id, exchange)| (message, id, exchange.set))
+impl Way {
+    /// Returns how a message travels by one of its exchanges.
+    fn new(protocol: &Protocol, message: &Message, id: ExchangeId) -> Self {
+        let known = &message[id];
+        Self { access: known.access, set: known.set, frames: frames(protocol, message, id) }
+    }
 }
 
 fn frames(protocol: &Protocol, message: &Message, exchange: ExchangeId) -> Vec<Shown> {
@@ -153,16 +154,20 @@ impl Shown {
 }
 
 impl Access {
-    fn new(protocol: &Protocol, selectors: &Selectors, ways: &[Way], way: &Way) -> Self {
+    fn new(
+        protocol: &Protocol,
+        selectors: &Selectors,
+        (way, constant): (&Way, &Ident),
+        is_one_of_several: bool,
+    ) -> Self {
         let known = &protocol[way.access];
-        let is_one_of_several = ways.iter().filter(|other| other.access == way.access).count() > 1;
         let shows = is_one_of_several.then(|| shows(protocol, &way.frames));
         let sentence = format!("{}{}", doc::title(&known.doc, &known.name), membership(protocol, way.set));
         let paragraphs = doc::paragraphs(protocol, &known.doc, &doc::sentence_of(&sentence), None);
-        let paragraphs = paragraphs.into_iter().chain(shows).chain([modes(protocol, &known.answers)]);
+        let paragraphs = paragraphs.into_iter().chain(shows);
         let filter = |frame: &Shown| Filter::new(selectors, &frame.selectors, &frame.constants);
         Self {
-            constant: way.constant.clone(),
+            constant: constant.clone(),
             comment: Comment::new(paragraphs.filter(|text| !text.is_empty())),
             name: known.name.clone(),
             answers: known.answers.to_vec(),
@@ -184,33 +189,13 @@ fn shows(protocol: &Protocol, frames: &[Shown]) -> String {
     facts.collect::<Vec<_>>().join(" ")
 }
 
-/// Says in which modes a request can be sent, and who answers.
-fn modes(protocol: &Protocol, answers: &Answers) -> String {
-    let modes = protocol.modes.iter().zip(answers).filter_map(|(mode, who)| {
-        let who = match (*who)? {
-            Who::One => "the module answers",
-            Who::Each => "each module answers",
-            Who::Coordinator => "one answers for all",
-            Who::Nobody => "nobody answers",
-        };
-        Some(format!("`{}`: {who}.", mode.name))
-    });
-    modes.collect::<Vec<_>>().join(" ")
-}
-
-/// Says who answers requests by an exchange, if not as its access says.
-pub fn own_modes(protocol: &Protocol, message: &Message, id: ExchangeId) -> Option<String> {
-    let own = &message[id];
-    (own.answers != protocol[own.access].answers).then(|| modes(protocol, &own.answers))
-}
-
 /// Names the exchange or the method of a member of a set.
 pub fn exchange_name(protocol: &Protocol, access: &str, set: Option<MessageId>) -> String {
     set.map_or_else(|| access.to_owned(), |set| format!("{access}_{}", protocol[set].name))
 }
 
 /// Names the set in which a message travels as a member.
-fn membership(protocol: &Protocol, set: Option<MessageId>) -> String {
+pub fn membership(protocol: &Protocol, set: Option<MessageId>) -> String {
     set.map_or_else(String::new, |set| format!(" in the set `{}`", protocol[set].name))
 }
 
@@ -225,11 +210,11 @@ impl Exchange {
     ) -> Self {
         let exchange = &message[id];
         let known = &protocol[exchange.access];
-        let (set, period) = (membership(protocol, exchange.set), period(protocol, message, exchange.access));
+        let set = membership(protocol, exchange.set);
         let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
         Self {
             constant: constant.clone(),
-            comment: Comment::line(format!("How it travels by `{}`{set}.{period}", known.name)),
+            comment: Comment::line(format!("The access `{}`{set}, for filters and blank frames of it.", known.name)),
             shared: shared.clone(),
             message: message.name.clone(),
             filter: Filter::new(selectors, &[], &message.constants),
@@ -239,18 +224,4 @@ impl Exchange {
             refusal: refusal.map(|refusal| Filter::new(selectors, &refusal.selectors, &refusal.constants)),
         }
     }
-}
-
-/// Says how often a report comes.
-fn period(protocol: &Protocol, message: &Message, access: AccessId) -> String {
-    let every = message.every.or(protocol[access].every);
-    let timing = every.map(|id| &protocol[id]);
-    timing.map_or_else(String::new, |timing| {
-        let (first, last, unit) = (timing.range.minimum, timing.range.maximum, timing.unit.symbol);
-        if first == last {
-            format!(" It comes every {first} {unit}.")
-        } else {
-            format!(" It comes every {first} to {last} {unit}.")
-        }
-    })
 }

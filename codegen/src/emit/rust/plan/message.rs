@@ -4,13 +4,13 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::doc::{self, Comment};
-use super::exchange::{Accesses, Exchange, exchange_name, own_modes};
+use super::exchange::{Accesses, Exchange, exchange_name};
 use super::literal;
 use super::models::depends_on_model;
 use super::naming::Pool;
 use super::selector::Selectors;
 use super::signal::{Context, Signal};
-use super::types;
+use super::{types, usage};
 use crate::model::{self, ExchangeId, FrameLayout, Kind, MessageId, SignalId, Table};
 
 /// A message.
@@ -37,6 +37,8 @@ pub struct Message {
 pub struct Struct {
     /// Its name.
     pub name: Ident,
+    /// Its comment.
+    pub comment: Comment,
     /// Whether it is the message's own, which has the constants.
     pub is_home: bool,
     /// The signals whose values it has.
@@ -95,10 +97,9 @@ impl Planner<'_> {
         let methods = names.map(|name| members.take(name.clone(), "_request"));
         let ways = Ways { constants: &constants, methods: &methods };
         let structs = types.structs[id].iter().map(|own| self.structure(id, &signals, &ways, own)).collect();
-        let sentence = doc::sentence_of(&doc::title(&known.doc, &known.name));
         Message {
             home: home.clone(),
-            paragraphs: doc::paragraphs(protocol, &known.doc, &sentence, None),
+            paragraphs: usage::paragraphs(protocol, self.accesses, id),
             title: doc::plain_title(&known.doc, &known.name),
             constants: self.constants(known),
             exchanges: known.exchanges.ids().map(|exchange| self.exchange(id, exchange, &constants)).collect(),
@@ -130,6 +131,7 @@ impl Planner<'_> {
         let frame = frame.filter(|_| !own.signals.is_empty());
         Struct {
             name: own.name.clone(),
+            comment: self.comment(&host, own),
             is_home: host.is_home,
             is_exact: own.signals.iter().all(|signal| signals[*signal].coding.is_exact()),
             signals: own.signals.clone(),
@@ -140,6 +142,19 @@ impl Planner<'_> {
                 requests: dependent.iter().map(|frame| self.request_of_model(&host, ways, frame)).collect(),
             }),
         }
+    }
+
+    /// Describes a struct; what holds for the whole message stands at its own.
+    fn comment(&self, host: &Host, own: &types::Struct) -> Comment {
+        let Context { protocol, types, .. } = *self.context;
+        if host.is_home {
+            return Comment::new(usage::paragraphs(protocol, self.accesses, host.id));
+        }
+        let (message, home) = (&protocol[host.id], types.home(host.id));
+        let kinds = protocol.frames_of(message).filter(|frame| frame.signals == own.signals);
+        let mut kinds: Vec<_> = kinds.map(|frame| format!("a {}", frame.kind.name())).collect();
+        kinds.dedup();
+        Comment::line(format!("What {} of [`{home}`] carries.", kinds.join(" or ")))
     }
 
     /// Returns the requests whose methods a struct has: those that carry it, and of a message's own struct those that
@@ -192,9 +207,8 @@ impl Planner<'_> {
         let protocol = self.context.protocol;
         let shared = self.accesses.constant(frame.message, frame.exchange);
         let first = format!("Builds the request [`{}`]({shared}){values}.", protocol[frame.access].name);
-        let modes = own_modes(protocol, &protocol[frame.message], frame.exchange);
         let errors = format!("Refuses {refused}other addressing modes, and undocumented addresses.");
-        std::iter::once(first).chain(modes).chain(["# Errors".to_owned(), errors]).collect()
+        vec![first, "# Errors".to_owned(), errors]
     }
 
     /// Returns the struct that the reply carries.

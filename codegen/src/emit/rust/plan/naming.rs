@@ -140,12 +140,22 @@ impl Pool {
 
     /// Takes a name. If it is taken already, it gets as many suffixes as it needs.
     pub fn take(&mut self, name: String, suffix: &str) -> Ident {
+        ident(&self.take_text(name, suffix))
+    }
+
+    /// Takes the name of a variant in texts: that of the spec, if serde would not make it of the variant.
+    pub fn renamed(&mut self, variant: &Ident, name: &str, suffix: &str) -> Option<String> {
+        let name = self.take_text(name.to_owned(), suffix);
+        (snake_case(variant) != name).then_some(name)
+    }
+
+    fn take_text(&mut self, name: String, suffix: &str) -> String {
         let mut name = name;
         while self.taken.contains(&name) {
             name.push_str(suffix);
         }
         self.taken.insert(name.clone());
-        ident(&name)
+        name
     }
 }
 
@@ -171,6 +181,16 @@ pub fn camel_case(name: &str) -> String {
         letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
     };
     name.split('_').map(capital).collect()
+}
+
+/// Converts `SetOutput` to `set_output` as serde does it: `_` stands before capitals alone, so that `X1` is `x1`.
+fn snake_case(variant: &Ident) -> String {
+    let name = variant.to_string();
+    let letter = |(at, letter): (usize, char)| {
+        let before = (at > 0 && letter.is_ascii_uppercase()).then_some('_');
+        before.into_iter().chain([letter.to_ascii_lowercase()])
+    };
+    name.char_indices().flat_map(letter).collect()
 }
 
 /// Names the variants of an enum, and the one that keeps values without a name.
@@ -235,6 +255,16 @@ mod tests {
         let mut constants = Pool::of_constants();
         let names = ["module_ADDRESS", "Module_ADDRESS", "frame"].map(|name| constants.constant(name).to_string());
         assert_eq!(names, ["MODULE_ADDRESS", "MODULE_ADDRESS_", "FRAME_"]);
+    }
+
+    #[test]
+    fn variants_go_by_the_names_of_the_spec_in_texts() {
+        let mut texts = Pool::default();
+        let mut renamed = |variant, name| texts.renamed(&ident(variant), name, "_message");
+        assert_eq!(renamed("SetOutput", "set_output"), None);
+        assert_eq!(renamed("X1", "x_1").as_deref(), Some("x_1"));
+        assert_eq!(renamed("ModelMessage", "model").as_deref(), Some("model"));
+        assert_eq!(renamed("X1Message", "x_1").as_deref(), Some("x_1_message"));
     }
 
     #[test]

@@ -5,10 +5,10 @@ use quote::quote;
 
 use super::address::Addresses;
 use super::doc::{self, Comment};
-use super::exchange::own_modes;
 use super::message::Message;
 use super::naming::ident;
 use super::types::{FrameTypes, Types};
+use super::variant::Variant;
 use crate::model::{self, FrameId, Kind, MessageId, Protocol, Table};
 
 /// A set of frames.
@@ -65,6 +65,7 @@ struct Planner<'a> {
     types: &'a Types,
     messages: &'a Table<MessageId, Message>,
     addresses: &'a Addresses,
+    variants: &'a [Variant],
     id: MessageId,
 }
 
@@ -75,10 +76,11 @@ impl Set {
         types: &Types,
         messages: &Table<MessageId, Message>,
         addresses: &Addresses,
+        variants: &[Variant],
         id: MessageId,
     ) -> Option<Self> {
         let set = protocol[id].set.as_ref()?;
-        Some(Planner { protocol, types, messages, addresses, id }.set(set))
+        Some(Planner { protocol, types, messages, addresses, variants, id }.set(set))
     }
 }
 
@@ -86,7 +88,7 @@ impl Planner<'_> {
     fn set(&self, set: &model::Set) -> Set {
         let of_members = set.members.iter().map(|member| &self.messages[*member]);
         let members: Vec<_> = set.members.iter().filter_map(|member| self.member(*member)).collect();
-        let assembles = "An [`Assembler`](assembler::Assembler) puts it together of the frames that come.".to_owned();
+        let assembles = "An `assembler::Assembler` puts it together of the frames that come.".to_owned();
         let paragraphs = self.messages[self.id].paragraphs.iter().cloned().chain([assembles]);
         Set {
             comment: Comment::new(paragraphs),
@@ -104,7 +106,7 @@ impl Planner<'_> {
             frame.kind == Kind::Reply && frame.set == Some(self.id)
         };
         let reply = *message.frames.iter().find(is_reply)?;
-        let FrameTypes { variant, carried } = &self.types.frames[reply];
+        let FrameTypes { variant, carried, .. } = &self.types.frames[reply];
         let (home, exchange) = (&known.home, &known.exchanges[self.protocol[reply].exchange].constant);
         Some(Member {
             field: ident(&message.name),
@@ -125,10 +127,9 @@ impl Planner<'_> {
             "Builds the requests [`{}`]({shared}), one for each member in the order in which they are sent.",
             access.name
         );
-        let modes = own_modes(self.protocol, message, id);
         let errors = "Refuses other addressing modes, and undocumented addresses.".to_owned();
-        let paragraphs = std::iter::once(first).chain(modes).chain(["# Errors".to_owned(), errors]);
-        Some(Requests { method: known.methods[id].clone(), comment: Comment::new(paragraphs) })
+        let comment = Comment::new([first, "# Errors".to_owned(), errors]);
+        Some(Requests { method: known.methods[id].clone(), comment })
     }
 
     fn assembly(&self, members: &[Member]) -> Option<Assembly> {
@@ -139,15 +140,13 @@ impl Planner<'_> {
     }
 
     fn others(&self, members: &[Member]) -> Option<TokenStream> {
-        let frames = self.types.frames.iter();
-        let others = frames.filter(|frame| members.iter().all(|member| member.variant != frame.variant));
-        let mut others: Vec<_> = others.map(|FrameTypes { variant, carried }| (variant, carried.is_some())).collect();
-        others.dedup();
-        match others.as_slice() {
-            [] => None,
-            [(variant, true)] => Some(quote!(Message::#variant(_))),
-            [(variant, false)] => Some(quote!(Message::#variant)),
-            _ => Some(quote!(_)),
-        }
+        let is_other = |known: &&Variant| members.iter().all(|member| member.variant != known.name);
+        let mut others = self.variants.iter().filter(is_other);
+        let Variant { name, carried, .. } = others.next()?;
+        Some(match (others.next(), carried) {
+            (Some(_), _) => quote!(_),
+            (None, Some(_)) => quote!(Message::#name(_)),
+            (None, None) => quote!(Message::#name),
+        })
     }
 }

@@ -115,7 +115,10 @@ impl Context<'_> {
         let range = signal.hull(self.protocol.models_of(message));
         let special = |(special, name)| Special::new(name, signal, &coding, special, self.float);
         Signal {
-            comment: Comment::line(format!("The signal `{}`.", signal.name)),
+            comment: Comment::line(format!(
+                "The signal `{}`, to read or write it alone, or to ask for its limits.",
+                signal.name
+            )),
             name: signal.name.clone(),
             place: Written::new(signal.place),
             unit: signal.unit.map(|unit| unit.symbol),

@@ -28,6 +28,8 @@ pub struct Types {
 pub struct Struct {
     /// Its name.
     pub name: Ident,
+    /// The name in texts, of names of the spec.
+    pub text: String,
     /// The signals.
     pub signals: Vec<SignalId>,
 }
@@ -36,6 +38,8 @@ pub struct Struct {
 pub struct FrameTypes {
     /// Its variant.
     pub variant: Ident,
+    /// The name in texts, of names of the spec.
+    pub text: String,
     /// The struct that it carries.
     pub carried: Option<Ident>,
 }
@@ -84,11 +88,15 @@ fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Stru
     }
     sets.sort_by_key(|frame| std::cmp::Reverse(frame.signals.len()));
     let first = sets.first().map(|frame| frame.signals.clone()).unwrap_or_default();
-    let own = Struct { name: types.take(camel_case(&message.name), "Message"), signals: first };
-    let others = sets.iter().skip(1).map(|frame| {
-        let name = format!("{}{}", camel_case(&message.name), camel_case(frame.kind.name()));
-        Struct { name: types.take(name, "Message"), signals: frame.signals.clone() }
-    });
+    let mut named = |text: String, signals| {
+        let name = types.take(camel_case(&text), "Message");
+        Struct { name, text, signals }
+    };
+    let own = named(message.name.clone(), first);
+    let others = sets
+        .iter()
+        .skip(1)
+        .map(|frame| named(format!("{}_{}", message.name, frame.kind.name()), frame.signals.clone()));
     std::iter::once(own).chain(others).collect()
 }
 
@@ -106,17 +114,18 @@ impl FrameTypes {
         variants: &mut Pool,
     ) -> Self {
         let own = structs[frame.message].iter().filter(|known| !known.signals.is_empty());
-        let carried = own.into_iter().find(|known| known.signals == frame.signals).map(|known| known.name.clone());
-        let variant = carried.clone().unwrap_or_else(|| variants.take(empty_variant(protocol, frame), "Frame"));
-        Self { variant, carried }
+        if let Some(Struct { name, text, .. }) = own.into_iter().find(|known| known.signals == frame.signals) {
+            return Self { variant: name.clone(), text: text.clone(), carried: Some(name.clone()) };
+        }
+        let text = empty_variant(protocol, frame);
+        Self { variant: variants.take(camel_case(&text), "Frame"), text, carried: None }
     }
 }
 
 fn empty_variant(protocol: &Protocol, frame: &FrameLayout) -> String {
-    let access = camel_case(&protocol[frame.access].name);
-    let message = camel_case(&protocol[frame.message].name);
+    let (access, message) = (&protocol[frame.access].name, &protocol[frame.message].name);
     match frame.kind {
-        Kind::Request => format!("{access}{message}"),
-        kind @ (Kind::Reply | Kind::Report) => format!("{message}{access}{}", camel_case(kind.name())),
+        Kind::Request => format!("{access}_{message}"),
+        kind @ (Kind::Reply | Kind::Report) => format!("{message}_{access}_{}", kind.name()),
     }
 }

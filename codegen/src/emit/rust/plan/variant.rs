@@ -1,8 +1,11 @@
 //! The variants of the enum of all messages.
 
+use std::collections::HashSet;
+
 use proc_macro2::Ident;
 
 use super::doc::{self, Comment};
+use super::naming::Pool;
 use super::types::{FrameTypes, Types};
 use crate::model::{FrameLayout, Protocol};
 
@@ -10,6 +13,8 @@ use crate::model::{FrameLayout, Protocol};
 pub struct Variant {
     /// Its name.
     pub name: Ident,
+    /// Its name in texts, where that is not made of the other one.
+    pub renamed: Option<String>,
     /// Comment of the variant.
     pub comment: Comment,
     /// The struct that it carries.
@@ -18,14 +23,15 @@ pub struct Variant {
 
 /// Plans the variants, each once.
 pub fn variants(protocol: &Protocol, types: &Types) -> Vec<Variant> {
-    let mut variants: Vec<Variant> = Vec::new();
-    for (layout, FrameTypes { variant, carried }) in protocol.frames.iter().zip(&types.frames) {
-        if !variants.iter().any(|known| known.name == *variant) {
-            let comment = Comment::line(sentence(protocol, layout, carried.is_some()));
-            variants.push(Variant { name: variant.clone(), comment, carried: carried.clone() });
-        }
-    }
-    variants
+    let (mut known, mut texts) = (HashSet::new(), Pool::default());
+    let frames = protocol.frames.iter().zip(&types.frames);
+    let once = frames.filter(|(_, FrameTypes { variant, .. })| known.insert(variant));
+    let variant = |(layout, FrameTypes { variant, text, carried }): (&FrameLayout, &FrameTypes)| {
+        let comment = Comment::line(sentence(protocol, layout, carried.is_some()));
+        let renamed = texts.renamed(variant, text, "_message");
+        Variant { name: variant.clone(), renamed, comment, carried: carried.clone() }
+    };
+    once.map(variant).collect()
 }
 
 fn sentence(protocol: &Protocol, frame: &FrameLayout, carries: bool) -> String {

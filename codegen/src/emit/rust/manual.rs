@@ -1,0 +1,71 @@
+//! The documentation of a module: the document, an example, every message, and the times.
+
+mod example;
+mod table;
+
+use super::plan::Plan;
+use super::plan::doc::{self, Comment};
+use super::plan::usage::time;
+use crate::emit::Float;
+use crate::model::{Doc, Protocol, Quantity, Timing};
+use crate::text::Text;
+
+/// What the documentation is written from.
+pub struct Manual<'a> {
+    /// The protocol.
+    pub protocol: &'a Protocol,
+    /// Its module.
+    pub plan: &'a Plan,
+    /// Type of scaled values.
+    pub float: Float,
+}
+
+impl Manual<'_> {
+    /// Returns the documentation as inner doc comments.
+    pub fn text(&self) -> String {
+        let head = Comment::new([self.title(), self.document(), SHARED.to_owned()]);
+        let parts = [section(head.lines()), self.example(), self.table(), self.timing()];
+        let parts: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        parts.join("//!\n")
+    }
+
+    fn title(&self) -> String {
+        doc::sentence_of(&self.protocol.title.in_rust_doc())
+    }
+
+    /// Says which document it is, and how fast the bus is.
+    fn document(&self) -> String {
+        let Protocol { document, bit_rates, .. } = self.protocol;
+        let [title, version] = [&document.title, &document.version].map(Text::within_rust_doc);
+        let date = document.date.as_ref().map_or_else(String::new, |date| format!(" of {}", date.within_rust_doc()));
+        let rates: Vec<_> = bit_rates.iter().map(|rate| format!("{} kbit/s", f64::from(*rate) / 1000.0)).collect();
+        let bus = if rates.is_empty() { String::new() } else { format!(" The bus runs at {}.", rates.join(" or ")) };
+        format!("{}{bus}", doc::sentence_of(&format!("Document: {title}, version {version}{date}")))
+    }
+
+    /// Lists the times that the document states.
+    fn timing(&self) -> String {
+        let items = self.protocol.timing.iter().map(|timing| self.stated(timing));
+        let list = doc::list(items);
+        if list.is_empty() { list } else { section(Comment::new(["# Timing".to_owned(), list]).lines()) }
+    }
+
+    fn stated(&self, timing: &Timing) -> String {
+        let least = timing.minimum.map(|minimum| format!(", at least {}", quantity(minimum)));
+        let title = doc::title(&timing.doc, &timing.name);
+        let sentence = doc::sentence_of(&format!("{title}: {}{}", time(timing), least.unwrap_or_default()));
+        let errata_at_items = Doc { errata: Vec::new(), ..timing.doc.clone() };
+        doc::paragraphs(self.protocol, &errata_at_items, &sentence, None).join(" ")
+    }
+}
+
+const SHARED: &str = "What all protocols have in common, such as `Frame` and `Error`, is re-exported below.";
+
+/// Writes lines as inner doc comments.
+fn section(lines: &[String]) -> String {
+    lines.iter().fold(String::new(), |text, line| text + format!("//! {line}").trim_end() + "\n")
+}
+
+fn quantity(Quantity { value, unit }: Quantity) -> String {
+    format!("{value}{}", unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol)))
+}

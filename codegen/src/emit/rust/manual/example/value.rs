@@ -1,0 +1,54 @@
+//! Values of signals: as Rust writes them, and as generated code shows them.
+
+use proc_macro2::TokenStream;
+
+use crate::emit::Float;
+use crate::emit::rust::manual::Manual;
+use crate::emit::rust::plan;
+use crate::interpret::Value;
+use crate::model::{Encoding, Id, Signal};
+
+/// Writes the value of a struct's field; `None` of one that has no short literal.
+pub fn literal(manual: &Manual, planned: &plan::signal::Signal, signal: &Signal, bits: u64) -> Option<String> {
+    let raw = signal.raw_of(bits);
+    match signal.encoding {
+        Encoding::Number { .. } => Some(squeezed(&planned.coding.value_of(signal, raw, manual.float))),
+        Encoding::Float => Some(format!("{:?}", f32::from_bits(u32::try_from(bits).ok()?))),
+        Encoding::Named(id) => {
+            let place = manual.protocol[id].values.iter().position(|value| value.raw == raw)?;
+            let known = manual.plan.enumerations.get(id.place())?;
+            Some(format!("{}::{}", known.name, known.values.get(place)?.variant))
+        }
+        Encoding::Status(_) | Encoding::Text | Encoding::Packed { .. } => None,
+    }
+}
+
+/// Writes tokens of a literal or of a call without blanks.
+pub fn squeezed(tokens: &TokenStream) -> String {
+    tokens.to_string().replace(' ', "")
+}
+
+/// Writes a value with its unit as generated code shows it; `None` where the signal has none.
+pub fn shown(manual: &Manual, signal: &Signal, value: &Value) -> Option<String> {
+    let unit = signal.unit_text();
+    match value {
+        Value::None => None,
+        Value::Integer(value) => Some(format!("{value}{unit}")),
+        Value::Number(value) => Some(format!("{}{unit}", number(*value, manual.float, signal))),
+        Value::Name(text) | Value::Text(text) => Some(text.clone()),
+        Value::Status { set, .. } => {
+            let word = &manual.protocol[signal.encoding.status_word()?];
+            let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str());
+            Some(format!("{{{}}}", names.collect::<Vec<_>>().join(", ")))
+        }
+    }
+}
+
+/// Writes a number in the precision that it is calculated in.
+#[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is shown")]
+fn number(value: f64, float: Float, signal: &Signal) -> String {
+    match float {
+        Float::F32 if !signal.encoding.is_single() => (value as f32).to_string(),
+        Float::F32 | Float::F64 => value.to_string(),
+    }
+}
