@@ -189,7 +189,7 @@ fn mistakes_without_number_are_reported_soon() -> Result {
                 times: 30_000,
             },
             ":13:5: ",
-            "no example bears out `one.value`, and 30000 contradict it",
+            "no example confirms `one.value`, and 30000 contradict it",
         ),
         (
             "wrong keys",

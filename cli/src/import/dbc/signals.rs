@@ -1,4 +1,6 @@
-//! What the number of a signal means.
+//! Translates what the number of a signal means.
+
+use std::collections::HashSet;
 
 use can_dbc::{MessageId, NumericValue, Signal, SignalExtendedValueType, ValueType};
 use canspec_codegen::check::has_exact_steps;
@@ -137,14 +139,14 @@ fn beside(
 
 /// Returns the values that the bits hold, each once.
 fn fitting<'a>(named: &[Named<'a>], (first, last): (i128, i128), meaning: &mut Translated) -> Vec<Named<'a>> {
-    let mut kept: Vec<Named> = Vec::new();
+    let (mut kept, mut seen) = (Vec::new(), HashSet::new());
     for (raw, name) in named {
         if !(first..=last).contains(&i128::from(*raw)) {
             meaning.lost.push(format!("its bits do not hold {raw}, which is called {}", one_line(name)));
-        } else if kept.iter().any(|(known, _)| known == raw) {
+        } else if !seen.insert(*raw) {
             meaning.lost.push(format!("{raw} is also called {}", one_line(name)));
         } else {
-            kept.push((*raw, name));
+            kept.push((*raw, *name));
         }
     }
     kept.sort_by_key(|(raw, _)| *raw);

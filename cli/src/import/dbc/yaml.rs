@@ -14,8 +14,9 @@ const UNCLEAR: [&str; 9] = ["on", "off", "yes", "no", "y", "n", "true", "false",
 pub fn quoted(text: &str) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "_.-+/() ".contains(letter);
     let begins = text.starts_with(|first: char| first.is_ascii_alphanumeric());
+    let is_marked = text.split(' ').any(|word| word.is_empty() || word.starts_with('-'));
     let is_unclear = UNCLEAR.contains(&text.to_ascii_lowercase().as_str());
-    if begins && !text.ends_with(' ') && text.chars().all(is_plain) && !is_unclear {
+    if begins && !is_marked && text.chars().all(is_plain) && !is_unclear {
         return text.to_owned();
     }
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
@@ -138,9 +139,9 @@ mod tests {
         for plain in ["Flow in l/min", "0x10", "a.dbc", "7"] {
             assert_eq!(quoted(plain), plain);
         }
-        let texts = [("No", "\"No\""), ("", "\"\""), ("a: b", "\"a: b\""), ("a\"\\", "\"a\\\"\\\\\""), ("%", "\"%\"")];
-        for (text, expected) in texts {
-            assert_eq!(quoted(text), expected);
+        for text in ["No", "", "a: b", "%", "a ", "section -", "a -b"] {
+            assert_eq!(quoted(text), format!("\"{text}\""));
         }
+        assert_eq!(quoted("a\"\\"), "\"a\\\"\\\\\"");
     }
 }
