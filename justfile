@@ -20,12 +20,12 @@ bench:
 growth:
     cargo bench --quiet -p canspec --bench growth
 
-# Look for inputs that break `front_end` or `frames`, guided by coverage, for so many seconds.
+# Look for inputs that break `front_end` or `frames` for some seconds, guided by coverage.
 fuzz target seconds="600":
     cargo run --quiet --bin seeds -- target/fuzz
     cd tests && cargo fuzz run --sanitizer none {{target}} ../target/fuzz/{{target}} -- -max_total_time={{seconds}}
 
-# Compile so many random specs and their Rust, from a seed on.
+# Compile `count` random specs and their Rust, from the seed `first` on.
 random-specs count="10000" first="0":
     cargo run --quiet --bin random_specs -- {{count}} {{first}}
 

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map;
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, Write};
+use std::path::Path;
 
 use canspec_codegen::interpret::{Form, Frame};
 
@@ -13,6 +15,8 @@ const INTERFACE: u32 = 1;
 const ENHANCED_PACKET: u32 = 6;
 /// Tells the reader the byte order: little endian.
 const BYTE_ORDER: u32 = 0x1A2B_3C4D;
+/// Option of a section: the program that wrote it.
+const APPLICATION: u16 = 4;
 /// `LINKTYPE_CAN_SOCKETCAN`.
 const SOCKETCAN: u16 = 227;
 /// Options of an interface: its name, and the decimal places of its times.
@@ -25,6 +29,37 @@ const REMOTE: u32 = 1 << 30;
 const ERROR: u32 = 1 << 29;
 /// The flag of an FD frame. The flags of the log come in addition.
 const FD: u8 = 4;
+
+/// Makes the file of a capture, in place of one that canspec wrote or that is empty.
+///
+/// # Errors
+///
+/// Where the file cannot be written, or is none of canspec's.
+pub fn create(path: &Path) -> io::Result<File> {
+    if !fs::metadata(path).is_ok_and(|known| known.is_file()) {
+        return File::options().write(true).create(true).truncate(false).open(path);
+    }
+    let mut file = File::options().read(true).write(true).open(path)?;
+    let head = section()?;
+    let mut found = Vec::new();
+    (&file).take(head.len() as u64).read_to_end(&mut found)?;
+    if !found.is_empty() && found != head {
+        let why = "the file is no capture of canspec, so it is kept; name another one after `--to pcapng`";
+        return Err(io::Error::new(io::ErrorKind::AlreadyExists, why));
+    }
+    file.set_len(0)?;
+    file.rewind()?;
+    Ok(file)
+}
+
+/// Returns the block with which each capture of canspec begins.
+fn section() -> io::Result<Vec<u8>> {
+    let length_unknown = u64::MAX.to_le_bytes();
+    let head = [&BYTE_ORDER.to_le_bytes()[..], &1_u16.to_le_bytes(), &0_u16.to_le_bytes(), &length_unknown];
+    let mut bytes = Vec::new();
+    block(&mut bytes, SECTION, &[head.concat(), option(APPLICATION, b"canspec"), vec![0; 4]].concat())?;
+    Ok(bytes)
+}
 
 /// A capture that is being written; each channel of the log is an interface.
 pub struct Capture {
@@ -39,9 +74,7 @@ impl Capture {
     ///
     /// Where `out` cannot be written.
     pub fn begin(out: &mut impl Write) -> io::Result<Self> {
-        let length_unknown = u64::MAX.to_le_bytes();
-        let head = [&BYTE_ORDER.to_le_bytes()[..], &1_u16.to_le_bytes(), &0_u16.to_le_bytes(), &length_unknown];
-        block(out, SECTION, &head.concat())?;
+        out.write_all(&section()?)?;
         out.flush()?;
         Ok(Self { channels: HashMap::new() })
     }
@@ -151,10 +184,11 @@ mod tests {
         let mut bytes = Vec::new();
         let mut capture = Capture::begin(&mut bytes).expect("a vector takes everything");
         for line in lines {
-            let entry = log::read(line).expect("a readable line").expect("a frame");
+            let mut reader = log::Reader::default();
+            let entry = reader.read(line).expect("a readable line").expect("a frame");
             capture.frame(&mut bytes, &entry).expect("a time").expect("a vector takes everything");
         }
-        let mut rest = &bytes[28..];
+        let mut rest = &bytes[section().expect("a vector takes everything").len()..];
         let mut blocks = Vec::new();
         while let Some(length) = rest.get(4..8) {
             let (block, after) = rest.split_at(u32::from_le_bytes(length.try_into().expect("four bytes")) as usize);
@@ -178,6 +212,15 @@ mod tests {
         let expected = [interface(0), packet(0), interface(1), packet(1), packet(0)];
         let lines = ["(1.5) can0 123#AB", "(1.5) can1 123#AB", "(1.5) can0 123#AB"];
         assert_eq!(blocks(&lines), expected.map(|block| block.replace(' ', "")));
+    }
+
+    #[test]
+    fn a_capture_begins_with_the_program_that_wrote_it() {
+        // By hand as above: the option 4 has 7 bytes, and the length of the section is unknown.
+        let head = "0a0d0d0a2c000000 4d3c2b1a01000000 ffffffffffffffff 0400070063616e7370656300 00000000 2c000000";
+        let mut bytes = Vec::new();
+        Capture::begin(&mut bytes).expect("a vector takes everything");
+        assert_eq!(log::hexadecimal(&bytes).to_lowercase(), head.replace(' ', ""));
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! `canspec decode`.
 
-use std::fs::File;
+mod choice;
+mod rows;
+mod summary;
+
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -8,15 +11,18 @@ use canspec_codegen::interpret::{self, Decoded, Frame, Unrecognised};
 use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
-use crate::capture::Capture;
+use crate::capture::{self, Capture};
 use crate::failure::{Failure, Finish, shown};
 use crate::input::Input;
 use crate::line::{self, Origin};
-use crate::log::{self, Entry};
+use crate::log::{Entry, Reader};
 use crate::model::Model;
 use crate::output::output;
-use crate::protocols::Several;
+use crate::protocols::{self, Several};
 use crate::table::Table;
+use choice::Choice;
+use rows::Rows;
+use summary::Summary;
 
 /// Decode a log of a CAN bus.
 ///
@@ -29,11 +35,16 @@ pub struct Decode {
     protocols: Several,
     #[command(flatten)]
     model: Model,
-    /// A table, or a JSON object a frame.
+    #[command(flatten)]
+    choice: Choice,
+    /// A table, a JSON object a frame, or a row of CSV a signal.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+    /// Counts and rates in place of the frames.
+    #[arg(long, conflicts_with = "to")]
+    summary: bool,
     /// Write the frames, as they are, to a capture for Wireshark; FORMAT is `pcapng`.
-    #[arg(long, num_args = 2, value_names = ["FORMAT", "OUT"], group = "Several", conflicts_with_all = ["name", "format"])]
+    #[arg(long, num_args = 2, value_names = ["FORMAT", "OUT"], conflicts_with_all = ["protocol", "spec", "name", "format"])]
     to: Vec<String>,
     /// The log; standard input without one, or for `-`.
     file: Option<PathBuf>,
@@ -41,17 +52,22 @@ pub struct Decode {
 
 const EXAMPLES: &str = "Examples:
   candump -L can0 | canspec decode --protocol NAME
+  canspec decode --protocol NAME --summary bus.asc
+  canspec decode --protocol NAME --message output --signal voltage --format csv bus.log
   canspec decode --to pcapng bus.pcapng bus.log";
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     Text,
     Jsonl,
+    Csv,
 }
 
 enum Printer {
     Text(Table),
     Jsonl,
+    Csv(Rows),
+    Summary { counts: Box<Summary>, jsonl: bool },
 }
 
 impl Decode {
@@ -66,37 +82,75 @@ impl Decode {
 
     fn capture(&self, path: &Path) -> Result<Finish, Failure> {
         let failure = |error: io::Error| Failure::input(path, &error);
-        let log = Input::open(self.file.as_deref())?;
+        let log = Input::open(self.file.as_deref())?.summed_up();
         if log.is_at(path) {
             let why = format!("{} is the log itself; name another file for the capture", shown(path));
             return Err(Failure::Call(why));
         }
-        let mut out = BufWriter::new(File::create(path).map_err(failure)?);
+        let mut out = BufWriter::new(capture::create(path).map_err(failure)?);
         let mut capture = Capture::begin(&mut out).map_err(failure)?;
+        let mut reader = Reader::default();
         let finish = log.each(out, |out, line| {
-            let entry = line.text.and_then(log::read)?;
+            let entry = reader.read(line.text?)?;
             entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))
         });
         finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })
     }
 
     fn print(&self) -> Result<Finish, Failure> {
-        let protocols = self.protocols.load()?;
-        let models = self.model.find(&protocols)?;
+        let settings = self.protocols.choice()?;
+        let protocols = protocols::load_all(&settings)?;
+        let models = self.model.find(&protocols, &settings)?;
+        self.choice.check(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
-        let mut printer = self.printer(&protocols);
-        let out = BufWriter::new(output()?);
-        Input::open(self.file.as_deref())?.each(out, |out, line| {
-            let entry = line.text.and_then(log::read)?;
-            Ok(entry.map_or(Ok(()), |entry| printer.frame(out, &devices, line.number, &entry)))
-        })
+        let mut printer = self.printer(&protocols)?;
+        let mut out = BufWriter::new(output()?);
+        let mut reader = Reader::default();
+        let input = Input::open(self.file.as_deref())?;
+        let input = if self.summary { input.summed_up() } else { input };
+        let finish = input.each(&mut out, |out, line| {
+            let entry = reader.read(line.text?)?;
+            Ok(entry.map_or(Ok(()), |entry| self.show(&mut printer, out, &devices, line.number, &entry)))
+        })?;
+        printer.end(&mut out)?;
+        out.flush()?;
+        Ok(finish)
     }
 
-    fn printer(&self, protocols: &[Protocol]) -> Printer {
-        match self.format {
-            Format::Text => Printer::Text(Table::new(protocols)),
-            Format::Jsonl => Printer::Jsonl,
+    fn printer(&self, protocols: &[Protocol]) -> Result<Printer, Failure> {
+        match (self.format, self.summary) {
+            (Format::Csv, true) => {
+                Err(Failure::Call("a summary has several tables; choose the format `text` or `jsonl`".to_owned()))
+            }
+            (format, true) => {
+                let jsonl = matches!(format, Format::Jsonl);
+                Ok(Printer::Summary { counts: Box::default(), jsonl })
+            }
+            (Format::Text, false) => Ok(Printer::Text(Table::new(protocols))),
+            (Format::Jsonl, false) => Ok(Printer::Jsonl),
+            (Format::Csv, false) => Ok(Printer::Csv(Rows::default())),
         }
+    }
+
+    fn show(
+        &self,
+        printer: &mut Printer,
+        out: &mut impl Write,
+        devices: &[Device<'_>],
+        line: usize,
+        entry: &Entry<'_>,
+    ) -> io::Result<()> {
+        let Some((protocol, mut decoded)) = decode(devices, &entry.frame) else { return Ok(()) };
+        let is_chosen = match &mut decoded {
+            Ok(decoded) => self.choice.keep(protocol, decoded),
+            Err(_) => self.choice.is_everything(),
+        };
+        if !is_chosen {
+            return Ok(());
+        }
+        let Entry { time, channel, frame, .. } = entry;
+        let origin = Origin { line, time: time.as_deref(), channel: *channel, frame, protocol };
+        printer.frame(out, &origin, &decoded)
     }
 }
 
@@ -104,16 +158,27 @@ impl Printer {
     fn frame(
         &mut self,
         out: &mut impl Write,
-        devices: &[Device<'_>],
-        line: usize,
-        entry: &Entry<'_>,
+        origin: &Origin<'_>,
+        decoded: &Result<Decoded, Unrecognised>,
     ) -> io::Result<()> {
-        let Some((protocol, decoded)) = decode(devices, &entry.frame) else { return Ok(()) };
-        let Entry { time, channel, frame, .. } = entry;
-        let origin = Origin { line, time: time.as_deref(), channel: *channel, frame, protocol };
         match self {
-            Self::Text(table) => table.write(out, &origin, &decoded),
-            Self::Jsonl => line::write(out, &origin, &decoded),
+            Self::Text(table) => table.write(out, origin, decoded),
+            Self::Jsonl => line::write(out, origin, decoded),
+            Self::Csv(rows) => rows.write(out, origin, decoded),
+            Self::Summary { counts, .. } => {
+                counts.count(origin, decoded);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes what comes after the last frame.
+    fn end(&mut self, out: &mut impl Write) -> io::Result<()> {
+        match self {
+            Self::Text(_) | Self::Jsonl => Ok(()),
+            Self::Csv(rows) => rows.begin(out),
+            Self::Summary { counts, jsonl: true } => counts.write_jsonl(out),
+            Self::Summary { counts, jsonl: false } => counts.write_text(out),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use canspec_codegen::interpret::{self, Frame, Target};
+use canspec_codegen::interpret::{self, Frame, Target, Targets};
 use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
@@ -13,7 +13,7 @@ use crate::line::Content;
 use crate::log;
 use crate::model::Model;
 use crate::output::output;
-use crate::protocols::One;
+use crate::protocols::{self, One};
 
 /// Make a request, or turn decoded lines back into frames.
 ///
@@ -36,8 +36,8 @@ pub struct Encode {
     /// Read decoded lines from the file, or from standard input.
     #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["to", "source"])]
     from: Option<Format>,
-    /// Whom to address: `module:3`, `broadcast`, or `MODE:N` with an addressing mode.
-    #[arg(long, value_name = "TARGET", required_unless_present = "from")]
+    /// Whom to address: `module:3`, `broadcast`, or `MODE:N` with an addressing mode; needed where there is a choice.
+    #[arg(long, value_name = "TARGET")]
     to: Option<String>,
     /// The sender's address, instead of the one that the spec names.
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
@@ -64,11 +64,12 @@ fn address(text: &str) -> Result<i64, String> {
 impl Encode {
     /// Prints the frames asked for.
     pub fn run(&self) -> Result<Finish, Failure> {
-        let protocol = self.protocol.load()?;
-        let model = self.model.find_in(&protocol)?;
-        match (&self.to, self.from) {
-            (Some(to), None) => self.request(&protocol, model, to),
-            _ => lines(&protocol, model, self.file()?),
+        let settings = self.protocol.choice()?;
+        let protocol = protocols::load_one(&settings)?;
+        let model = self.model.find_in(&protocol, &settings)?;
+        match self.from {
+            None => self.request(&protocol, model),
+            Some(Format::Jsonl) => lines(&protocol, model, self.file()?),
         }
     }
 
@@ -80,7 +81,7 @@ impl Encode {
         }
     }
 
-    fn request(&self, protocol: &Protocol, model: Option<ModelId>, to: &str) -> Result<Finish, Failure> {
+    fn request(&self, protocol: &Protocol, model: Option<ModelId>) -> Result<Finish, Failure> {
         let (signals, names): (Vec<&String>, Vec<&String>) = self.words.iter().partition(|word| word.contains('='));
         let (access, message) = match names.as_slice() {
             [message] => (None, message),
@@ -89,12 +90,29 @@ impl Encode {
         };
         let pair = |word: &&String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
         let signals: Vec<_> = signals.iter().filter_map(pair).collect();
-        let target = Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string()))?;
+        let target = self.target(protocol, access, message)?;
         let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
         let frames = frames.map_err(|refusal| Failure::Input(refusal.to_string()))?;
         let mut out = output()?;
         frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
         Ok(Finish::Done)
+    }
+}
+
+impl Encode {
+    /// Returns the target of the call, or the only one that there is.
+    fn target(&self, protocol: &Protocol, access: Option<&str>, message: &str) -> Result<Target, Failure> {
+        match &self.to {
+            Some(to) => Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string())),
+            None => match interpret::targets(protocol, access, message) {
+                Err(refusal) => Err(Failure::Input(refusal.to_string())),
+                Ok(Targets::One(target)) => Ok(target),
+                Ok(Targets::Choice(forms)) => {
+                    let forms: Vec<_> = forms.iter().map(|form| format!("`--to {form}`")).collect();
+                    Err(Failure::Call(format!("{message}: say whom to address, with {}", forms.join(" or "))))
+                }
+            },
+        }
     }
 }
 

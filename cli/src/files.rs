@@ -7,7 +7,7 @@ use crate::capture::Capture;
 use crate::encode;
 use crate::import;
 use crate::line::{self, Origin};
-use crate::log;
+use crate::log::Reader;
 use crate::table::Table;
 
 /// A decoded line of a log.
@@ -20,23 +20,29 @@ pub struct Shown {
     pub capture: Result<Vec<u8>, String>,
 }
 
-/// Decodes a line of a log, `None` of a blank one.
-///
-/// # Errors
-///
-/// Says why the line is unreadable.
-pub fn decoded(protocol: &Protocol, line: &str) -> Result<Option<Shown>, String> {
-    let Some(entry) = log::read(line)? else { return Ok(None) };
-    let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
-    let origin = Origin { line: 1, time, channel, frame, protocol };
-    let decoded = decode(protocol, None, frame);
-    let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
-    let unwritten = |error: std::io::Error| error.to_string();
-    line::write(&mut json, &origin, &decoded).map_err(unwritten)?;
-    Table::new(std::slice::from_ref(protocol)).write(&mut table, &origin, &decoded).map_err(unwritten)?;
-    let capture = Capture::begin(&mut bytes).map_err(unwritten)?.frame(&mut bytes, &entry);
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
-    Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))
+/// A log that is read line by line.
+#[derive(Default)]
+pub struct Log(Reader);
+
+impl Log {
+    /// Decodes the next line, `None` of one without a frame.
+    ///
+    /// # Errors
+    ///
+    /// Says why the line is unreadable.
+    pub fn decoded(&mut self, protocol: &Protocol, line: &str) -> Result<Option<Shown>, String> {
+        let Some(entry) = self.0.read(line)? else { return Ok(None) };
+        let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
+        let origin = Origin { line: 1, time, channel, frame, protocol };
+        let decoded = decode(protocol, None, frame);
+        let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+        let unwritten = |error: std::io::Error| error.to_string();
+        line::write(&mut json, &origin, &decoded).map_err(unwritten)?;
+        Table::new(std::slice::from_ref(protocol)).write(&mut table, &origin, &decoded).map_err(unwritten)?;
+        let capture = Capture::begin(&mut bytes).map_err(unwritten)?.frame(&mut bytes, &entry);
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
+        Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))
+    }
 }
 
 /// Makes the line of a log from a JSON object. A blank line gives `None`.

@@ -5,6 +5,7 @@ use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, Finish, escaped, shown, tell};
+use crate::progress::Progress;
 
 /// Longer lines are unreadable.
 const LONGEST: usize = 1 << 16;
@@ -39,6 +40,10 @@ pub struct Input {
     reader: BufReader<Box<dyn Read>>,
     number: usize,
     line: Vec<u8>,
+    /// How many bytes there are, where that is known.
+    length: Option<u64>,
+    /// The output comes when all is read.
+    is_summed_up: bool,
 }
 
 /// A line of the input.
@@ -63,7 +68,8 @@ impl Input {
             }),
             Some(path) => {
                 let file = File::open(path).map_err(|error| Failure::input(path, &error))?;
-                Ok(Self { file: identity(path), ..Self::new(path, Box::new(file)) })
+                let length = file.metadata().ok().filter(std::fs::Metadata::is_file).map(|file| file.len());
+                Ok(Self { file: identity(path), length, ..Self::new(path, Box::new(file)) })
             }
         }
     }
@@ -75,7 +81,13 @@ impl Input {
 
     fn new(name: &Path, reader: Box<dyn Read>) -> Self {
         let reader = BufReader::with_capacity(LONGEST, reader);
-        Self { name: name.to_owned(), file: None, reader, number: 0, line: Vec::new() }
+        let (name, line) = (name.to_owned(), Vec::new());
+        Self { name, file: None, reader, number: 0, line, length: None, is_summed_up: false }
+    }
+
+    /// Says that nothing is written before all is read.
+    pub fn summed_up(self) -> Self {
+        Self { is_summed_up: true, ..self }
     }
 
     /// Reads the next line; `None` at the end.
@@ -122,14 +134,19 @@ impl Input {
         mut work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
     ) -> Result<Finish, Failure> {
         let mut finish = Finish::Done;
+        let mut progress = self.length.and_then(|length| Progress::of(length, !self.is_summed_up));
         while let Some(line) = self.next_line()? {
             match work(&mut out, line) {
                 Ok(written) => written?,
                 Err(why) => {
                     out.flush()?;
+                    progress.iter_mut().for_each(Progress::clear);
                     self.complain(&why);
                     finish = Finish::Errors;
                 }
+            }
+            if let Some(progress) = &mut progress {
+                progress.advance(self.line.len());
             }
             if self.may_wait() {
                 out.flush()?;

@@ -9,23 +9,29 @@ mod capture;
 mod check;
 mod columns;
 mod compile;
+mod completions;
 mod decode;
 mod encode;
 mod examples;
 mod export;
 mod failure;
 pub mod files;
+mod identify;
 mod import;
 mod input;
 mod line;
 mod list;
 mod log;
+mod manual;
 mod model;
 mod output;
+mod progress;
 mod protocols;
 mod rules;
 mod schema;
+mod settings;
 mod table;
+mod value;
 
 use std::process::ExitCode;
 
@@ -48,12 +54,15 @@ const EXIT_STATUS: &str = "Exit status: 0 done, 1 the input had errors, 2 the ca
 enum Command {
     Check(check::Check),
     Compile(compile::Compile),
+    Completions(completions::Completions),
     Decode(decode::Decode),
     Encode(encode::Encode),
     Examples(examples::Examples),
     Export(export::Export),
+    Identify(identify::Identify),
     Import(import::Import),
     List(list::List),
+    Manual(manual::Manual),
     Rules(rules::Rules),
     Schema(schema::Schema),
 }
@@ -63,12 +72,15 @@ impl Command {
         match self {
             Self::Check(check) => check.run(),
             Self::Compile(compile) => compile.run(),
+            Self::Completions(completions) => completions.run(),
             Self::Decode(decode) => decode.run(),
             Self::Encode(encode) => encode.run(),
             Self::Examples(examples) => examples.run(),
             Self::Export(export) => export.run(),
+            Self::Identify(identify) => identify.run(),
             Self::Import(import) => import.run(),
             Self::List(list) => list.run(),
+            Self::Manual(manual) => manual.run(),
             Self::Rules(rules) => rules.run(),
             Self::Schema(_) => schema::Schema::run(),
         }

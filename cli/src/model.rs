@@ -4,6 +4,7 @@ use canspec_codegen::model::{DeviceModel, ModelId, Protocol};
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::settings::Settings;
 
 /// Chooses a device model.
 #[derive(Args)]
@@ -14,9 +15,11 @@ pub struct Model {
 }
 
 impl Model {
-    /// Returns the model in each protocol that has it.
-    pub fn find(&self, protocols: &[Protocol]) -> Result<Vec<Option<ModelId>>, Failure> {
-        let Some(name) = &self.name else { return Ok(vec![None; protocols.len()]) };
+    /// Returns the model, or else that of the settings, in each protocol that has it.
+    pub fn find(&self, protocols: &[Protocol], settings: &Settings) -> Result<Vec<Option<ModelId>>, Failure> {
+        let Some(name) = self.name.as_ref().or(settings.model.as_ref()) else {
+            return Ok(vec![None; protocols.len()]);
+        };
         let is_meant =
             |model: &DeviceModel| model.name == *name || model.items.iter().any(|item| item.for_people() == name);
         let found: Vec<_> = protocols.iter().map(|protocol| protocol.models.position(is_meant)).collect();
@@ -24,8 +27,8 @@ impl Model {
     }
 
     /// Returns the model in a protocol.
-    pub fn find_in(&self, protocol: &Protocol) -> Result<Option<ModelId>, Failure> {
-        Ok(self.find(std::slice::from_ref(protocol))?.into_iter().flatten().next())
+    pub fn find_in(&self, protocol: &Protocol, settings: &Settings) -> Result<Option<ModelId>, Failure> {
+        Ok(self.find(std::slice::from_ref(protocol), settings)?.into_iter().flatten().next())
     }
 }
 

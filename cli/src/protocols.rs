@@ -9,10 +9,11 @@ use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::settings::Settings;
 
 /// Chooses one protocol.
 #[derive(Args)]
-#[group(required = true, multiple = false)]
+#[group(multiple = false)]
 pub struct One {
     /// A built-in protocol.
     #[arg(long, value_name = "NAME")]
@@ -23,32 +24,66 @@ pub struct One {
 }
 
 impl One {
+    /// Returns what is chosen here or by the settings.
+    pub fn choice(&self) -> Result<Settings, Failure> {
+        chosen(self.protocol.as_slice(), self.spec.as_slice())
+    }
+
     /// Compiles the chosen spec.
     pub fn load(&self) -> Result<Protocol, Failure> {
-        load(choose(self.protocol.as_deref(), self.spec.as_deref())?)
+        load_one(&self.choice()?)
     }
 }
 
 /// Chooses protocols, in the order in which they are tried.
 #[derive(Args)]
-#[group(required = true, multiple = false)]
+#[group(multiple = true)]
 pub struct Several {
     /// A built-in protocol; repeatable, and the first one that recognises a frame wins.
     #[arg(long, value_name = "NAME")]
     protocol: Vec<String>,
     /// A spec file; repeatable, and tried before the built-in protocols.
     #[arg(long, value_name = "FILE")]
-    spec: Option<PathBuf>,
+    spec: Vec<PathBuf>,
 }
 
 impl Several {
-    /// Compiles the chosen specs.
-    pub fn load(&self) -> Result<Vec<Protocol>, Failure> {
-        match &self.spec {
-            Some(path) => Ok(vec![load(file(path)?)?]),
-            None => self.protocol.iter().map(|name| load(built_in(name)?)).collect(),
-        }
+    /// Returns what is chosen here or by the settings.
+    pub fn choice(&self) -> Result<Settings, Failure> {
+        chosen(&self.protocol, &self.spec)
     }
+}
+
+/// Returns what the call chooses, or else what the settings do.
+fn chosen(protocols: &[String], specs: &[PathBuf]) -> Result<Settings, Failure> {
+    if protocols.is_empty() && specs.is_empty() {
+        return Settings::find();
+    }
+    Ok(Settings { protocols: protocols.to_vec(), specs: specs.to_vec(), model: None })
+}
+
+/// Compiles the one spec of a choice.
+pub fn load_one(choice: &Settings) -> Result<Protocol, Failure> {
+    let protocols = load_all(choice)?;
+    let names: Vec<String> = protocols.iter().map(|protocol| format!("`{}`", protocol.name)).collect();
+    let [protocol] = <[Protocol; 1]>::try_from(protocols).map_err(|_| {
+        let why = format!("one protocol is needed, and the settings name {}", names.join(", "));
+        Failure::Call(format!("{why}; choose one with --protocol NAME or --spec FILE"))
+    })?;
+    Ok(protocol)
+}
+
+/// Compiles all specs of a choice, which has at least one.
+pub fn load_all(choice: &Settings) -> Result<Vec<Protocol>, Failure> {
+    let files = choice.specs.iter().map(|path| load(file(path)?));
+    let protocols: Vec<Protocol> =
+        files.chain(choice.protocols.iter().map(|name| load(built_in(name)?))).collect::<Result<_, _>>()?;
+    if protocols.is_empty() { Err(nothing_chosen()) } else { Ok(protocols) }
+}
+
+fn nothing_chosen() -> Failure {
+    let call = "name a protocol with --protocol NAME or a file with --spec FILE";
+    Failure::Call(format!("{call}; CANSPEC_PROTOCOL or a file canspec.toml can name it too"))
 }
 
 /// Returns the text of a spec file.
@@ -67,9 +102,7 @@ pub fn choose(name: Option<&str>, path: Option<&Path>) -> Result<Source, Failure
     match (name, path) {
         (Some(name), _) => built_in(name),
         (None, Some(path)) => file(path),
-        (None, None) => {
-            Err(Failure::Call("name a protocol with --protocol NAME or a file with --spec FILE".to_owned()))
-        }
+        (None, None) => Err(nothing_chosen()),
     }
 }
 

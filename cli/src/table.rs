@@ -3,11 +3,12 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressPattern, Kind, Mode, Protocol, Signal};
+use canspec_codegen::model::{AddressPattern, Kind, Mode, Protocol};
 
 use crate::columns::{Columns, wrap};
-use crate::line::{Origin, bit_names};
+use crate::line::Origin;
 use crate::log;
+use crate::value;
 
 const HEADINGS: [&str; 6] = ["TIME", "CHANNEL", "IDENTIFIER", "ADDRESS", "ACCESS", "MESSAGE"];
 
@@ -156,32 +157,9 @@ fn remark(rule: &str, text: &str, room: usize) -> Vec<String> {
 
 fn signal(protocol: &Protocol, decoded: &Decoded, reading: &Reading) -> String {
     let signal = &protocol.messages[decoded.message].signals[reading.signal];
-    let value = value(protocol, signal, reading);
+    let value = value::shown(protocol, signal, reading);
     match (&reading.value, signal.unit) {
         (Value::Integer(_) | Value::Number(_), Some(unit)) => format!("{} {value} {}", signal.name, unit.symbol),
         _ => format!("{} {value}", signal.name),
     }
-}
-
-fn value(protocol: &Protocol, signal: &Signal, reading: &Reading) -> String {
-    match &reading.value {
-        Value::None => format!("? (raw 0x{:X})", reading.bits),
-        Value::Integer(number) => number.to_string(),
-        Value::Number(number) if signal.encoding.is_single() => single(*number),
-        Value::Number(number) => format!("{number:?}"),
-        Value::Name(text) | Value::Text(text) => text.escape_debug().to_string(),
-        Value::Status { set, unknown } => status(&bit_names(protocol, signal, set), *unknown),
-    }
-}
-
-/// Returns the shortest text of a number that came as an `f32`.
-#[expect(clippy::cast_possible_truncation, reason = "it was an `f32` on the bus")]
-fn single(number: f64) -> String {
-    format!("{:?}", number as f32)
-}
-
-fn status(set: &[&str], unknown: u64) -> String {
-    let unknown = (unknown != 0).then(|| format!("0x{unknown:X}"));
-    let bits: Vec<&str> = set.iter().copied().chain(unknown.as_deref()).collect();
-    format!("{{{}}}", bits.join(", "))
 }

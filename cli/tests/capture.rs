@@ -67,11 +67,36 @@ fn a_capture_never_replaces_its_own_log() {
 }
 
 #[test]
-fn a_copy_of_the_log_can_be_replaced() {
+fn a_file_that_is_no_capture_of_canspec_is_never_replaced() {
     let folder = folder_with_log();
-    fs::copy(folder.path().join("bus.log"), folder.path().join("copy")).expect("a new name");
-    assert!(convert(&folder, &["copy", "bus.log"]).status.success());
-    assert_eq!(packets(&folder.path().join("copy")), Ok(3));
+    let path = folder.path().join("bus.pcapng");
+    assert!(convert(&folder, &["bus.pcapng", "bus.log"]).status.success());
+    let ours = fs::read(&path).expect("the capture is there");
+    // Another program's name in the first block; a block that is cut off; the notes of somebody.
+    let other = ours.iter().map(|byte| if *byte == b'c' { b'C' } else { *byte }).collect();
+    for theirs in [other, ours[..20].to_vec(), b"my notes\n".to_vec()] {
+        fs::write(&path, &theirs).expect("the folder can be written");
+        let output = convert(&folder, &["bus.pcapng", "bus.log"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("bus.pcapng: the file is no capture of canspec, so it is kept; name another one"),
+            "{said}"
+        );
+        assert_eq!(fs::read(&path).expect("the file is there"), theirs);
+    }
+}
+
+#[test]
+fn a_capture_of_canspec_and_an_empty_file_are_replaced() {
+    let folder = folder_with_log();
+    let path = folder.path().join("bus.pcapng");
+    fs::write(folder.path().join("long.log"), LOG.repeat(9)).expect("the folder can be written");
+    fs::write(&path, "").expect("the folder can be written");
+    assert!(convert(&folder, &["bus.pcapng", "long.log"]).status.success());
+    assert_eq!(packets(&path), Ok(27));
+    assert!(convert(&folder, &["bus.pcapng", "bus.log"]).status.success());
+    assert_eq!(packets(&path), Ok(3));
 }
 
 /// Counts the frames of a capture, which must end where a block ends.

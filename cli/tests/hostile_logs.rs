@@ -103,6 +103,32 @@ fn a_capture_of_many_channels_is_written_in_linear_time() {
 }
 
 #[test]
+fn names_of_the_values_of_one_signal_are_imported_in_linear_time() {
+    let write = |out: &mut dyn Write, count: usize| {
+        let names: String = (0..count).fold(String::new(), |names, raw| names + &format!("{raw} \"n{raw}\" "));
+        let signal = " SG_ s : 7|16@0+ (1,0) [0|0] \"\" N";
+        writeln!(out, "VERSION \"\"\n\nBU_: N\n\nBO_ 2147483649 M: 8 N\n{signal}\n\nVAL_ 2147483649 s {names};")
+            .expect("a vector takes everything");
+    };
+    is_linear(write, "bus.dbc", 8_000, &["import", "dbc", "bus.dbc"]);
+}
+
+#[test]
+fn names_of_the_values_of_one_field_are_checked_in_linear_time() {
+    let write = |out: &mut dyn Write, count: usize| {
+        let names: String = (0..count).fold(String::new(), |names, raw| names + &format!("{raw}: n{raw}, "));
+        let spec = "canspec: 1\nprotocol: p\ntitle: T\ndocument: {title: T, version: V}\nlength: 8\n\
+                    identifier: {direction: {bits: 10}, command: {bits: 9..0}}\n\
+                    addressing: {one: {request: {direction: 0}, one: {direction: 1}}}\n\
+                    access: {set: {request: {}, reply: {}, answers: {one: one}}}\nmessages:\n";
+        let message = "section: \"1\", match: {command: 1}, access: [set]";
+        writeln!(out, "{spec}  m: {{{message}, value: {{bytes: 0..1, values: {{{names}}}}}}}")
+            .expect("a vector takes everything");
+    };
+    is_linear(write, "p.yaml", 8_000, &["check", "p.yaml"]);
+}
+
+#[test]
 fn names_of_values_and_comments_are_imported_in_linear_time() {
     let write = |out: &mut dyn Write, count: usize| {
         let mut below = Vec::new();

@@ -291,16 +291,33 @@ fn blocks(table: &str) -> Vec<String> {
     blocks
 }
 
-/// Returns the ways in which the table may write `name=value unit`: scaled and floating numbers have a decimal point.
-fn written(signal: &str) -> [String; 2] {
-    let (name, value) = signal.split_once('=').expect("a signal has a value");
-    if let Some(raw) = value.strip_prefix('?') {
-        let raw: u64 = raw.parse().expect("a raw value");
-        return [format!("{name} ? (raw {raw:#X})"), format!("{name} ? (raw {raw})")];
+/// Tells whether a text of the table stands for a value of the document: a number may be rounded to its last decimal.
+fn stands_for(text: &str, value: &str) -> bool {
+    let number = |text: &str| text.parse::<f64>().ok();
+    match (number(text), number(value)) {
+        (Some(shown), Some(exact)) => {
+            let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+            let half = 0.5 / 10_f64.powi(i32::try_from(decimals).expect("it is small"));
+            (shown - exact).abs() <= half * 1.000_001
+        }
+        _ => text == value,
     }
-    let (number, unit) =
-        value.split_once(' ').map_or((value, String::new()), |(number, unit)| (number, format!(" {unit}")));
-    [format!("{name} {number}{unit}"), format!("{name} {number}.0{unit}")]
+}
+
+/// Tells whether the table shows `name=value unit`, or `name=?raw`, of a line.
+fn has(block: &str, signal: &str) -> bool {
+    let (name, value) = signal.split_once('=').expect("a signal has a value");
+    let (value, unit) = value.split_once(' ').unwrap_or((value, ""));
+    let words: Vec<&str> = block.split(' ').collect();
+    words.windows(2).enumerate().filter(|(_, words)| words[0] == name).any(|(at, found)| {
+        match value.strip_prefix('?') {
+            Some(raw) => {
+                let raw: u64 = raw.parse().expect("a raw value");
+                words[at + 1..].join(" ").starts_with(&format!("? (raw {raw:#X})"))
+            }
+            None => stands_for(found[1], value) && (unit.is_empty() || words.get(at + 2) == Some(&unit)),
+        }
+    })
 }
 
 /// Tells whether the row of a line shows its message and each of its numbers and names.
@@ -312,13 +329,21 @@ fn shows(block: &str, expected: &str) -> Result<(), String> {
     }
     let signals = columns.nth(1).unwrap_or_default();
     for signal in signals.split("; ").filter(|signal| signal.contains('=') && !signal.contains('{')) {
-        let shown = written(signal);
-        let ends = |text: &String| block.contains(&format!("{text} ")) || block.ends_with(text.as_str());
-        if !shown.iter().any(ends) {
-            return Err(format!("{shown:?} is not in {block:?}"));
+        if !has(block, signal) {
+            return Err(format!("{signal:?} is not in {block:?}"));
         }
     }
     Ok(())
+}
+
+#[test]
+fn a_rounded_number_stands_for_no_other_step_of_its_scale() {
+    // 52657 and 52658 steps of 1/1024.
+    assert!(stands_for("51.4229", "51.4228515625"));
+    assert!(!stands_for("51.4229", "51.423828125") && !stands_for("51.4", "51.5"));
+    assert!(stands_for("350.000", "350") && stands_for("on", "on"));
+    assert!(has("x voltage 350.000 V", "voltage=350 V") && !has("x voltage 350.000 A", "voltage=350 V"));
+    assert!(has("led ? (raw 0x2) ! x", "led=?2") && !has("led ? (raw 0x3)", "led=?2"));
 }
 
 #[test]

@@ -217,7 +217,7 @@ class Hover(unittest.TestCase):
 
     def test_a_key_is_explained(self):
         said = Edited(SIGNAL, "      current: {bytes: 2, sc¦ale: 1/10}").hover()
-        self.assertIn("\n\nStep of the raw value in the field's unit, exact: `1/10` or `0.02`; 1 if absent.", said)
+        self.assertIn("\n\nSize of one raw step in the field's unit, exact: `1/10` or `0.02`; 1 if absent.", said)
 
     def test_a_key_that_holds_keys_is_explained_with_its_example(self):
         said = Edited(MESSAGE, "  current:\n    val¦ue: {bytes: 2}").hover()

@@ -3,6 +3,7 @@
 pub mod bare;
 pub mod engines;
 pub mod fuzz;
+pub mod prose;
 pub mod random_specs;
 
 use std::fs;

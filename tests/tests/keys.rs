@@ -134,7 +134,9 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Fields => &["{inner: {bits: 0}}", "{letter: {bytes: 4, as: text}, year: {bytes: 5}, day: {bytes: 6}}"],
         Key::Status => &["{late: {bit: 2}}"],
         Key::Format => &["\"{inner}\"", "\"{letter}/{number}\"", "\"{letter}.{year:2}.{day}\""],
-        Key::Const | Key::Send | Key::Normal | Key::Continues => &["1"],
+        Key::Const | Key::Normal | Key::Continues => &["1"],
+        // The second one lies in the range of the controllers.
+        Key::Send => &["1", "0xF1"],
         Key::Default => &["11", "5", "bright", "busy", "x"],
         Key::Outside => &["refused"],
         Key::Reply => &["{priority: 5}"],

@@ -14,7 +14,7 @@ use canspec_codegen::{Outcome, compile};
 use canspec_tests::specs;
 use fastrand::Rng;
 
-const MISTAKES_A_SPEC: usize = 20;
+const MISTAKES_A_SPEC: usize = 100;
 
 /// Fewest mistakes in a hundred that a diagnostic in their line must notice, and most that may do
 /// harm unnoticed.

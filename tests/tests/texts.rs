@@ -138,10 +138,11 @@ fn hostile_texts_at_every_place_neither_run_nor_warn_in_a_users_build() {
         "[package]\nname = \"hostile\"\nversion = \"0.1.0\"\nedition = \"2024\"\n[workspace]\n\
         [dependencies]\ncanspec-runtime = {{ path = {runtime:?} }}\n"
     );
-    let mut lib = String::new();
+    let (mut lib, mut examples) = (String::new(), 0);
     for (index, protocol) in attacked().iter().enumerate() {
-        let code = emit::rust(protocol, &Options::default());
-        fs::write(folder.join(format!("src/p{index}.rs")), code).expect("the folder can be written");
+        let [manual, code] = [emit::manual, emit::rust].map(|emit| emit(protocol, &Options::default()));
+        examples += usize::from(manual.contains("module_path!()"));
+        fs::write(folder.join(format!("src/p{index}.rs")), manual + &code).expect("the folder can be written");
         writeln!(lib, "pub mod p{index};").expect("a text takes everything");
     }
     fs::write(folder.join("Cargo.toml"), manifest).expect("the folder can be written");
@@ -153,7 +154,7 @@ fn hostile_texts_at_every_place_neither_run_nor_warn_in_a_users_build() {
     };
     cargo(&["doc", "--offline", "--no-deps"]);
     let tests = cargo(&["test", "--offline", "--doc"]);
-    assert!(tests.contains("running 0 tests"), "{tests}");
+    assert!(examples > 20 && tests.contains(&format!("running {examples} tests")), "{tests}");
 }
 
 #[test]
@@ -181,8 +182,16 @@ fn documentation_shows_any_text_as_it_is() {
         let page = fs::read_to_string(page).expect("rustdoc made the page");
         let shown = page.split_once("<div class=\"docblock\">").and_then(|(_, after)| after.split_once("</div>"));
         let shown = shown.expect("the page shows the comment").0;
-        let (_, note) = shown.split_once("</p>").expect("the note is the second paragraph");
+        let (_, note) = shown.split_once("</ul>").expect("the note stands behind the accesses");
         assert_eq!(words(&seen(note)), words(text), "{text:?} became {note}");
+    }
+    let page = fs::read_to_string(folder.join("doc/shown/index.html")).expect("rustdoc made the page");
+    let (_, table) = page.split_once("<tbody>").expect("the page has a table");
+    let rows: Vec<_> = table.split("</tr>").take(texts.len()).collect();
+    for (text, row) in texts.iter().zip(rows) {
+        let cells: Vec<_> = row.split("</td>").collect();
+        let title = cells[2].trim_start_matches("<td>");
+        assert_eq!((cells.len(), words(&seen(title))), (6, words(text)), "{text:?} became {row}");
     }
 }
 
@@ -208,12 +217,16 @@ fn documented(texts: &[String]) -> String {
     );
     for (index, text) in texts.iter().enumerate() {
         let text = serde_json::to_string(text).expect("a text is JSON");
-        write!(spec, "m{index}: {{section: '1', match: {{command: {index}}}, access: [read], note: {text}, ")
-            .and_then(|()| write!(spec, "fields: {{x: {{bytes: 0}}}}}}, "))
-            .expect("a text takes everything");
+        write!(
+            spec,
+            "m{index}: {{section: '1', match: {{command: {index}}}, access: [read], title: {text}, note: {text}, "
+        )
+        .and_then(|()| write!(spec, "fields: {{x: {{bytes: 0}}}}}}, "))
+        .expect("a text takes everything");
     }
-    let code = emit::rust(&right("shown.yaml", spec + "}}"), &Options::default());
-    let mut shown = String::new();
+    let protocol = right("shown.yaml", spec + "}}");
+    let [manual, code] = [emit::manual, emit::rust].map(|emit| emit(&protocol, &Options::default()));
+    let mut shown = manual + "/// The access.\npub const READ_ACCESS: () = ();\n";
     for item in syn::parse_file(&code).expect("it is Rust").items {
         let syn::Item::Struct(item) = item else { continue };
         let name = item.ident.to_string();

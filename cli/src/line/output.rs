@@ -271,7 +271,8 @@ messages:
     /// Decodes a line of a log to a line of JSON.
     fn line(text: &str) -> String {
         let protocol = protocol();
-        let entry = log::read(text).expect("the line is readable").expect("the line is not blank");
+        let mut reader = log::Reader::default();
+        let entry = reader.read(text).expect("the line is readable").expect("the line is not blank");
         let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
         let origin = Origin { line: 7, time, channel, frame, protocol: &protocol };
         let mut out = Vec::new();

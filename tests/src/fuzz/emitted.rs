@@ -17,7 +17,7 @@ const FRAMES: usize = 16;
 pub fn check(protocol: &Protocol) {
     for switch in [Switch::Never, Switch::Always] {
         let options = Options { float: Float::F64, serde: switch.clone(), defmt: switch.clone(), arbitrary: switch };
-        let code = emit::rust(protocol, &options);
+        let code = emit::manual(protocol, &options) + &emit::rust(protocol, &options);
         names::check(&syn::parse_file(&code).unwrap_or_else(|error| panic!("{error}\n{code}")));
     }
     for nodes in [None, Some(0..=3)] {

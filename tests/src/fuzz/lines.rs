@@ -9,7 +9,7 @@ use fastrand::Rng;
 use crate::{protocol, specs};
 
 /// What stands in lines, and what should not.
-const PIECES: [&str; 40] = [
+const PIECES: [&str; 44] = [
     "\t",
     " ",
     "  ",
@@ -26,6 +26,10 @@ const PIECES: [&str; 40] = [
     "\r",
     "\"",
     ";",
+    ",",
+    "[8]",
+    "base dec",
+    "0x",
     ":",
     "|",
     "@1-",
@@ -65,7 +69,8 @@ fn files(folders: &[&str], ending: &str) -> Vec<Vec<u8>> {
 /// Returns the logs of the workspace.
 pub fn logs() -> Vec<Vec<u8>> {
     let lines = files(&["tests/commands/encode.in"], "jsonl");
-    [files(&["tests/logs", "tests/commands/decode.in"], "log"), lines].concat()
+    let others = ["asc", "csv", "log", "plain", "slcan"].map(|ending| files(&["cli/tests/logs"], ending));
+    [files(&["tests/logs", "tests/commands/decode.in"], "log"), others.concat(), lines].concat()
 }
 
 /// Returns the DBC files of the workspace, and those of its specs.

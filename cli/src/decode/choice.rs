@@ -1,0 +1,85 @@
+//! Choosing messages and signals of a log.
+
+use canspec_codegen::interpret::Decoded;
+use canspec_codegen::model::{Message, Protocol};
+use canspec_codegen::nearest;
+use clap::Args;
+
+use crate::failure::Failure;
+
+/// A complaint lists no more names.
+const MOST_NAMES: usize = 20;
+
+/// Chooses what is shown of a log.
+#[derive(Args)]
+pub struct Choice {
+    /// Only frames of this message; repeatable.
+    #[arg(long, value_name = "NAME", conflicts_with = "to")]
+    message: Vec<String>,
+    /// Only this signal, and frames that have it; repeatable.
+    #[arg(long, value_name = "NAME", conflicts_with = "to")]
+    signal: Vec<String>,
+}
+
+impl Choice {
+    /// Refuses names that no protocol has.
+    ///
+    /// # Errors
+    ///
+    /// Says what can have been meant.
+    pub fn check(&self, protocols: &[Protocol]) -> Result<(), Failure> {
+        let messages =
+            || protocols.iter().flat_map(|protocol| protocol.messages.iter().map(move |message| (protocol, message)));
+        for name in &self.message {
+            let is_known = messages().any(|(protocol, message)| is_called(protocol, message, name));
+            let known = messages().map(|(_, message)| message.name.as_str());
+            is_known.then_some(()).ok_or_else(|| unknown("message", name, known))?;
+        }
+        let chosen = || messages().filter(|(protocol, message)| self.has_message(protocol, message));
+        let signals = || chosen().flat_map(|(_, message)| message.signals.iter().map(|signal| signal.name.as_str()));
+        for name in &self.signal {
+            let is_known = signals().any(|known| known == name);
+            is_known.then_some(()).ok_or_else(|| unknown("signal", name, signals()))?;
+        }
+        Ok(())
+    }
+
+    /// Tests whether everything is shown, unrecognised frames too.
+    pub fn is_everything(&self) -> bool {
+        self.message.is_empty() && self.signal.is_empty()
+    }
+
+    /// Takes away signals that are not chosen, and returns whether the frame is still to be shown.
+    pub fn keep(&self, protocol: &Protocol, decoded: &mut Decoded) -> bool {
+        let message = &protocol.messages[decoded.message];
+        if !self.has_message(protocol, message) {
+            return false;
+        }
+        if !self.signal.is_empty() {
+            decoded.signals.retain(|reading| self.signal.contains(&message.signals[reading.signal].name));
+        }
+        self.signal.is_empty() || !decoded.signals.is_empty()
+    }
+
+    fn has_message(&self, protocol: &Protocol, message: &Message) -> bool {
+        self.message.is_empty() || self.message.iter().any(|name| is_called(protocol, message, name))
+    }
+}
+
+/// Tests for the name of a message, which in tables of several protocols stands behind that of its protocol.
+fn is_called(protocol: &Protocol, message: &Message, name: &str) -> bool {
+    let own = name.strip_prefix(protocol.name.as_str()).and_then(|rest| rest.strip_prefix('.'));
+    message.name == name || own == Some(&message.name)
+}
+
+fn unknown<'n>(what: &str, name: &str, known: impl IntoIterator<Item = &'n str>) -> Failure {
+    let mut known: Vec<&str> = known.into_iter().collect();
+    known.sort_unstable();
+    known.dedup();
+    let help = match nearest(name, known.iter().copied()) {
+        Some(known) => format!("did you mean `{known}`?"),
+        None if known.len() > MOST_NAMES => format!("`canspec list` shows the {what}s of a protocol"),
+        None => format!("known are {}", known.join(", ")),
+    };
+    Failure::Call(format!("unknown {what} `{name}`; {help}"))
+}

@@ -1,0 +1,102 @@
+//! A row of CSV a signal, as programs for tables of data want it.
+
+use std::io::{self, Write};
+
+use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
+
+use crate::line::{Origin, bit_names};
+use crate::log;
+
+const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,signal,raw,value,unit,notes";
+
+/// Rows that are written as their frames come.
+#[derive(Default)]
+pub struct Rows {
+    started: bool,
+}
+
+impl Rows {
+    /// Writes a row for each signal of a frame, or one if it has none.
+    ///
+    /// # Errors
+    ///
+    /// Where `out` cannot be written.
+    pub fn write(
+        &mut self,
+        out: &mut impl Write,
+        origin: &Origin<'_>,
+        decoded: &Result<Decoded, Unrecognised>,
+    ) -> io::Result<()> {
+        self.begin(out)?;
+        let (names, readings, notes) = match decoded {
+            Ok(decoded) => (names(origin, decoded), &decoded.signals[..], notes(&decoded.notes)),
+            Err(Unrecognised { problem, text, .. }) => {
+                (Default::default(), &[][..], format!("{}: {text}", problem.name()))
+            }
+        };
+        let line = origin.line.to_string();
+        let (time, channel) = (origin.time.map_or("", |time| time.get()), origin.channel.unwrap_or_default());
+        let id = log::identifier_text(origin.frame);
+        let frame = [&line, time, channel, &id, &origin.protocol.name].into_iter().chain(names);
+        let signals = readings.iter().map(|reading| cells(origin, decoded, reading));
+        let signals: Vec<_> = if readings.is_empty() { vec![Default::default()] } else { signals.collect() };
+        for signal in signals {
+            let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain([notes.as_str()]);
+            writeln!(out, "{}", cells.map(quoted).collect::<Vec<_>>().join(","))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the heading, if it is not written yet.
+    pub fn begin(&mut self, out: &mut impl Write) -> io::Result<()> {
+        if !std::mem::replace(&mut self.started, true) {
+            writeln!(out, "{HEADING}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns message, access and kind.
+fn names<'a>(origin: &Origin<'a>, decoded: &Decoded) -> [&'a str; 3] {
+    let protocol = origin.protocol;
+    [&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name, decoded.kind.name()]
+}
+
+/// Returns name, raw number, value and unit of a signal.
+fn cells(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, reading: &Reading) -> [String; 4] {
+    let Ok(decoded) = decoded else { return Default::default() };
+    let signal = &origin.protocol.messages[decoded.message].signals[reading.signal];
+    let value = match &reading.value {
+        Value::None => String::new(),
+        Value::Integer(number) => number.to_string(),
+        Value::Number(number) => format!("{number:?}"),
+        Value::Name(text) | Value::Text(text) => text.clone(),
+        Value::Status { set, .. } => bit_names(origin.protocol, signal, set).join(" "),
+    };
+    let unit = signal.unit.map_or("", |unit| unit.symbol);
+    [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit.to_owned()]
+}
+
+fn notes(notes: &[Note]) -> String {
+    let texts = notes.iter().map(|Note { rule, text }| format!("{}: {text}", rule.name()));
+    texts.collect::<Vec<_>>().join("; ")
+}
+
+/// Puts what could be taken for the end of a cell into quotes, by RFC 4180.
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn a_cell_is_quoted_where_it_could_end_too_early() {
+        for (cell, expected) in
+            [("a b", "a b"), ("a,b", "\"a,b\""), ("a\"b", "\"a\"\"b\""), ("a\nb", "\"a\nb\""), ("", "")]
+        {
+            assert_eq!(quoted(cell), expected);
+        }
+    }
+}

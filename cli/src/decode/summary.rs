@@ -1,0 +1,224 @@
+//! What a log holds, in numbers.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use canspec_codegen::interpret::{Decoded, Unrecognised};
+use serde::Serialize;
+use serde_json::value::RawValue;
+
+use crate::columns::{self, Row};
+use crate::line::Origin;
+use crate::log;
+
+/// Counts of a log so far.
+#[derive(Default)]
+pub struct Summary {
+    frames: u64,
+    recognised: u64,
+    span: Option<Span>,
+    /// By protocol, message, access and kind.
+    messages: BTreeMap<[String; 4], u64>,
+    /// By rule.
+    notes: BTreeMap<&'static str, Seen>,
+    /// By identifier and problem.
+    unrecognised: BTreeMap<(String, &'static str), Seen>,
+}
+
+/// The first and the last time, as written and as numbers.
+struct Span {
+    first: (f64, Box<RawValue>),
+    last: (f64, Box<RawValue>),
+}
+
+/// How many frames there were, and the line of the first.
+struct Seen {
+    frames: u64,
+    line: usize,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "summary", rename_all = "lowercase")]
+enum Object<'a> {
+    Log {
+        frames: u64,
+        recognised: u64,
+        first: Option<&'a RawValue>,
+        last: Option<&'a RawValue>,
+        seconds: Option<f64>,
+        rate: Option<f64>,
+    },
+    Message {
+        protocol: &'a str,
+        message: &'a str,
+        access: &'a str,
+        kind: &'a str,
+        frames: u64,
+        rate: Option<f64>,
+    },
+    Note {
+        rule: &'a str,
+        frames: u64,
+        line: usize,
+    },
+    Unrecognised {
+        id: &'a str,
+        problem: &'a str,
+        frames: u64,
+        line: usize,
+    },
+}
+
+impl Summary {
+    /// Counts a frame.
+    pub fn count(&mut self, origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>) {
+        self.frames += 1;
+        self.see(origin.time);
+        match decoded {
+            Ok(decoded) => self.recognise(origin, decoded),
+            Err(Unrecognised { problem, .. }) => {
+                let key = (log::identifier_text(origin.frame), problem.name());
+                Seen::count(self.unrecognised.entry(key), origin.line);
+            }
+        }
+    }
+
+    fn recognise(&mut self, origin: &Origin<'_>, decoded: &Decoded) {
+        let protocol = origin.protocol;
+        let (message, access) = (&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name);
+        let key = [&protocol.name, message, access, decoded.kind.name()].map(str::to_owned);
+        self.recognised += 1;
+        *self.messages.entry(key).or_default() += 1;
+        let mut rules: Vec<_> = decoded.notes.iter().map(|note| note.rule.name()).collect();
+        rules.sort_unstable();
+        rules.dedup();
+        for rule in rules {
+            Seen::count(self.notes.entry(rule), origin.line);
+        }
+    }
+
+    /// Makes the span reach a time.
+    fn see(&mut self, time: Option<&RawValue>) {
+        let Some(time) = time else { return };
+        let Ok(seconds) = time.get().parse::<f64>() else { return };
+        let now = || (seconds, time.to_owned());
+        match &mut self.span {
+            None => self.span = Some(Span { first: now(), last: now() }),
+            Some(span) if seconds < span.first.0 => span.first = now(),
+            Some(span) if seconds > span.last.0 => span.last = now(),
+            Some(_) => {}
+        }
+    }
+
+    fn seconds(&self) -> Option<f64> {
+        self.span.as_ref().map(|span| span.last.0 - span.first.0)
+    }
+
+    /// Returns how many frames a second that is, if the log has a duration.
+    #[expect(clippy::cast_precision_loss, reason = "no log has that many frames")]
+    fn rate(&self, frames: u64) -> Option<f64> {
+        self.seconds().filter(|seconds| *seconds > 0.0).map(|seconds| frames as f64 / seconds)
+    }
+
+    /// Returns messages, those with most frames first.
+    fn messages(&self) -> Vec<(&[String; 4], u64)> {
+        let mut messages: Vec<_> = self.messages.iter().map(|(key, frames)| (key, *frames)).collect();
+        messages.sort_by_key(|(_, frames)| std::cmp::Reverse(*frames));
+        messages
+    }
+
+    /// Returns unrecognised frames, the most frequent ones first.
+    fn unrecognised(&self) -> Vec<(&str, &'static str, &Seen)> {
+        let mut unrecognised: Vec<_> =
+            self.unrecognised.iter().map(|((id, problem), seen)| (id.as_str(), *problem, seen)).collect();
+        unrecognised.sort_by_key(|(.., seen)| std::cmp::Reverse(seen.frames));
+        unrecognised
+    }
+
+    /// Writes a JSON object for each count.
+    ///
+    /// # Errors
+    ///
+    /// Where `out` cannot be written.
+    pub fn write_jsonl(&self, out: &mut impl Write) -> io::Result<()> {
+        let span = self.span.as_ref();
+        let first = span.map(|span| &*span.first.1);
+        let last = span.map(|span| &*span.last.1);
+        let Self { frames, recognised, .. } = *self;
+        let log = Object::Log { frames, recognised, first, last, seconds: self.seconds(), rate: self.rate(frames) };
+        let messages = self.messages().into_iter().map(|([protocol, message, access, kind], frames)| Object::Message {
+            protocol,
+            message,
+            access,
+            kind,
+            frames,
+            rate: self.rate(frames),
+        });
+        let notes =
+            self.notes.iter().map(|(rule, Seen { frames, line })| Object::Note { rule, frames: *frames, line: *line });
+        let unrecognised = self.unrecognised().into_iter().map(|(id, problem, Seen { frames, line })| {
+            Object::Unrecognised { id, problem, frames: *frames, line: *line }
+        });
+        for object in [log].into_iter().chain(messages).chain(notes).chain(unrecognised) {
+            serde_json::to_writer(&mut *out, &object)?;
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+
+    /// Writes a table for each sort of count.
+    ///
+    /// # Errors
+    ///
+    /// Where `out` cannot be written.
+    pub fn write_text(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, "{}", self.headline())?;
+        let row = |cells: Vec<String>, last: String| Row { cells, last: vec![last], separator: "" };
+        let messages = self.messages().into_iter().map(|([protocol, message, access, kind], frames)| {
+            let names = [protocol, message, access, kind].map(String::clone);
+            row([&names[..], &[frames.to_string()]].concat(), rounded(self.rate(frames)))
+        });
+        table(out, &["PROTOCOL", "MESSAGE", "ACCESS", "KIND", "FRAMES"], "A SECOND", &messages.collect::<Vec<_>>())?;
+        let notes = self.notes.iter();
+        let notes =
+            notes.map(|(rule, seen)| row(vec![(*rule).to_owned(), seen.frames.to_string()], seen.line.to_string()));
+        table(out, &["NOTE", "FRAMES"], "FIRST LINE", &notes.collect::<Vec<_>>())?;
+        let unrecognised = self.unrecognised().into_iter().map(|(id, problem, seen)| {
+            row(vec![id.to_owned(), problem.to_owned(), seen.frames.to_string()], seen.line.to_string())
+        });
+        table(out, &["UNRECOGNISED", "PROBLEM", "FRAMES"], "FIRST LINE", &unrecognised.collect::<Vec<_>>())
+    }
+
+    /// Says how many frames there are, in which time.
+    fn headline(&self) -> String {
+        let Self { frames, recognised, .. } = self;
+        let noun = if *frames == 1 { "frame" } else { "frames" };
+        let count = format!("{frames} {noun}, {recognised} recognised");
+        match (&self.span, self.seconds(), self.rate(*frames)) {
+            (Some(span), Some(seconds), Some(rate)) => {
+                let (first, last) = (span.first.1.get(), span.last.1.get());
+                format!("{count}, {rate:.2} a second in {seconds:.3} s from {first} to {last}")
+            }
+            _ => count,
+        }
+    }
+}
+
+/// Shows a rate, which a log without stamps does not have.
+fn rounded(rate: Option<f64>) -> String {
+    rate.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.2}"))
+}
+
+fn table(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) -> io::Result<()> {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    columns::write(out, headings, last, rows)
+}
+
+impl Seen {
+    fn count<K: Ord>(entry: std::collections::btree_map::Entry<'_, K, Self>, line: usize) {
+        entry.or_insert(Self { frames: 0, line }).frames += 1;
+    }
+}

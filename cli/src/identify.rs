@@ -1,0 +1,145 @@
+//! `canspec identify`.
+
+use std::cmp::Reverse;
+use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
+
+use canspec_codegen::interpret::{Frame, decode};
+use canspec_codegen::model::{NoteRule, Protocol};
+use canspec_specs::SPECS;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::columns::{self, Row};
+use crate::failure::{Failure, Finish};
+use crate::input::Input;
+use crate::log::Reader;
+use crate::output::output;
+use crate::protocols;
+use crate::settings::Settings;
+
+/// Find out which protocols a log holds.
+///
+/// Each built-in protocol and each given spec is tried on every frame. The one that recognises most frames without a
+/// contradiction stands first, and those with the same numbers fit equally well. A contradiction is a note, such as
+/// a value outside its range or a reserved bit.
+#[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec identify --spec my.yaml bus.log")]
+pub struct Identify {
+    /// A spec file to try beside the built-in protocols; repeatable.
+    #[arg(long, value_name = "FILE")]
+    spec: Vec<PathBuf>,
+    /// A table, or a JSON object a protocol.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// The log; standard input without one, or for `-`.
+    file: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Jsonl,
+}
+
+/// How well a protocol explains a log.
+#[derive(Serialize)]
+struct Candidate {
+    #[serde(skip)]
+    protocol: Protocol,
+    #[serde(rename = "protocol")]
+    name: String,
+    recognised: u64,
+    share: f64,
+    contradicted: u64,
+}
+
+impl Identify {
+    /// Writes the protocols that recognise frames.
+    pub fn run(&self) -> Result<Finish, Failure> {
+        let mut candidates = self.candidates()?;
+        let (mut reader, mut frames) = (Reader::default(), 0);
+        let finish = Input::open(self.file.as_deref())?.summed_up().each(io::sink(), |_, line| {
+            if let Some(entry) = reader.read(line.text?)? {
+                frames += 1;
+                for candidate in &mut candidates {
+                    candidate.try_on(&entry.frame);
+                }
+            }
+            Ok(Ok(()))
+        })?;
+        candidates.retain(|candidate| candidate.recognised > 0);
+        if candidates.is_empty() {
+            return Err(Failure::Input(format!("no protocol recognises a frame of this log, which has {frames}")));
+        }
+        for candidate in &mut candidates {
+            candidate.share = share(candidate.recognised, frames);
+        }
+        candidates.sort_by_key(|candidate| {
+            (Reverse(candidate.recognised - candidate.contradicted), Reverse(candidate.recognised))
+        });
+        self.write(&candidates)?;
+        Ok(finish)
+    }
+
+    fn candidates(&self) -> Result<Vec<Candidate>, Failure> {
+        let specs = if self.spec.is_empty() { Settings::find()?.specs } else { self.spec.clone() };
+        let files = specs.iter().map(|path| protocols::file(path));
+        let sources = files.chain(SPECS.iter().map(protocols::text));
+        sources.map(|source| Ok(Candidate::new(protocols::load(source?)?))).collect()
+    }
+
+    fn write(&self, candidates: &[Candidate]) -> io::Result<()> {
+        let mut out = BufWriter::new(output()?);
+        match self.format {
+            Format::Text => {
+                let rows: Vec<Row> = candidates.iter().map(Candidate::row).collect();
+                columns::write(&mut out, &["PROTOCOL", "RECOGNISED", "SHARE", "CONTRADICTED"], "TITLE", &rows)?;
+            }
+            Format::Jsonl => {
+                for candidate in candidates {
+                    serde_json::to_writer(&mut out, candidate)?;
+                    writeln!(out)?;
+                }
+            }
+        }
+        out.flush()
+    }
+}
+
+impl Candidate {
+    fn new(protocol: Protocol) -> Self {
+        Self { name: protocol.name.clone(), protocol, recognised: 0, share: 0.0, contradicted: 0 }
+    }
+
+    fn try_on(&mut self, frame: &Frame) {
+        let Ok(decoded) = decode(&self.protocol, None, frame) else { return };
+        self.recognised += 1;
+        self.contradicted += u64::from(decoded.notes.iter().any(|note| contradicts(note.rule)));
+    }
+
+    fn row(&self) -> Row {
+        let share = format!("{:.1} %", self.share * 100.0);
+        let cells = vec![self.name.clone(), self.recognised.to_string(), share, self.contradicted.to_string()];
+        Row { cells, last: vec![self.protocol.title.for_people().to_owned()], separator: "" }
+    }
+}
+
+/// Tests whether a frame with such a note speaks against its protocol.
+fn contradicts(rule: NoteRule) -> bool {
+    match rule {
+        NoteRule::ErrorCode | NoteRule::ModelDependent => false,
+        NoteRule::ReservedBit
+        | NoteRule::UnknownValue
+        | NoteRule::UnknownBit
+        | NoteRule::Address
+        | NoteRule::Addressing
+        | NoteRule::OutOfRange
+        | NoteRule::NotFinite => true,
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "no log has that many frames")]
+fn share(part: u64, whole: u64) -> f64 {
+    part as f64 / whole as f64
+}

@@ -1,0 +1,317 @@
+//! Tables in CSV, whose heading says what the columns hold: those of python-can, `SavvyCAN`, and others with common names.
+
+use canspec_codegen::interpret::{Form, Frame};
+use csv_core::{ReadRecordResult, ReaderBuilder};
+use serde_json::value::RawValue;
+
+use super::Entry;
+use super::part::{
+    CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, fitting, is_hexadecimal, moved, quoted, seconds,
+};
+
+/// What stands between two cells.
+const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
+
+/// What python-can writes.
+const PYTHON_CAN: &str = "timestamp,arbitration_id,extended,remote,error,dlc,data";
+
+/// The columns of a log, and room for the cells of a line.
+pub struct Columns {
+    heading: String,
+    kinds: Vec<Column>,
+    /// Data in base 64 rather than in hexadecimal digits.
+    base64: bool,
+    reader: csv_core::Reader,
+    text: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    /// A time, and how many decimal places of a second its unit has.
+    Time(usize),
+    Channel,
+    Identifier,
+    Extended,
+    Remote,
+    Error,
+    Length,
+    Data,
+    /// One byte of the data.
+    Byte,
+    Other,
+}
+
+impl Column {
+    /// Knows a column by its name, whose letters and digits alone count.
+    fn named(heading: &str) -> Self {
+        let plain = heading.chars().filter(char::is_ascii_alphanumeric);
+        let name: String = plain.map(|letter| letter.to_ascii_lowercase()).collect();
+        match name.as_str() {
+            "time" | "times" | "timesec" | "timeseconds" | "seconds" | "timestamp" | "timestamps" | "timestampsec" => {
+                Self::Time(0)
+            }
+            "timems" | "timestampms" | "milliseconds" => Self::Time(3),
+            "timeus" | "timestampus" | "microseconds" => Self::Time(6),
+            "timens" | "timestampns" | "nanoseconds" => Self::Time(9),
+            "channel" | "bus" | "interface" | "chn" => Self::Channel,
+            "id" | "idhex" | "canid" | "canidhex" | "identifier" | "arbitrationid" | "arbid" | "messageid"
+            | "msgid" | "frameid" => Self::Identifier,
+            "extended" | "ext" | "ide" | "isextended" | "isextendedid" => Self::Extended,
+            "remote" | "rtr" | "isremote" | "isremoteframe" => Self::Remote,
+            "error" | "iserror" | "iserrorframe" => Self::Error,
+            "dlc" | "length" | "len" | "datalength" => Self::Length,
+            "data" | "datahex" | "databytes" | "payload" => Self::Data,
+            _ if is_byte(&name) => Self::Byte,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Tests for `d0`, `data1`, `byte2` and the like.
+fn is_byte(name: &str) -> bool {
+    let number = ["databyte", "data", "byte", "d", "b"].into_iter().find_map(|start| name.strip_prefix(start));
+    number.is_some_and(|digits| matches!(digits.parse(), Ok(0_u8..=64)))
+}
+
+/// What the cells of a line say.
+#[derive(Default)]
+struct Cells<'a> {
+    time: Option<Box<RawValue>>,
+    channel: Option<&'a str>,
+    identifier: &'a str,
+    extended: Option<bool>,
+    remote: bool,
+    error: bool,
+    length: Option<usize>,
+    data: Vec<u8>,
+}
+
+impl Columns {
+    /// Reads a heading, `None` from a line that has none with an identifier and data.
+    pub fn of(line: &str) -> Option<Self> {
+        let separators = SEPARATORS.into_iter().filter(|separator| line.as_bytes().contains(separator));
+        separators.map(|separator| Self::parted(line, separator)).find(Self::suffices)
+    }
+
+    fn parted(line: &str, separator: u8) -> Self {
+        let reader = ReaderBuilder::new().delimiter(separator).build();
+        let base64 = line.trim_ascii() == PYTHON_CAN;
+        let (kinds, text, ends) = (Vec::new(), Vec::new(), Vec::new());
+        let mut parted = Self { heading: line.to_owned(), kinds, base64, reader, text, ends };
+        let count = parted.split(line);
+        parted.kinds = (0..count).map(|index| Column::named(parted.cell(index).unwrap_or_default())).collect();
+        parted.count_as_savvycan();
+        parted
+    }
+
+    /// `SavvyCAN` counts microseconds, and does not say so.
+    fn count_as_savvycan(&mut self) {
+        if self.heading.starts_with("Time Stamp,ID,Extended,") {
+            self.kinds[0] = Column::Time(6);
+        }
+    }
+
+    fn suffices(&self) -> bool {
+        let has = |column| self.kinds.contains(&column);
+        has(Column::Identifier) && (has(Column::Data) || has(Column::Byte))
+    }
+
+    /// Splits a line into cells, and returns how many there are.
+    fn split(&mut self, line: &str) -> usize {
+        self.reader.reset();
+        self.text.resize(line.len(), 0);
+        self.ends.resize(line.len() + 1, 0);
+        let line = line.strip_suffix('\r').unwrap_or(line).as_bytes();
+        let (_, _, written, count) = self.reader.read_record(line, &mut self.text, &mut self.ends);
+        let (rest, ends) = (&mut self.text[written..], &mut self.ends[count..]);
+        let (end, _, _, more) = self.reader.read_record(&[], rest, ends);
+        debug_assert!(matches!(end, ReadRecordResult::Record | ReadRecordResult::End));
+        count + more
+    }
+
+    fn cell(&self, index: usize) -> Option<&str> {
+        let start = if index == 0 { 0 } else { *self.ends.get(index - 1)? };
+        str::from_utf8(self.text.get(start..*self.ends.get(index)?)?).ok().map(str::trim)
+    }
+
+    /// Reads a line that is not blank; the heading may stand there again, where logs were put together.
+    pub fn read(&mut self, line: &str) -> Result<Option<Entry<'_>>, String> {
+        if line == self.heading {
+            return Ok(None);
+        }
+        let count = self.split(line);
+        // Cells at the end that hold nothing may be missing, or be more than those of the heading.
+        let surplus = (self.kinds.len()..count).filter_map(|index| self.cell(index)).find(|cell| !cell.is_empty());
+        if let Some(cell) = surplus {
+            return Err(format!("the cell {} has no heading", quoted(cell)));
+        }
+        let mut cells = Cells::default();
+        for (index, column) in self.kinds.iter().enumerate() {
+            let cell = if index < count { self.cell(index) } else { None };
+            cells.take(*column, cell.unwrap_or_default(), self.base64)?;
+        }
+        cells.entry().map(Some)
+    }
+}
+
+impl<'a> Cells<'a> {
+    /// Takes the text of a cell.
+    fn take(&mut self, column: Column, text: &'a str, base64: bool) -> Result<(), String> {
+        match column {
+            Column::Other => {}
+            Column::Extended => self.extended = answer(text)?,
+            Column::Remote => self.remote = answer(text)?.unwrap_or_default(),
+            Column::Error => self.error = answer(text)?.unwrap_or_default(),
+            Column::Identifier => self.identifier = text,
+            _ if text.is_empty() => {}
+            Column::Time(places) => self.time = Some(time(text, places)?),
+            Column::Channel => self.channel = Some(channel(text)?),
+            Column::Length => {
+                self.length = Some(text.parse().map_err(|_| format!("the length {} is no number", quoted(text)))?);
+            }
+            Column::Data if base64 => self.data = of_base64(text)?,
+            Column::Data | Column::Byte => self.data.extend(parted_bytes(text)?),
+        }
+        Ok(())
+    }
+
+    fn entry(self) -> Result<Entry<'a>, String> {
+        let Self { time, channel, identifier, extended, remote, error, length, data } = self;
+        let (id, extended) = id(identifier, extended)?;
+        fewer(data.len(), FLEXIBLE)?;
+        let form = match (error, remote) {
+            (true, _) => Form::Error,
+            (false, true) => Form::Remote,
+            (false, false) if data.len() > CLASSIC => Form::Fd,
+            (false, false) => Form::Data,
+        };
+        if matches!(form, Form::Data | Form::Fd) {
+            as_many(length.unwrap_or(data.len()), data.len())?;
+        }
+        let digit = length.filter(|_| form == Form::Remote).and_then(|length| u8::try_from(length).ok());
+        let (extended, data) = (extended || error, if form == Form::Remote { Vec::new() } else { data });
+        Ok(Entry { time, channel, frame: Frame { id, extended, data, form }, digit: digit.unwrap_or_default() })
+    }
+}
+
+/// Reads seconds, or smaller units, or a date with a time of day.
+fn time(text: &str, places: usize) -> Result<Box<RawValue>, String> {
+    match text.split_once([' ', 'T']) {
+        Some((day, time)) => date(day, time.trim_end_matches('Z')),
+        None if places > 0 => moved(text, places),
+        None => seconds(text),
+    }
+}
+
+/// Reads an identifier; one of more than 11 bits or with eight digits has 29.
+fn id(text: &str, extended: Option<bool>) -> Result<(u32, bool), String> {
+    let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
+    let marked = digits.strip_suffix(['x', 'X']);
+    let digits = marked.unwrap_or(digits);
+    let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_hexadecimal(digits));
+    let number = number.ok_or_else(|| format!("the identifier {} is not hexadecimal", quoted(text)))?;
+    let extended = extended.unwrap_or(marked.is_some() || digits.len() > 7 || number > super::part::LARGEST_STANDARD);
+    fitting(number, extended, digits).map(|number| (number, extended))
+}
+
+/// Reads whether something is so; an empty cell does not say.
+fn answer(text: &str) -> Result<Option<bool>, String> {
+    match text.to_ascii_lowercase().as_str() {
+        "" => Ok(None),
+        "1" | "true" | "yes" | "x" | "ext" | "extended" => Ok(Some(true)),
+        "0" | "false" | "no" | "-" | "std" | "standard" => Ok(Some(false)),
+        _ => Err(format!("{} is neither 1 nor 0", quoted(text))),
+    }
+}
+
+/// Reads bytes in hexadecimal digits, together or with something between them.
+fn parted_bytes(text: &str) -> Result<Vec<u8>, String> {
+    let pieces = text.split([' ', '.', ':', '-']).filter(|piece| !piece.is_empty());
+    let pieces = pieces.map(|piece| bytes(piece.strip_prefix("0x").unwrap_or(piece), FLEXIBLE));
+    Ok(pieces.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+fn of_base64(text: &str) -> Result<Vec<u8>, String> {
+    use base64::Engine;
+    let data = base64::engine::general_purpose::STANDARD.decode(text);
+    data.map_err(|_| format!("the data {} are not base 64", quoted(text)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{hexadecimal, identifier_text};
+
+    /// Reads a line below a heading as time and channel, form, identifier, data and digit.
+    fn read(heading: &str, line: &str) -> Result<(String, Form, String, String, u8), String> {
+        let mut columns = Columns::of(heading).expect("it is a heading");
+        let entry = columns.read(line)?.expect("every line has a frame");
+        let time = entry.time.as_ref().map_or("", |time| time.get());
+        let place = format!("{time} {}", entry.channel.unwrap_or_default());
+        let Frame { data, form, .. } = &entry.frame;
+        Ok((place, *form, identifier_text(&entry.frame), hexadecimal(data), entry.digit))
+    }
+
+    #[test]
+    fn headings_say_what_the_columns_hold() {
+        let savvy = "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8";
+        let logs = [
+            (PYTHON_CAN, "1700000000.0125,0x28300f0,1,0,0,2,ESI=", "1700000000.0125", "", "028300F0", "1122"),
+            (savvy, "1500000,000001A5,false,Rx,0,2,11,22,", "1.500000", "0", "1A5", "1122"),
+            ("Time (ms),CAN ID,Data", "12.5,18FF50E5,11 22", "0.0125", "", "18FF50E5", "1122"),
+            ("Timestamp;Channel;ID;DLC;Data (hex)", "0.5;can1;0x7FF;2;0x11 0x22", "0.5", "can1", "7FF", "1122"),
+            (
+                "id\ttime\tdata\tnote",
+                "123x\t2023-11-14 22:13:20.5\t1122\t\"a\tb\"",
+                "1700000000.5",
+                "",
+                "00000123",
+                "1122",
+            ),
+            ("\"ID\",\"Data\"", "\"00000123\",\"11-22\"", "", "", "00000123", "1122"),
+        ];
+        for (heading, line, time, channel, id, data) in logs {
+            let expected = (format!("{time} {channel}"), Form::Data, id.to_owned(), data.to_owned(), 0);
+            assert_eq!(read(heading, line), Ok(expected), "{heading}");
+        }
+    }
+
+    #[test]
+    fn remote_error_and_fd_frames_are_told_apart() {
+        let form = |line: &str| read(PYTHON_CAN, line).map(|(_, form, id, data, digit)| (form, id, data.len(), digit));
+        assert_eq!(form("0,0x1fffffff,1,1,0,5,"), Ok((Form::Remote, "1FFFFFFF".to_owned(), 0, 5)));
+        assert_eq!(form("0,0x4,0,0,1,0,"), Ok((Form::Error, "20000004".to_owned(), 0, 0)));
+        assert_eq!(form("0,0x123,0,0,0,12,AAECAwQFBgcICQoL"), Ok((Form::Fd, "123".to_owned(), 24, 0)));
+    }
+
+    #[test]
+    fn a_line_without_identifier_or_data_is_no_heading() {
+        for line in ["time,id", "data,time", "0.5,123,00", "id data", "a;b"] {
+            assert!(Columns::of(line).is_none(), "{line}");
+        }
+    }
+
+    #[test]
+    fn an_unreadable_line_says_why() {
+        let heading = "time,id,extended,dlc,data";
+        let reasons = [
+            ("0.5,123,0,2", "the line says that there are 2 data bytes, and has 0"),
+            ("0.5,123,0,2,1122,,x", "the cell `x` has no heading"),
+            ("x,123,0,2,1122", "the stamp `x` is no number"),
+            ("1 2,123,0,2,1122", "the stamp `1 2` is no date with a time"),
+            ("0.5,12G,0,2,1122", "the identifier `12G` is not hexadecimal"),
+            ("0.5,,0,2,1122", "the identifier `` is not hexadecimal"),
+            ("0.5,800,0,2,1122", "the identifier 800 is above 7FF, the largest of 11 bits"),
+            ("0.5,123,maybe,2,1122", "`maybe` is neither 1 nor 0"),
+            ("0.5,123,0,two,1122", "the length `two` is no number"),
+            ("0.5,123,0,3,1122", "the line says that there are 3 data bytes, and has 2"),
+            ("0.5,123,0,2,11 2", "the data have an odd number of digits, 1"),
+        ];
+        for (line, reason) in reasons {
+            assert_eq!(read(heading, line), Err(reason.to_owned()), "{line}");
+        }
+        assert_eq!(read(PYTHON_CAN, "0,0x1,0,0,0,1,%"), Err("the data `%` are not base 64".to_owned()));
+    }
+}

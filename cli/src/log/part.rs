@@ -1,0 +1,235 @@
+//! What the lines of all formats are made of: stamps, channels, identifiers and data.
+
+use canspec_codegen::source::forbidden;
+use serde_json::value::RawValue;
+
+/// Set in the printed identifier of an error frame.
+pub const ERROR_FLAG: u32 = 1 << 29;
+pub const LARGEST_EXTENDED: u32 = 0x1FFF_FFFF;
+pub const LARGEST_STANDARD: u32 = 0x7FF;
+/// Data bytes of a classic and of an FD frame.
+pub const CLASSIC: usize = 8;
+pub const FLEXIBLE: usize = 64;
+/// Characters of the name of an interface, which has 15 on Linux, and of a stamp.
+const LONGEST_NAME: usize = 64;
+
+/// Reads `(SECONDS)`.
+pub fn stamp(word: &str) -> Result<Box<RawValue>, String> {
+    let refusal = || format!("the stamp {} is no number in parentheses", quoted(word));
+    let seconds = word.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(refusal)?;
+    short("stamp", word, LONGEST_NAME + "()".len())?;
+    let number = without_leading_zeros(seconds);
+    let value = RawValue::from_string(number.to_owned()).ok().filter(|value| is_number(value));
+    finite(value.ok_or_else(refusal)?, word)
+}
+
+/// Reads seconds without parentheses.
+pub fn seconds(word: &str) -> Result<Box<RawValue>, String> {
+    short("stamp", word, LONGEST_NAME)?;
+    let number = RawValue::from_string(without_leading_zeros(word).to_owned()).ok().filter(|value| is_number(value));
+    finite(number.ok_or_else(|| format!("the stamp {} is no number", quoted(word)))?, word)
+}
+
+fn finite(value: Box<RawValue>, word: &str) -> Result<Box<RawValue>, String> {
+    if is_finite(&value) {
+        Ok(value)
+    } else {
+        Err(format!("the stamp {} is larger than any number of JSON", quoted(word)))
+    }
+}
+
+/// Returns a number of smaller units in seconds, by moving its point to the left.
+pub fn moved(word: &str, places: usize) -> Result<Box<RawValue>, String> {
+    let (sign, digits) = word.split_at(usize::from(word.starts_with('-')));
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let is_plain = |digits: &str| digits.len() <= LONGEST_NAME && digits.bytes().all(|digit| digit.is_ascii_digit());
+    if places == 0 || whole.is_empty() || !is_plain(whole) || !is_plain(fraction) {
+        return seconds(word);
+    }
+    let filled = format!("{whole:0>width$}", width = places + 1);
+    let (whole, moved) = filled.split_at(filled.len() - places);
+    seconds(&format!("{sign}{whole}.{moved}{fraction}"))
+}
+
+/// Reads a date and a time of day as seconds since 1970, as if they were those of UTC.
+pub fn date(date: &str, time: &str) -> Result<Box<RawValue>, String> {
+    let refusal = || format!("the stamp {} is no date with a time", quoted(&format!("{date} {time}")));
+    let [year, month, day] = numbers(date, '-').filter(is_day).ok_or_else(refusal)?;
+    let (time, fraction) = time.split_once('.').unwrap_or((time, ""));
+    let [hour, minute, second] = numbers(time, ':').filter(is_time).ok_or_else(refusal)?;
+    let is_fraction = fraction.bytes().all(|digit| digit.is_ascii_digit());
+    let total = ((days(year, month, day) * 24 + hour) * 60 + minute) * 60 + second;
+    let point = if fraction.is_empty() { "" } else { "." };
+    if is_fraction { seconds(&format!("{total}{point}{fraction}")) } else { Err(refusal()) }
+}
+
+fn is_day([year, month, day]: &[i64; 3]) -> bool {
+    (1970..=9999).contains(year) && (1..=12).contains(month) && (1..=31).contains(day)
+}
+
+fn is_time([hour, minute, second]: &[i64; 3]) -> bool {
+    (0..24).contains(hour) && (0..60).contains(minute) && (0..=60).contains(second)
+}
+
+/// Splits three numbers from one another.
+fn numbers(text: &str, separator: char) -> Option<[i64; 3]> {
+    let number = |digits: &str| digits.parse().ok().filter(|_| digits.bytes().all(|digit| digit.is_ascii_digit()));
+    let numbers: Vec<i64> = text.split(separator).map(number).collect::<Option<_>>()?;
+    numbers.try_into().ok()
+}
+
+/// Returns the days from 1970 to a date.
+fn days(year: i64, month: i64, day: i64) -> i64 {
+    // The year begins with March here, so that the day that only leap years have is its last.
+    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let leap_days = year / 4 - year / 100 + year / 400;
+    year * 365 + leap_days + (month * 153 + 2) / 5 + day - 1 - 719_468
+}
+
+/// Tests whether JSON is a number.
+pub fn is_number(value: &RawValue) -> bool {
+    value.get().starts_with(|first: char| first == '-' || first.is_ascii_digit())
+}
+
+/// Tests whether a number is one for readers of JSON that know doubles alone.
+pub fn is_finite(number: &RawValue) -> bool {
+    number.get().parse().is_ok_and(f64::is_finite)
+}
+
+/// candump fills up seconds with zeros, which JSON does not allow.
+fn without_leading_zeros(number: &str) -> &str {
+    let significant = number.trim_start_matches('0');
+    match number.strip_suffix(significant) {
+        Some(zeros) if !zeros.is_empty() && !significant.starts_with(|next: char| next.is_ascii_digit()) => {
+            &number[zeros.len() - 1..]
+        }
+        _ => significant,
+    }
+}
+
+/// Returns the name of an interface if it can stand in a log line.
+///
+/// # Errors
+///
+/// Says why it cannot.
+pub fn channel(name: &str) -> Result<&str, String> {
+    let plain = |letter: char| !letter.is_whitespace() && forbidden(letter).is_none() && letter != '#';
+    if name.is_empty() || name.starts_with('(') || !name.chars().all(plain) {
+        return Err(format!("the channel {} is no name", quoted(name)));
+    }
+    short("channel", name, LONGEST_NAME)?;
+    Ok(name)
+}
+
+/// Refuses what is longer than anybody writes it.
+fn short(what: &str, text: &str, most: usize) -> Result<(), String> {
+    let count = text.chars().count();
+    if count > most {
+        return Err(format!("the {what} {} has {count} characters, more than {most}", quoted(text)));
+    }
+    Ok(())
+}
+
+/// Returns the identifier, whether it has 29 bits, and whether it is that of an error frame.
+pub fn identifier(digits: &str) -> Result<(u32, bool, bool), String> {
+    let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_hexadecimal(digits));
+    let number = number.ok_or_else(|| format!("the identifier {} is not hexadecimal", quoted(digits)))?;
+    match digits.len() {
+        8 if number & !LARGEST_EXTENDED == ERROR_FLAG => Ok((number & LARGEST_EXTENDED, true, true)),
+        8 => fitting(number, true, digits).map(|number| (number, true, false)),
+        3 => fitting(number, false, digits).map(|number| (number, false, false)),
+        count => Err(format!("the identifier {digits} has {count} digits instead of 3 or 8")),
+    }
+}
+
+/// Refuses an identifier that its bits have no room for.
+pub fn fitting(number: u32, extended: bool, digits: &str) -> Result<u32, String> {
+    match extended {
+        true if number > LARGEST_EXTENDED => {
+            Err(format!("the identifier {digits} is above 1FFFFFFF, the largest of 29 bits"))
+        }
+        false if number > LARGEST_STANDARD => {
+            Err(format!("the identifier {digits} is above 7FF, the largest of 11 bits"))
+        }
+        _ => Ok(number),
+    }
+}
+
+/// Reads data in hexadecimal digits without anything between them.
+pub fn bytes(digits: &str, most: usize) -> Result<Vec<u8>, String> {
+    if !is_hexadecimal(digits) {
+        return Err(format!("the data {} are not hexadecimal", quoted(digits)));
+    }
+    if !digits.len().is_multiple_of(2) {
+        return Err(format!("the data have an odd number of digits, {}", digits.len()));
+    }
+    fewer(digits.len() / 2, most)?;
+    let digit = |digit: u8| (digit & 0x0F) + if digit.is_ascii_digit() { 0 } else { 9 };
+    let pairs = digits.as_bytes().chunks_exact(2);
+    Ok(pairs.map(|pair| pair.iter().fold(0, |byte, &next| byte << 4 | digit(next))).collect())
+}
+
+/// Refuses data that no frame has room for.
+pub fn fewer(count: usize, most: usize) -> Result<(), String> {
+    if count > most { Err(format!("the data have {count} bytes, more than {most}")) } else { Ok(()) }
+}
+
+/// Refuses another number of bytes than the line itself says.
+pub fn as_many(said: usize, count: usize) -> Result<(), String> {
+    if said == count { Ok(()) } else { Err(format!("the line says that there are {said} data bytes, and has {count}")) }
+}
+
+pub fn is_hexadecimal(text: &str) -> bool {
+    text.bytes().all(|byte| byte.is_ascii_hexdigit())
+}
+
+/// Shows a text of the log in a message: no control characters, and not too much of it.
+pub fn quoted(text: &str) -> String {
+    let shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
+    let more = if text.chars().nth(40).is_some() { "..." } else { "" };
+    format!("`{shown}{more}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(value: Result<Box<RawValue>, String>) -> Result<String, String> {
+        value.map(|value| value.get().to_owned())
+    }
+
+    #[test]
+    fn a_date_is_seconds_since_1970() {
+        // The numbers are those of `date -u -d DATE +%s`.
+        let dates = [
+            ("1970-01-01", "00:00:00", "0"),
+            ("2000-02-29", "23:59:59.25", "951868799.25"),
+            ("2023-11-14", "22:13:20.000000", "1700000000.000000"),
+            ("2100-03-01", "00:00:00", "4107542400"),
+        ];
+        for (day, time, seconds) in dates {
+            assert_eq!(text(date(day, time)), Ok(seconds.to_owned()), "{day} {time}");
+        }
+        for (day, time) in
+            [("2023-13-01", "0:0:0"), ("2023-11", "0:0:0"), ("2023-11-14", "24:00:00"), ("2023-11-14", "1:2:3.x")]
+        {
+            assert_eq!(text(date(day, time)), Err(format!("the stamp `{day} {time}` is no date with a time")));
+        }
+    }
+
+    #[test]
+    fn smaller_units_become_seconds_without_arithmetic() {
+        let cases =
+            [("1234", 3, "1.234"), ("7", 3, "0.007"), ("-7.5", 3, "-0.0075"), ("0", 6, "0.000000"), ("1.5", 0, "1.5")];
+        for (word, places, expected) in cases {
+            assert_eq!(text(moved(word, places)), Ok(expected.to_owned()), "{word}");
+        }
+        assert_eq!(text(moved("x°y", 3)), Err("the stamp `x°y` is no number".to_owned()));
+    }
+
+    #[test]
+    fn a_message_shows_no_control_characters_and_not_too_much() {
+        assert_eq!(quoted("\u{1b}[2J"), "`\\u{1b}[2J`");
+        assert_eq!(quoted(&"x".repeat(41)), format!("`{}...`", "x".repeat(40)));
+    }
+}

@@ -1,0 +1,65 @@
+//! Lines of a log, as `candump -L` writes them.
+
+use std::io::{self, Write};
+
+use canspec_codegen::interpret::{Form, Frame};
+
+use super::part::ERROR_FLAG;
+
+/// Writes a data frame as a line of a log, with what it has of stamp and channel.
+///
+/// # Errors
+///
+/// Where `out` cannot be written.
+pub fn write(out: &mut impl Write, time: Option<&str>, channel: Option<&str>, frame: &Frame) -> io::Result<()> {
+    if let Some(time) = time {
+        write!(out, "({time}) ")?;
+    }
+    if let Some(channel) = channel {
+        write!(out, "{channel} ")?;
+    }
+    writeln!(out, "{}#{}", identifier_text(frame), hexadecimal(&frame.data))
+}
+
+/// Returns the identifier as candump prints it.
+pub fn identifier_text(frame: &Frame) -> String {
+    let flag = if frame.form == Form::Error { ERROR_FLAG } else { 0 };
+    identifier_digits(frame.id | flag, frame.extended)
+}
+
+/// Returns an identifier in 8 digits if it has 29 bits, else in 3.
+pub fn identifier_digits(id: u32, extended: bool) -> String {
+    let width = if extended { 8 } else { 3 };
+    format!("{id:0width$X}")
+}
+
+/// Returns bytes in upper-case hexadecimal digits.
+pub fn hexadecimal(bytes: &[u8]) -> String {
+    const DIGITS: [char; 16] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'A', 'B', 'C', 'D', 'E', 'F'];
+    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 0x0F]);
+    digits.filter_map(|digit| DIGITS.get(usize::from(digit))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::Reader;
+
+    #[test]
+    fn a_frame_is_written_as_it_was_read() {
+        for line in ["(1.50) can0 029C03F0#000B71B000003A98", "can0 1A5#0AFF", "(7) 00000001#", "7FF#00"] {
+            let mut reader = Reader::default();
+            let entry = reader.read(line).expect("the line is readable").expect("the line is not blank");
+            let mut out = Vec::new();
+            let time = entry.time.as_ref().map(|time| time.get());
+            write(&mut out, time, entry.channel, &entry.frame).expect("a vector takes everything");
+            assert_eq!(String::from_utf8(out), Ok(format!("{line}\n")));
+        }
+    }
+
+    #[test]
+    fn an_error_frame_keeps_its_flag() {
+        let frame = Frame { id: 4, extended: true, data: Vec::new(), form: Form::Error };
+        assert_eq!(identifier_text(&frame), "20000004");
+    }
+}

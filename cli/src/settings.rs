@@ -1,0 +1,95 @@
+//! What nobody says in a call: the protocols and the device model that a folder or the environment names.
+
+use std::env;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::failure::{Failure, shown};
+
+/// The file that is looked for from the current folder upward.
+const FILE: &str = "canspec.toml";
+
+/// Names a built-in protocol, or several with commas between them.
+const VARIABLE: &str = "CANSPEC_PROTOCOL";
+
+/// What the settings name.
+#[derive(Debug, Default)]
+pub struct Settings {
+    /// Names of built-in protocols.
+    pub protocols: Vec<String>,
+    /// Spec files.
+    pub specs: Vec<PathBuf>,
+    /// The device model.
+    pub model: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    protocol: Option<OneOrMany>,
+    spec: Option<OneOrMany>,
+    model: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a text or a list of texts")]
+enum OneOrMany {
+    One(String),
+    Many(Vec<String>),
+}
+
+impl OneOrMany {
+    fn names(written: Option<Self>) -> Vec<String> {
+        match written {
+            None => Vec::new(),
+            Some(Self::One(name)) => vec![name],
+            Some(Self::Many(names)) => names,
+        }
+    }
+}
+
+impl Settings {
+    /// Returns the settings of the environment, or else those of the nearest file.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be read, or says something else.
+    pub fn find() -> Result<Self, Failure> {
+        let value = env::var(VARIABLE).unwrap_or_default();
+        let names = value.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned);
+        let protocols: Vec<String> = names.collect();
+        if !protocols.is_empty() {
+            return Ok(Self { protocols, ..Self::default() });
+        }
+        for folder in folders() {
+            let path = folder.join(FILE);
+            match fs::read_to_string(&path) {
+                Ok(text) => return Self::read(&path, &text),
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
+                Err(error) => return Err(Failure::input(&path, &error)),
+            }
+        }
+        Ok(Self::default())
+    }
+
+    fn read(path: &Path, text: &str) -> Result<Self, Failure> {
+        let Written { protocol, spec, model } = toml::from_str(text).map_err(|error| {
+            let line =
+                text.get(..error.span().map_or(0, |span| span.start)).map_or(1, |before| before.lines().count().max(1));
+            Failure::Input(format!("{}:{line}: {}", shown(path), error.message()))
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let specs = OneOrMany::names(spec).into_iter().map(|spec| folder.join(spec)).collect();
+        Ok(Self { protocols: OneOrMany::names(protocol), specs, model })
+    }
+}
+
+/// Returns the current folder and those above it, as seen from the current one.
+fn folders() -> impl Iterator<Item = PathBuf> {
+    let depth = env::current_dir().map_or(0, |folder| folder.ancestors().count());
+    let up = |count: usize| std::iter::repeat_n("..", count).collect::<PathBuf>();
+    (0..depth).map(up)
+}

@@ -1,0 +1,132 @@
+//! Logs of other programs: whichever program wrote a log, its frames are the same.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/logs")
+}
+
+fn canspec(arguments: &[&str]) -> Output {
+    let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    canspec.args(arguments).current_dir(folder()).stdin(Stdio::null()).output().expect("the command starts")
+}
+
+/// A frame of a log: seconds since the first one, identifier, data, form.
+type Frame = (u64, String, String, String);
+
+/// Returns microseconds as whole numbers, which do not depend on how a program rounds.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the logs begin at 0 or in 2023")]
+fn microseconds(seconds: f64) -> u64 {
+    (seconds * 1e6).round() as u64
+}
+
+/// Returns the frames that python-can reads, but for those of one form.
+fn expected(without: &str) -> Vec<Frame> {
+    let table = fs::read_to_string(folder().join("bus.expected.tsv")).expect("the table can be read");
+    let rows = table.lines().filter(|line| !line.starts_with('#'));
+    let frames = rows.map(|row| {
+        let cells: Vec<&str> = row.split('\t').collect();
+        let text = |index: usize| cells[index].replace('-', "");
+        (microseconds(cells[0].parse().expect("a number")), text(1), text(2), text(3))
+    });
+    frames.filter(|(.., form)| form != without).collect()
+}
+
+/// Returns the frames that the command finds.
+fn found(log: &str) -> Vec<Frame> {
+    let output = canspec(&["decode", "--protocol", "infy", "--format", "jsonl", log]);
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{log}");
+    let text = String::from_utf8(output.stdout).expect("JSON is text");
+    let objects: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("it is JSON")).collect();
+    let time = |object: &Value| microseconds(object["time"].as_f64().expect("every line has a stamp"));
+    let start = time(&objects[0]);
+    objects
+        .iter()
+        .map(|object| {
+            let text = |name: &str| object[name].as_str().unwrap_or_default().to_owned();
+            let form = form(object["problem"]["text"].as_str().unwrap_or_default());
+            // The programs do not agree on what an error frame holds.
+            let [id, data] = if form == "error" { Default::default() } else { [text("id"), text("data")] };
+            (time(object) - start, id, data, form.to_owned())
+        })
+        .collect()
+}
+
+fn form(problem: &str) -> &'static str {
+    match problem {
+        "a remote frame carries no data" => "remote",
+        "an error frame" => "error",
+        "a CAN FD frame" => "fd",
+        _ => "data",
+    }
+}
+
+#[test]
+fn logs_that_python_can_wrote_have_the_frames_that_python_can_reads() {
+    assert_eq!(found("bus.asc"), expected(""));
+    assert_eq!(found("bus.log"), expected(""));
+    assert_eq!(found("bus.csv"), expected("fd"));
+}
+
+#[test]
+fn plain_lines_of_candump_have_the_frames_of_its_logs() {
+    assert_eq!(found("bus.plain"), expected(""));
+}
+
+#[test]
+fn lines_of_slcan_have_the_frames_that_it_can_say() {
+    let expected: Vec<Frame> = expected("fd").into_iter().filter(|(.., form)| form != "error").collect();
+    // The stamps are whole milliseconds.
+    let expected = expected.into_iter().map(|(time, id, data, form)| (time / 1000 * 1000, id, data, form));
+    assert_eq!(found("bus.slcan"), expected.collect::<Vec<_>>());
+}
+
+#[test]
+fn frames_as_cansend_takes_them_and_people_write_them_are_read() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let log = folder.path().join("frames");
+    let forms = ["0x0283F000#43FA000040600000", "0283F000#43.FA.00.00.40.60.00.00", "0283F000#43 FA 00 00 40 60 00 00"];
+    fs::write(&log, forms.join("\n")).expect("the folder can be written");
+    let output = canspec(&["decode", "--protocol", "infy", &log.to_string_lossy()]);
+    let table = String::from_utf8(output.stdout).expect("the table is text");
+    // 0x43FA0000 and 0x40600000 are 500 and 3.5 in IEEE 754.
+    let shown = table.lines().filter(|line| line.contains("voltage 500.0 V  current 3.5 A")).count();
+    assert_eq!((shown, output.status.code()), (3, Some(0)), "{table}");
+}
+
+#[test]
+fn a_capture_is_the_same_whichever_program_wrote_the_log() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let capture = |log: &str| {
+        // Plain lines do not say what the flags of an FD frame are, nor do both have one error frame.
+        let text = fs::read_to_string(self::folder().join(log)).expect("the log can be read");
+        let lines =
+            text.lines().filter(|line| !["20000004", "20000080", "18FF50E5"].iter().any(|id| line.contains(id)));
+        // The log of python-can does not say how many bytes a remote frame asks for.
+        let lines = lines.map(|line| line.replace("[5]  remote", "[0]  remote") + "\n");
+        let (lines, out) = (lines.collect::<String>(), folder.path().join("out"));
+        fs::write(folder.path().join(log), lines).expect("the folder can be written");
+        let log = folder.path().join(log);
+        let output = canspec(&["decode", "--to", "pcapng", &out.to_string_lossy(), &log.to_string_lossy()]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read(out).expect("the capture can be read")
+    };
+    assert_eq!(capture("bus.plain"), capture("bus.log"));
+}
+
+#[test]
+fn a_log_of_no_known_format_is_answered_with_the_known_ones() {
+    let output = canspec(&["decode", "--protocol", "infy", "../logs.rs"]);
+    let told = String::from_utf8(output.stderr).expect("it is text");
+    assert_eq!(output.status.code(), Some(1));
+    let first = told.lines().next().unwrap_or_default();
+    let start = "../logs.rs:1: `//! Logs of other programs: whichever pr...` is of no known log; known are candump (";
+    assert!(first.starts_with(start), "{first}");
+    for name in ["SLCAN", "Vector ASC", "CSV"] {
+        assert!(first.contains(name), "{name} in {first}");
+    }
+}
