@@ -14,6 +14,9 @@ pub struct Spec {
 /// All specs, sorted by name.
 pub const SPECS: &[Spec] = include!(concat!(env!("OUT_DIR"), "/specs.rs"));
 
+/// The folder of the spec files, for build scripts that compile them.
+pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
+
 /// Finds a spec by its name.
 pub fn find(name: &str) -> Option<&'static Spec> {
     SPECS.iter().find(|spec| spec.name == name)
