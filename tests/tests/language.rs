@@ -11,6 +11,7 @@ const REFERENCE: &str = "docs/language.md";
 const README: &str = "README.md";
 const VENDOR_GUIDE: &str = "docs/adding-a-vendor.md";
 const RULES: &str = "docs/rules.md";
+const HOW_TO: &str = "docs/how-to";
 
 /// Headings of the reference, each with a spec fragment in which `nothing` stands where the keys below that heading may.
 const PLACES: [(&str, &str); 23] = [
@@ -52,6 +53,15 @@ fn every_block_of_the_vendor_guide_does_what_it_says() {
 #[test]
 fn every_block_of_the_readme_adds_to_the_smallest_spec_of_the_reference() {
     check_blocks_beside(README);
+}
+
+#[test]
+fn every_block_of_the_how_to_pages_does_what_it_says() {
+    let folder = format!("{}/../{HOW_TO}", env!("CARGO_MANIFEST_DIR"));
+    let pages = fs::read_dir(&folder).expect("the folder is there").flatten();
+    for page in pages {
+        check_blocks_beside(&format!("{HOW_TO}/{}", page.file_name().to_string_lossy()));
+    }
 }
 
 #[test]
