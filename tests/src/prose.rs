@@ -1,0 +1,241 @@
+//! The sentences that people read, in Markdown, in comments and in diagnostics. Help texts are doc comments.
+
+use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
+
+/// A sentence, or text that stands alone like one: a heading, an item of a list, a cell of a table.
+#[derive(Debug)]
+pub struct Sentence {
+    /// Number of the line where its paragraph begins.
+    pub line: usize,
+    /// Its text, without marks of Markdown.
+    pub text: String,
+}
+
+impl Sentence {
+    /// Counts the words. A piece of code is one word.
+    #[must_use]
+    pub fn words(&self) -> usize {
+        self.text.split_ascii_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
+    }
+}
+
+/// Returns the sentences of a file. Its name decides how they are found, and most kinds of files have none.
+#[must_use]
+pub fn sentences(name: &str, text: &str) -> Vec<Sentence> {
+    match name.rsplit_once('.').map(|(_, ending)| ending) {
+        Some("md") => of_markdown(text, 1).collect(),
+        Some("rs") => of_comments(text, &["///", "//!", "//"]),
+        Some("lua") => of_comments(text, &["---", "--"]),
+        Some("toml" | "yaml" | "py") => of_comments(text, &["#"]),
+        Some("stderr") => of_diagnostics(text).collect(),
+        _ if name == "justfile" || name.starts_with(".ci/") => of_comments(text, &["#"]),
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the numbers of the lines in Markdown that are wider than `columns` and could be broken.
+///
+/// Rows of tables cannot be broken, nor can code.
+pub fn wide_lines(text: &str, columns: usize) -> impl Iterator<Item = usize> {
+    let mut is_code = false;
+    text.lines().enumerate().filter_map(move |(place, line)| {
+        is_code ^= line.starts_with("```");
+        let can_be_broken = !is_code && !line.starts_with('|');
+        (can_be_broken && line.chars().count() > columns).then_some(place + 1)
+    })
+}
+
+/// Returns the sentences of comments. Adjacent lines with the same mark are one text.
+fn of_comments(text: &str, marks: &[&str]) -> Vec<Sentence> {
+    let lines: Vec<_> = text.lines().map(|line| comment(line, marks)).collect();
+    let blocks = lines.chunk_by(|one, other| one.map(|(mark, _)| mark) == other.map(|(mark, _)| mark));
+    let mut first = 1;
+    let mut all = Vec::new();
+    for block in blocks {
+        let said: Vec<_> = block.iter().flatten().map(|(_, said)| *said).collect();
+        all.extend(of_markdown(&said.join("\n"), first));
+        first += block.len();
+    }
+    all
+}
+
+/// Splits a comment into its mark and its text.
+fn comment<'a>(line: &'a str, marks: &[&'a str]) -> Option<(&'a str, &'a str)> {
+    let line = line.trim_start();
+    let (mark, said) = marks.iter().find_map(|mark| line.strip_prefix(mark).map(|said| (*mark, said)))?;
+    Some((mark, said.strip_prefix(' ').unwrap_or(said)))
+}
+
+/// Returns the messages and the helps of diagnostics.
+fn of_diagnostics(text: &str) -> impl Iterator<Item = Sentence> {
+    text.lines().enumerate().flat_map(|(place, line)| {
+        let says = ["error", "warning", "= help", "= note"].iter().any(|word| line.trim_start().starts_with(word));
+        let said = says.then(|| line.split_once(": ")).flatten().map_or("", |(_, said)| said);
+        // A list of alternatives follows, which nobody reads as a sentence.
+        let said = said.split("allowed here: ").next().unwrap_or_default();
+        of_markdown(said, place + 1).collect::<Vec<_>>()
+    })
+}
+
+/// Returns the sentences of a text in Markdown. `first` is the number of its first line.
+fn of_markdown(text: &str, first: usize) -> impl Iterator<Item = Sentence> {
+    let line = move |at: usize| first + text.get(..at).map_or(0, |before| before.matches('\n').count());
+    blocks(text).into_iter().flat_map(move |(at, words)| split(&words, line(at)))
+}
+
+/// Returns each paragraph, heading, item and cell with the place where it begins. Code in them is one word.
+fn blocks(text: &str) -> Vec<(usize, String)> {
+    let mut blocks = vec![(0, String::new())];
+    let mut is_code = false;
+    for (event, place) in Parser::new_ext(text, Options::ENABLE_TABLES).into_offset_iter() {
+        let said = match event {
+            Event::Text(said) if !is_code => said.to_string(),
+            Event::Code(said) => format!("`{}`", said.replace(' ', "\u{a0}")),
+            Event::SoftBreak | Event::HardBreak => " ".to_owned(),
+            Event::Start(tag) if !is_inline(tag.to_end()) => {
+                is_code = matches!(tag, Tag::CodeBlock(_));
+                blocks.push((place.start, String::new()));
+                continue;
+            }
+            Event::End(tag) if !is_inline(tag) => {
+                is_code = false;
+                blocks.push((place.end, String::new()));
+                continue;
+            }
+            _ => continue,
+        };
+        blocks.last_mut().expect("there is a block").1.push_str(&said);
+    }
+    blocks
+}
+
+/// Tests whether a sentence goes on after the tag.
+fn is_inline(tag: TagEnd) -> bool {
+    matches!(tag, TagEnd::Emphasis | TagEnd::Strong | TagEnd::Link | TagEnd::Image)
+}
+
+/// Splits a block into its sentences.
+fn split(words: &str, line: usize) -> Vec<Sentence> {
+    let words: Vec<_> = words.split_ascii_whitespace().collect();
+    let ends = |word: &&str| word.trim_end_matches(['"', ')']).ends_with(['.', '?', '!']);
+    let sentences = words.split_inclusive(ends).map(|words| words.join(" "));
+    sentences.map(|text| Sentence { line, text }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the sentences of a file with their lines.
+    fn found(name: &str, text: &str) -> Vec<(usize, String)> {
+        sentences(name, text).into_iter().map(|Sentence { line, text }| (line, text)).collect()
+    }
+
+    /// Returns how many words the only sentence of a paragraph has.
+    fn words(paragraph: &str) -> usize {
+        match sentences("page.md", paragraph).as_slice() {
+            [sentence] => sentence.words(),
+            several => panic!("{several:?}"),
+        }
+    }
+
+    fn expected(sentences: &[(usize, &str)]) -> Vec<(usize, String)> {
+        sentences.iter().map(|(line, text)| (*line, (*text).to_owned())).collect()
+    }
+
+    #[test]
+    fn a_word_has_a_letter_or_a_digit() {
+        assert_eq!(words("One two – 3 + four & *five*"), 5);
+    }
+
+    #[test]
+    fn a_piece_of_code_is_one_word_however_long_it_is() {
+        assert_eq!(words("Write `let x = 1;` and `let y = 2;` here"), 5);
+    }
+
+    #[test]
+    fn a_link_counts_with_its_text_and_not_with_its_address() {
+        assert_eq!(words("See [the rules](https://example.com/one/two) of **this very** page"), 7);
+    }
+
+    #[test]
+    fn a_sentence_ends_with_its_stop_and_with_what_closes_after_it() {
+        assert_eq!(
+            found("page.md", "One. Two 1.5 `a. b.` three? (Four!) \"Five.\"\nSix, seven; eight: nine"),
+            expected(&[
+                (1, "One."),
+                (1, "Two 1.5 `a.\u{a0}b.` three?"),
+                (1, "(Four!)"),
+                (1, "\"Five.\""),
+                (1, "Six, seven; eight: nine"),
+            ])
+        );
+    }
+
+    #[test]
+    fn headings_items_cells_and_paragraphs_are_sentences_of_their_own() {
+        let page = "# One\n\ntwo\nthree\n\n- four\n- five\n  six\n\n| seven | eight |\n|---|---|\n| nine | |\n\nten";
+        assert_eq!(
+            found("page.md", page),
+            expected(&[
+                (1, "One"),
+                (3, "two three"),
+                (6, "four"),
+                (7, "five six"),
+                (10, "seven"),
+                (10, "eight"),
+                (12, "nine"),
+                (14, "ten"),
+            ])
+        );
+    }
+
+    #[test]
+    fn blocks_of_code_have_no_sentences() {
+        let page = "One\n\n```sh\ntwo three. four\n```\n\nfive\n\n    six seven\n\neight";
+        assert_eq!(found("page.md", page), expected(&[(1, "One"), (7, "five"), (11, "eight")]));
+    }
+
+    #[test]
+    fn a_line_is_wide_unless_it_is_a_row_of_a_table_or_code() {
+        let page = "four\näöüß\nfifth\n| row | \n```\n$ wide\n```\nwidest\n";
+        assert_eq!(wide_lines(page, 4).collect::<Vec<_>>(), [3, 8]);
+    }
+
+    #[test]
+    fn lines_of_a_comment_are_one_text_up_to_code_or_another_mark() {
+        let code = "//! One\n//! two\n\nfn a() {\n    /// three\n    ///\n    /// four\n    // five\n    //six\n}\n/// seven\n";
+        assert_eq!(
+            found("code.rs", code),
+            expected(&[(1, "One two"), (5, "three"), (7, "four"), (8, "five six"), (11, "seven")])
+        );
+    }
+
+    #[test]
+    fn every_language_has_marks_of_its_own() {
+        let text = "# one\n-- two\n--- three\n// four\n";
+        assert_eq!(found("a.lua", text), expected(&[(2, "two"), (3, "three")]));
+        for name in ["a.toml", "a.yaml", "a.py", "justfile", ".ci/run"] {
+            assert_eq!(found(name, text), expected(&[(1, "one")]), "{name}");
+        }
+        for name in ["a.json", "other", "a/justfile"] {
+            assert_eq!(found(name, text), Vec::new(), "{name}");
+        }
+    }
+
+    #[test]
+    fn diagnostics_speak_in_their_messages_helps_and_notes_alone() {
+        let report = "error[a]: one\n --> a.yaml:1: two\n  |\n1 | error: three\n  |        ^ four: five\n   \
+            = help: six\n   = note: seven. eight\nwarning[b]: nine: ten\n";
+        assert_eq!(
+            found("a.stderr", report),
+            expected(&[(1, "one"), (6, "six"), (7, "seven."), (7, "eight"), (8, "nine: ten")])
+        );
+    }
+
+    #[test]
+    fn the_alternatives_after_allowed_here_are_no_part_of_a_sentence() {
+        let report = "  = help: did you mean `b`? allowed here: `a`, `b`\n  = help: write c; allowed here: `d`\n";
+        assert_eq!(found("a.stderr", report), expected(&[(1, "did you mean `b`?"), (2, "write c;")]));
+    }
+}
