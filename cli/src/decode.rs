@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use crate::capture::{self, Capture};
 use crate::failure::{Failure, Finish, shown};
 use crate::input::Input;
-use crate::line::{self, Origin};
+use crate::line::{self, Outcome};
 use crate::log::{Entry, Reader};
 use crate::model::Model;
 use crate::output::output;
@@ -149,24 +149,19 @@ impl Decode {
             return Ok(());
         }
         let Entry { time, channel, frame, .. } = entry;
-        let origin = Origin { line, time: time.as_deref(), channel: *channel, frame, protocol };
-        printer.frame(out, &origin, &decoded)
+        let (time, channel, decoded) = (time.as_deref(), *channel, &decoded);
+        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded })
     }
 }
 
 impl Printer {
-    fn frame(
-        &mut self,
-        out: &mut impl Write,
-        origin: &Origin<'_>,
-        decoded: &Result<Decoded, Unrecognised>,
-    ) -> io::Result<()> {
+    fn frame(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
         match self {
-            Self::Text(table) => table.write(out, origin, decoded),
-            Self::Jsonl => line::write(out, origin, decoded),
-            Self::Csv(rows) => rows.write(out, origin, decoded),
+            Self::Text(table) => table.write(out, outcome),
+            Self::Jsonl => line::write(out, outcome),
+            Self::Csv(rows) => rows.write(out, outcome),
             Self::Summary { counts, .. } => {
-                counts.count(origin, decoded);
+                counts.count(outcome);
                 Ok(())
             }
         }

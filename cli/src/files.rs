@@ -6,7 +6,7 @@ use canspec_codegen::model::Protocol;
 use crate::capture::Capture;
 use crate::encode;
 use crate::import;
-use crate::line::{self, Origin};
+use crate::line::{self, Outcome};
 use crate::log::Reader;
 use crate::table::Table;
 
@@ -33,12 +33,12 @@ impl Log {
     pub fn decoded(&mut self, protocol: &Protocol, line: &str) -> Result<Option<Shown>, String> {
         let Some(entry) = self.0.read(line)? else { return Ok(None) };
         let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
-        let origin = Origin { line: 1, time, channel, frame, protocol };
-        let decoded = decode(protocol, None, frame);
+        let decoded = &decode(protocol, None, frame);
+        let outcome = Outcome { line: 1, time, channel, frame, protocol, decoded };
         let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
         let unwritten = |error: std::io::Error| error.to_string();
-        line::write(&mut json, &origin, &decoded).map_err(unwritten)?;
-        Table::new(std::slice::from_ref(protocol)).write(&mut table, &origin, &decoded).map_err(unwritten)?;
+        line::write(&mut json, &outcome).map_err(unwritten)?;
+        Table::new(std::slice::from_ref(protocol)).write(&mut table, &outcome).map_err(unwritten)?;
         let capture = Capture::begin(&mut bytes).map_err(unwritten)?.frame(&mut bytes, &entry);
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).map_err(|error| error.to_string());
         Ok(Some(Shown { json: text(json)?, table: text(table)?, capture: capture.map(|_| bytes) }))

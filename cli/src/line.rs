@@ -4,7 +4,7 @@ mod input;
 mod output;
 
 pub use input::Content;
-pub use output::{Origin, bit_names, write};
+pub use output::{Outcome, bit_names, write};
 
 /// The members of a JSON object, in order.
 #[derive(Debug, Default)]

@@ -6,7 +6,7 @@ use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressPattern, Kind, Mode, Protocol};
 
 use crate::columns::{Columns, wrap};
-use crate::line::Origin;
+use crate::line::Outcome;
 use crate::log;
 use crate::value;
 
@@ -54,32 +54,27 @@ impl Table {
     /// # Errors
     ///
     /// Where `out` cannot be written.
-    pub fn write(
-        &mut self,
-        out: &mut impl Write,
-        origin: &Origin<'_>,
-        decoded: &Result<Decoded, Unrecognised>,
-    ) -> io::Result<()> {
-        let (address, access, message) = self.names(origin, decoded);
-        let identifier = log::identifier_text(origin.frame);
-        let time = origin.time.map_or("", |time| time.get());
-        let cells = [time, origin.channel.unwrap_or(""), &identifier, &address, access, &message];
+    pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
+        let (address, access, message) = self.names(outcome);
+        let identifier = log::identifier_text(outcome.frame);
+        let time = outcome.time.map_or("", |time| time.get());
+        let cells = [time, outcome.channel.unwrap_or(""), &identifier, &address, access, &message];
         self.columns.widen(&cells);
         if !self.started {
             self.columns.write(out, &HEADINGS, &["SIGNALS".to_owned()])?;
             self.started = true;
         }
-        let lines = lines(origin, decoded, self.columns.room());
+        let lines = lines(outcome, self.columns.room());
         self.columns.write(out, &cells, &lines)
     }
 
     /// Returns what stands under address, access and message.
-    fn names<'a>(&self, origin: &Origin<'a>, decoded: &Result<Decoded, Unrecognised>) -> (String, &'a str, String) {
-        let protocol = origin.protocol;
-        match decoded {
+    fn names<'a>(&self, outcome: &Outcome<'a>) -> (String, &'a str, String) {
+        let protocol = outcome.protocol;
+        match outcome.decoded {
             Ok(decoded) => {
                 let message = self.message(protocol, &protocol.messages[decoded.message].name);
-                (address(protocol, decoded, origin.frame.id), &protocol.accesses[decoded.access].name, message)
+                (address(protocol, decoded, outcome.frame.id), &protocol.accesses[decoded.access].name, message)
             }
             Err(_) => ("?".to_owned(), "", self.message(protocol, "?")),
         }
@@ -121,11 +116,11 @@ fn addresses(protocol: &Protocol, pattern: &AddressPattern, id: u32) -> Vec<Stri
 }
 
 /// Returns the lines of the last column.
-fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usize) -> Vec<String> {
-    match decoded {
-        Ok(decoded) if decoded.is_error_reply() => refusal(origin, decoded, room),
+fn lines(outcome: &Outcome<'_>, room: usize) -> Vec<String> {
+    match outcome.decoded {
+        Ok(decoded) if decoded.is_error_reply() => refusal(outcome, decoded, room),
         Ok(decoded) => {
-            let signals = decoded.signals.iter().map(|reading| signal(origin.protocol, decoded, reading));
+            let signals = decoded.signals.iter().map(|reading| signal(outcome.protocol, decoded, reading));
             let texts: Vec<String> = signals.map(|text| text + GAP).collect();
             let pieces = texts.iter().flat_map(|text| text.split_inclusive(", "));
             let mut lines = wrap(pieces, "", room + 1);
@@ -133,7 +128,7 @@ fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usi
             lines
         }
         Err(Unrecognised { problem, text, .. }) => {
-            let data = log::hexadecimal(&origin.frame.data);
+            let data = log::hexadecimal(&outcome.frame.data);
             let separated = if data.is_empty() { data } else { data + GAP };
             wrap(format!("{separated}! {}: {text}", problem.name()).split(' '), " ", room)
         }
@@ -141,9 +136,9 @@ fn lines(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, room: usi
 }
 
 /// Returns the data of a frame that reports an error in place of its values, and why.
-fn refusal(origin: &Origin<'_>, decoded: &Decoded, room: usize) -> Vec<String> {
+fn refusal(outcome: &Outcome<'_>, decoded: &Decoded, room: usize) -> Vec<String> {
     let what = if decoded.kind == Kind::Reply { "refused" } else { "in error" };
-    let data = log::hexadecimal(&origin.frame.data);
+    let data = log::hexadecimal(&outcome.frame.data);
     let separator = if data.is_empty() { "" } else { ", data " };
     let mut lines = vec![format!("{what}{separator}{data}")];
     let notes = decoded.notes.iter().filter(|note| !note.is_about_value());

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
 
-use crate::line::{Origin, bit_names};
+use crate::line::{Outcome, bit_names};
 use crate::log;
 
 const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,signal,raw,value,unit,notes";
@@ -21,24 +21,19 @@ impl Rows {
     /// # Errors
     ///
     /// Where `out` cannot be written.
-    pub fn write(
-        &mut self,
-        out: &mut impl Write,
-        origin: &Origin<'_>,
-        decoded: &Result<Decoded, Unrecognised>,
-    ) -> io::Result<()> {
+    pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
         self.begin(out)?;
-        let (names, readings, notes) = match decoded {
-            Ok(decoded) => (names(origin, decoded), &decoded.signals[..], notes(&decoded.notes)),
+        let (names, readings, notes) = match outcome.decoded {
+            Ok(decoded) => (names(outcome, decoded), &decoded.signals[..], notes(&decoded.notes)),
             Err(Unrecognised { problem, text, .. }) => {
                 (Default::default(), &[][..], format!("{}: {text}", problem.name()))
             }
         };
-        let line = origin.line.to_string();
-        let (time, channel) = (origin.time.map_or("", |time| time.get()), origin.channel.unwrap_or_default());
-        let id = log::identifier_text(origin.frame);
-        let frame = [&line, time, channel, &id, &origin.protocol.name].into_iter().chain(names);
-        let signals = readings.iter().map(|reading| cells(origin, decoded, reading));
+        let line = outcome.line.to_string();
+        let (time, channel) = (outcome.time.map_or("", |time| time.get()), outcome.channel.unwrap_or_default());
+        let id = log::identifier_text(outcome.frame);
+        let frame = [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names);
+        let signals = readings.iter().map(|reading| cells(outcome, reading));
         let signals: Vec<_> = if readings.is_empty() { vec![Default::default()] } else { signals.collect() };
         for signal in signals {
             let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain([notes.as_str()]);
@@ -57,21 +52,21 @@ impl Rows {
 }
 
 /// Returns message, access and kind.
-fn names<'a>(origin: &Origin<'a>, decoded: &Decoded) -> [&'a str; 3] {
-    let protocol = origin.protocol;
+fn names<'a>(outcome: &Outcome<'a>, decoded: &Decoded) -> [&'a str; 3] {
+    let protocol = outcome.protocol;
     [&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name, decoded.kind.name()]
 }
 
 /// Returns name, raw number, value and unit of a signal.
-fn cells(origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>, reading: &Reading) -> [String; 4] {
-    let Ok(decoded) = decoded else { return Default::default() };
-    let signal = &origin.protocol.messages[decoded.message].signals[reading.signal];
+fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
+    let Ok(decoded) = outcome.decoded else { return Default::default() };
+    let signal = &outcome.protocol.messages[decoded.message].signals[reading.signal];
     let value = match &reading.value {
         Value::None => String::new(),
         Value::Integer(number) => number.to_string(),
         Value::Number(number) => format!("{number:?}"),
         Value::Name(text) | Value::Text(text) => text.clone(),
-        Value::Status { set, .. } => bit_names(origin.protocol, signal, set).join(" "),
+        Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).join(" "),
     };
     let unit = signal.unit.map_or("", |unit| unit.symbol);
     [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit.to_owned()]

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::columns::{self, Row};
-use crate::line::Origin;
+use crate::line::Outcome;
 use crate::log;
 
 /// Counts of a log so far.
@@ -71,20 +71,20 @@ enum Object<'a> {
 
 impl Summary {
     /// Counts a frame.
-    pub fn count(&mut self, origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>) {
+    pub fn count(&mut self, outcome: &Outcome<'_>) {
         self.frames += 1;
-        self.see(origin.time);
-        match decoded {
-            Ok(decoded) => self.recognise(origin, decoded),
+        self.see(outcome.time);
+        match outcome.decoded {
+            Ok(decoded) => self.recognise(outcome, decoded),
             Err(Unrecognised { problem, .. }) => {
-                let key = (log::identifier_text(origin.frame), problem.name());
-                Seen::count(self.unrecognised.entry(key), origin.line);
+                let key = (log::identifier_text(outcome.frame), problem.name());
+                Seen::count(self.unrecognised.entry(key), outcome.line);
             }
         }
     }
 
-    fn recognise(&mut self, origin: &Origin<'_>, decoded: &Decoded) {
-        let protocol = origin.protocol;
+    fn recognise(&mut self, outcome: &Outcome<'_>, decoded: &Decoded) {
+        let protocol = outcome.protocol;
         let (message, access) = (&protocol.messages[decoded.message].name, &protocol.accesses[decoded.access].name);
         let key = [&protocol.name, message, access, decoded.kind.name()].map(str::to_owned);
         self.recognised += 1;
@@ -93,7 +93,7 @@ impl Summary {
         rules.sort_unstable();
         rules.dedup();
         for rule in rules {
-            Seen::count(self.notes.entry(rule), origin.line);
+            Seen::count(self.notes.entry(rule), outcome.line);
         }
     }
 

@@ -10,13 +10,14 @@ use serde_json::value::RawValue;
 use super::Members;
 use crate::log;
 
-/// Where a frame comes from, and the protocol that read it.
-pub struct Origin<'a> {
+/// A frame of a log, and what a protocol makes of it.
+pub struct Outcome<'a> {
     pub line: usize,
     pub time: Option<&'a RawValue>,
     pub channel: Option<&'a str>,
     pub frame: &'a Frame,
     pub protocol: &'a Protocol,
+    pub decoded: &'a Result<Decoded, Unrecognised>,
 }
 
 /// Writes a frame as one line.
@@ -24,10 +25,10 @@ pub struct Origin<'a> {
 /// # Errors
 ///
 /// Where `out` cannot be written.
-pub fn write(out: &mut impl Write, origin: &Origin<'_>, decoded: &Result<Decoded, Unrecognised>) -> io::Result<()> {
-    match decoded {
-        Ok(decoded) => serde_json::to_writer(&mut *out, &Recognised::new(origin, decoded))?,
-        Err(unrecognised) => serde_json::to_writer(&mut *out, &Unknown::new(origin, unrecognised))?,
+pub fn write(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
+    match outcome.decoded {
+        Ok(decoded) => serde_json::to_writer(&mut *out, &Recognised::new(outcome, decoded))?,
+        Err(unrecognised) => serde_json::to_writer(&mut *out, &Unknown::new(outcome, unrecognised))?,
     }
     writeln!(out)
 }
@@ -43,14 +44,14 @@ struct Head<'a> {
 }
 
 impl<'a> Head<'a> {
-    fn new(origin: &Origin<'a>) -> Self {
+    fn new(outcome: &Outcome<'a>) -> Self {
         Self {
-            line: origin.line,
-            time: origin.time,
-            channel: origin.channel,
-            id: log::identifier_text(origin.frame),
-            data: log::hexadecimal(&origin.frame.data),
-            protocol: &origin.protocol.name,
+            line: outcome.line,
+            time: outcome.time,
+            channel: outcome.channel,
+            id: log::identifier_text(outcome.frame),
+            data: log::hexadecimal(&outcome.frame.data),
+            protocol: &outcome.protocol.name,
         }
     }
 }
@@ -72,11 +73,11 @@ struct Recognised<'a> {
 }
 
 impl<'a> Recognised<'a> {
-    fn new(origin: &Origin<'a>, decoded: &'a Decoded) -> Self {
-        let protocol = origin.protocol;
+    fn new(outcome: &Outcome<'a>, decoded: &'a Decoded) -> Self {
+        let protocol = outcome.protocol;
         let message = &protocol.messages[decoded.message];
         Self {
-            head: Head::new(origin),
+            head: Head::new(outcome),
             message: &message.name,
             access: &protocol.accesses[decoded.access].name,
             kind: decoded.kind.name(),
@@ -101,13 +102,13 @@ struct Unknown<'a> {
 }
 
 impl<'a> Unknown<'a> {
-    fn new(origin: &Origin<'a>, unrecognised: &'a Unrecognised) -> Self {
+    fn new(outcome: &Outcome<'a>, unrecognised: &'a Unrecognised) -> Self {
         Self {
-            head: Head::new(origin),
+            head: Head::new(outcome),
             message: (),
             problem: ProblemObject { kind: unrecognised.problem.name(), text: &unrecognised.text },
-            identifier: identifier(origin.protocol, &unrecognised.identifier),
-            selectors: selectors(origin.protocol, &unrecognised.selectors),
+            identifier: identifier(outcome.protocol, &unrecognised.identifier),
+            selectors: selectors(outcome.protocol, &unrecognised.selectors),
         }
     }
 }
@@ -274,9 +275,10 @@ messages:
         let mut reader = log::Reader::default();
         let entry = reader.read(text).expect("the line is readable").expect("the line is not blank");
         let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
-        let origin = Origin { line: 7, time, channel, frame, protocol: &protocol };
+        let decoded = &decode(&protocol, None, frame);
+        let outcome = Outcome { line: 7, time, channel, frame, protocol: &protocol, decoded };
         let mut out = Vec::new();
-        write(&mut out, &origin, &decode(&protocol, None, frame)).expect("a vector takes everything");
+        write(&mut out, &outcome).expect("a vector takes everything");
         String::from_utf8(out).expect("JSON is text")
     }
 
