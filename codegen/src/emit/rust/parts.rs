@@ -43,13 +43,27 @@ fn height(arm: &TokenStream) -> usize {
 mod tests {
     use super::*;
 
+    /// Returns how many arms each part has, if the arms have these heights, of at least three lines.
+    fn lengths(heights: Vec<usize>) -> Vec<usize> {
+        let arm = |height: &usize| {
+            let lines = (2..*height).map(|_| quote!(one();));
+            quote!(0x01 => { #(#lines)* })
+        };
+        parts(heights, arm).iter().map(Vec::len).collect()
+    }
+
     #[test]
     fn arms_are_distributed_evenly_over_parts_that_are_short_enough() {
-        let arm = |_: &usize| quote!(0x01 => { one(); two(); });
-        let lengths = |count: usize| parts((0..count).collect(), arm).iter().map(Vec::len).collect::<Vec<_>>();
-        assert_eq!(lengths(0), [0]);
-        assert_eq!(lengths(18), [18]);
-        assert_eq!(lengths(41), [14, 14, 13]);
+        assert_eq!(lengths(Vec::new()), [0]);
+        assert_eq!(lengths(vec![4; 18]), [18]);
+        assert_eq!(lengths(vec![4; 41]), [14, 14, 13]);
+        assert_eq!(lengths(vec![5; 20]), [10, 10]);
+    }
+
+    #[test]
+    fn a_part_is_filled_to_its_last_line_and_not_beyond() {
+        assert_eq!(lengths(vec![12, 60, 12]), [2, 1]);
+        assert_eq!(lengths(vec![12, 61, 12]), [1, 1, 1]);
     }
 
     #[test]
