@@ -2,7 +2,7 @@
 
 use core::ptr;
 
-use crate::{Bits, Error, Filter};
+use crate::{Bits, Error};
 
 /// A kind of address: a documented range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,21 +53,34 @@ impl AddressType {
     }
 
     /// Returns the field value that stands for a number.
+    #[inline(always)]
     pub const fn raw(&self, number: i32) -> u32 {
         let raw = number.wrapping_sub(self.offset);
         (if self.descending { raw.wrapping_neg() } else { raw }) as u32
     }
 
     /// Tests whether the document names this number.
+    #[inline(always)]
     pub const fn documents(&self, number: i32) -> bool {
         self.first <= number && number <= self.last
     }
 
     /// Returns the number that is sent unless the caller says otherwise.
+    #[inline(always)]
     pub const fn sent_number(&self) -> i32 {
         match self.default {
             Some(number) => number,
             None => self.first,
+        }
+    }
+
+    /// Returns the number that the caller chose, or the one that is sent otherwise. Generated code calls it.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub const fn chosen(&self, number: Option<i32>) -> i32 {
+        match number {
+            Some(number) => number,
+            None => self.sent_number(),
         }
     }
 
@@ -76,10 +89,11 @@ impl AddressType {
         ptr::eq(self, other) || self == other
     }
 
-    /// Returns the number if the document names it.
-    pub(crate) fn documented(&self, number: i32) -> Result<i32, Error> {
+    /// Refuses a number that the document does not name.
+    #[inline(always)]
+    pub(crate) const fn documented(&self, number: i32) -> Result<(), Error> {
         let Self { name: address, first, last, .. } = *self;
-        if self.documents(number) { Ok(number) } else { Err(Error::Address { address, number, first, last }) }
+        if self.documents(number) { Ok(()) } else { Err(Error::Address { address, number, first, last }) }
     }
 }
 
@@ -101,10 +115,6 @@ impl Address {
     #[must_use]
     pub const fn excluding(self, excluded: &'static [(u32, u32)]) -> Self {
         Self { excluded, ..self }
-    }
-
-    pub(crate) const fn kind(&self) -> &'static AddressType {
-        self.kind
     }
 
     fn number(&self, id: u32) -> i32 {
@@ -140,25 +150,6 @@ impl Pattern {
         let mut addresses = self.addresses.iter();
         let is_fit = is_documented || addresses.all(|address| address.is_documented(id) || address.is_tolerated(id));
         is_fit.then_some(is_documented)
-    }
-
-    /// Tests whether the identifier shows a number of this kind.
-    pub(crate) fn has(&self, kind: &AddressType) -> bool {
-        self.addresses.iter().any(|address| address.kind.is(kind))
-    }
-
-    /// Narrows a filter to the constants, and to the addresses whose number is known.
-    pub(crate) fn narrow(&self, filter: &Filter, number: impl Fn(&AddressType) -> Option<i32>) -> Filter {
-        let add = |(mask, value): (u32, u32), bits: Bits, raw: u32| {
-            let field = bits.write(u32::MAX);
-            (mask | field, (value & !field) | bits.write(raw))
-        };
-        let fixed = self.constants.iter().fold((0, 0), |fields, (bits, raw)| add(fields, *bits, *raw));
-        let (mask, value) = self.addresses.iter().fold(fixed, |fields, address| match number(address.kind) {
-            Some(number) => add(fields, address.bits, address.kind.raw(number)),
-            None => fields,
-        });
-        filter.id_bits(mask, value)
     }
 }
 
@@ -297,6 +288,6 @@ impl Addressing {
 
     /// Refuses addresses that the document does not name.
     pub(crate) fn documented(&self, id: u32) -> Result<(), Error> {
-        self.pattern.addresses.iter().try_for_each(|address| address.kind.documented(address.number(id)).map(drop))
+        self.pattern.addresses.iter().try_for_each(|address| address.kind.documented(address.number(id)))
     }
 }

@@ -1,7 +1,7 @@
 //! Filters: what a frame must show, as mask and value over identifier and data.
 
 use crate::frame::{padded, raw_id};
-use crate::{Bits, Data, Frame, Place};
+use crate::{AddressType, Bits, Data, Error, Frame, Place};
 
 /// A field of the data that chooses the message, or says whether a request was accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,13 +25,54 @@ impl Selector {
         Self { normal: Some(normal), ..self }
     }
 
+    #[inline]
     pub(crate) fn is_normal(&self, raw: u64) -> bool {
         self.normal.is_none_or(|normal| raw == normal)
     }
 
     /// Tests whether the first `length` data bytes contain the field.
+    #[inline]
     pub(crate) fn is_within(&self, length: usize) -> bool {
         self.place.mask().iter().skip(length).all(|byte| *byte == 0)
+    }
+}
+
+/// What identifiers of a protocol must show. Generated code builds it from constants and addresses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct IdFilter {
+    mask: u32,
+    value: u32,
+}
+
+impl IdFilter {
+    /// Accepts every identifier.
+    pub const ANY: Self = Self { mask: 0, value: 0 };
+
+    /// Requires a value in a field.
+    #[must_use]
+    #[inline(always)]
+    pub const fn id(self, bits: Bits, value: u32) -> Self {
+        Self { mask: put(self.mask, bits, u32::MAX), value: put(self.value, bits, value) }
+    }
+
+    /// Requires an address in a field.
+    #[must_use]
+    #[inline(always)]
+    pub const fn address(self, bits: Bits, kind: &AddressType, number: i32) -> Self {
+        self.id(bits, kind.raw(number))
+    }
+
+    /// Requires an address in a field, if the document names it.
+    ///
+    /// # Errors
+    ///
+    /// Refuses an address that it does not name.
+    #[inline(always)]
+    pub const fn documented(self, bits: Bits, kind: &AddressType, number: i32) -> Result<Self, Error> {
+        match kind.documented(number) {
+            Ok(()) => Ok(self.address(bits, kind, number)),
+            Err(error) => Err(error),
+        }
     }
 }
 
@@ -98,9 +139,16 @@ impl Filter {
 
     /// Requires these bits of the identifier, and does not change the others.
     #[must_use]
+    #[inline]
     pub const fn id_bits(self, mask: u32, value: u32) -> Self {
         let id_value = (self.id_value & !mask) | (value & mask);
         Self { id_mask: self.id_mask | mask, id_value, ..self }
+    }
+
+    /// Also requires this of the identifier. If both require a bit, `other` counts.
+    #[inline(always)]
+    pub(crate) const fn narrowed(self, other: IdFilter) -> Self {
+        self.id_bits(other.mask, other.value)
     }
 
     /// Also requires what `other` requires. If both require a bit, `other` counts.
@@ -113,6 +161,7 @@ impl Filter {
     }
 
     /// Tests a frame.
+    #[inline]
     pub fn matches(&self, frame: &impl embedded_can::Frame) -> bool {
         let (id, extended) = raw_id(frame.id());
         extended == self.extended
@@ -122,21 +171,25 @@ impl Filter {
     }
 
     /// Tests an identifier of the right width.
+    #[inline]
     pub const fn matches_id(&self, id: u32) -> bool {
         (id ^ self.id_value) & self.id_mask == 0
     }
 
     /// Tests data bytes.
+    #[inline]
     pub const fn matches_data(&self, data: &Data) -> bool {
         (word(*data) ^ word(self.data_value)) & word(self.data_mask) == 0
     }
 
     /// Returns the selectors that such frames have in their data.
+    #[inline]
     pub const fn data_selectors(&self) -> &'static [Selector] {
         self.selectors
     }
 
     /// Tests whether identifiers have 29 bits rather than 11.
+    #[inline]
     pub const fn is_extended(&self) -> bool {
         self.extended
     }
@@ -157,11 +210,13 @@ impl Filter {
     }
 
     /// Returns the bytes that are written when such a frame is built.
+    #[inline]
     pub const fn data_value(&self) -> Data {
         self.data_value
     }
 
     /// Returns the identifier that is written when such a frame is built.
+    #[inline]
     pub(crate) const fn sent_id(&self) -> u32 {
         self.id_value
     }
@@ -173,11 +228,13 @@ impl Filter {
     }
 }
 
+#[inline]
 const fn word(data: Data) -> u64 {
     u64::from_be_bytes(data)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
+#[inline]
 const fn put(id: u32, bits: Bits, value: u32) -> u32 {
     bits.put(id as u64, value as u64) as u32
 }

@@ -17,6 +17,7 @@ pub struct Frame {
 
 impl Frame {
     /// Returns a frame with the low 29 or 11 bits of `id` and the first `length` bytes of `data`, at most 8.
+    #[inline]
     pub const fn new_raw(id: u32, extended: bool, data: Data, length: u8) -> Self {
         let id = id & if extended { 0x1FFF_FFFF } else { 0x7FF };
         let length = if length < 8 { length } else { 8 };
@@ -25,11 +26,13 @@ impl Frame {
     }
 
     /// Returns the identifier as a number.
+    #[inline]
     pub const fn raw_id(&self) -> u32 {
         self.id
     }
 
     /// Returns eight bytes. Those beyond the frame's length are 0.
+    #[inline]
     pub const fn bytes(&self) -> Data {
         self.data
     }
@@ -50,6 +53,7 @@ impl Frame {
         Self::new_raw(self.id, self.extended, data, self.length)
     }
 
+    #[inline]
     pub(crate) fn length(&self) -> usize {
         self.length.into()
     }
@@ -66,14 +70,17 @@ impl embedded_can::Frame for Frame {
         None
     }
 
+    #[inline]
     fn is_extended(&self) -> bool {
         self.extended
     }
 
+    #[inline]
     fn is_remote_frame(&self) -> bool {
         false
     }
 
+    #[inline]
     fn id(&self) -> Id {
         if self.extended {
             Id::Extended(ExtendedId::new(self.id).unwrap_or(ExtendedId::ZERO))
@@ -82,10 +89,12 @@ impl embedded_can::Frame for Frame {
         }
     }
 
+    #[inline]
     fn dlc(&self) -> usize {
         self.length.into()
     }
 
+    #[inline]
     fn data(&self) -> &[u8] {
         self.data.get(..self.length.into()).unwrap_or(&self.data)
     }
@@ -101,6 +110,7 @@ impl fmt::Display for Frame {
 }
 
 /// Returns an identifier as a number, and whether it is an extended one.
+#[inline]
 pub fn raw_id(id: Id) -> (u32, bool) {
     match id {
         Id::Standard(id) => (id.as_raw().into(), false),
@@ -109,6 +119,7 @@ pub fn raw_id(id: Id) -> (u32, bool) {
 }
 
 /// Copies a classic data frame.
+#[inline]
 pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
     let (id, extended) = raw_id(frame.id());
     let length = u8::try_from(frame.data().len()).ok()?;

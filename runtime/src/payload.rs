@@ -13,11 +13,13 @@ pub struct Payload {
 
 impl Payload {
     /// Returns the bytes of a message that takes all values that fit its signals, as in a reply.
+    #[inline(always)]
     pub const fn new(message: &'static str, data: Data) -> Self {
         Self { message, data, keeps_limits: false, model: None }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
+    #[inline(always)]
     pub const fn within_limits(message: &'static str, data: Data) -> Self {
         Self { message, data, keeps_limits: true, model: None }
     }
@@ -25,28 +27,34 @@ impl Payload {
     /// Returns the same bytes for a device model, by its number. The model's limits then replace
     /// the general ones.
     #[must_use]
+    #[inline(always)]
     pub const fn for_model(self, model: Option<u8>) -> Self {
         Self { model, ..self }
     }
 
     /// Returns the bytes written so far.
+    #[inline(always)]
     pub const fn data(&self) -> &Data {
         &self.data
     }
 
     /// Returns the name of the message.
+    #[inline(always)]
     pub const fn message(&self) -> &'static str {
         self.message
     }
 
+    #[inline(always)]
     pub(crate) const fn keeps_limits(&self) -> bool {
         self.keeps_limits
     }
 
+    #[inline(always)]
     pub(crate) const fn model(&self) -> Option<u8> {
         self.model
     }
 
+    #[inline(always)]
     pub(crate) const fn replace(&mut self, data: Data) {
         self.data = data;
     }

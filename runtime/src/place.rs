@@ -34,45 +34,45 @@ impl Bits {
     }
 
     /// Returns the largest number that fits.
-    #[inline]
+    #[inline(always)]
     pub const fn max(self) -> u64 {
         u64::MAX.wrapping_shr(64_u32.wrapping_sub(self.width as u32))
     }
 
     /// Returns the bits of the word that belong to this run.
-    #[inline]
+    #[inline(always)]
     pub const fn mask(self) -> u64 {
         self.max().wrapping_shl(self.shift as u32)
     }
 
     /// Returns these bits of `word` as a number.
-    #[inline]
+    #[inline(always)]
     pub const fn get(self, word: u64) -> u64 {
         word.wrapping_shr(self.shift as u32) & self.max()
     }
 
     /// Returns these bits of an identifier.
     #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
-    #[inline]
+    #[inline(always)]
     pub const fn of(self, id: u32) -> u32 {
         self.get(id as u64) as u32
     }
 
     /// Returns these bits of an identifier as a raw value.
-    #[inline]
+    #[inline(always)]
     pub fn read<R: Raw>(self, id: u32) -> R {
         R::from_bits(self.get(id.into()))
     }
 
     /// Returns an identifier with the low bits of a raw value in these bits, and zeros elsewhere.
     #[expect(clippy::cast_possible_truncation, reason = "an identifier has at most 29 bits")]
-    #[inline]
+    #[inline(always)]
     pub fn write(self, raw: impl Raw) -> u32 {
         self.put(0, raw.to_bits()) as u32
     }
 
     /// Returns these bits of `word` as a number in two's complement.
-    #[inline]
+    #[inline(always)]
     pub const fn get_signed(self, word: u64) -> i64 {
         let unused = 64_u32.wrapping_sub(self.width as u32);
         (self.get(word).wrapping_shl(unused) as i64).wrapping_shr(unused)
@@ -80,7 +80,7 @@ impl Bits {
 
     /// Returns `word` with these bits replaced by the low bits of `raw`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub const fn put(self, word: u64, raw: u64) -> u64 {
         let mask = self.mask();
         (word & !mask) | (raw.wrapping_shl(self.shift as u32) & mask)
@@ -97,7 +97,7 @@ pub enum ByteOrder {
 }
 
 impl ByteOrder {
-    #[inline]
+    #[inline(always)]
     const fn load(self, data: Data) -> u64 {
         match self {
             Self::Big => u64::from_be_bytes(data),
@@ -105,7 +105,7 @@ impl ByteOrder {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     const fn store(self, word: u64) -> Data {
         match self {
             Self::Big => word.to_be_bytes(),
@@ -194,43 +194,43 @@ impl Place {
     }
 
     /// Returns the largest number that fits.
-    #[inline]
+    #[inline(always)]
     pub const fn max(self) -> u64 {
         self.bits.max()
     }
 
     /// Returns the payload with only the bits of this place set.
-    #[inline]
+    #[inline(always)]
     pub const fn mask(self) -> Data {
         self.order.store(self.bits.mask())
     }
 
     /// Returns the number at this place.
-    #[inline]
+    #[inline(always)]
     pub const fn get(self, data: &Data) -> u64 {
         self.bits.get(self.order.load(*data))
     }
 
     /// Returns the number in two's complement at this place.
-    #[inline]
+    #[inline(always)]
     pub const fn get_signed(self, data: &Data) -> i64 {
         self.bits.get_signed(self.order.load(*data))
     }
 
     /// Returns the raw value at this place.
-    #[inline]
+    #[inline(always)]
     pub fn read<R: Raw>(self, data: &Data) -> R {
         R::from_bits(if R::SIGNED { self.get_signed(data) as u64 } else { self.get(data) })
     }
 
     /// Writes the low bits of a raw value to this place, and does not change other bits.
-    #[inline]
+    #[inline(always)]
     pub fn write(self, raw: impl Raw, data: &mut Data) {
         self.put(data, raw.to_bits());
     }
 
     /// Writes the low bits of `raw` to this place, and does not change other bits.
-    #[inline]
+    #[inline(always)]
     pub const fn put(self, data: &mut Data, raw: u64) {
         *data = self.order.store(self.bits.put(self.order.load(*data), raw));
     }

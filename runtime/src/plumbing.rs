@@ -9,6 +9,7 @@ pub use defmt;
 pub use serde;
 
 pub use crate::address::{Address, Pattern, Who};
+pub use crate::filter::IdFilter;
 pub use crate::layout::{Decode, Encode, Signals, Task};
 pub use crate::packed::{Piece, left_aligned, right_aligned};
 pub use crate::physical::{Physical, Scaled};
@@ -22,8 +23,8 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, Continuation, Decode, Encode, Legend, Pattern, Piece, Recognised, Task, Who, Word, left_aligned,
-        right_aligned,
+        Address, Continuation, Decode, Encode, IdFilter, Legend, Pattern, Piece, Recognised, Task, Who, Word,
+        left_aligned, right_aligned,
     };
     pub use crate::{
         AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, FrameSet, Mode, Place, Protocol, Selector,

@@ -29,12 +29,14 @@ pub trait Raw: Copy + 'static {
 
     /// Tests whether the bits give the same value. The parts of a packed value can be too large for
     /// their places.
+    #[inline(always)]
     fn is_whole(self) -> bool {
         true
     }
 
     /// Returns the bits of an integer, or `None` if it has none. They can be more than the place
     /// holds.
+    #[inline(always)]
     fn bits_of(integer: i64) -> Option<u64> {
         (Self::SIGNED || integer >= 0).then_some(integer as u64)
     }
@@ -47,16 +49,19 @@ pub trait Raw: Copy + 'static {
     }
 
     /// Returns the number that limits apply to: the integer, or the float.
+    #[inline(always)]
     fn number(self) -> Number {
         if Self::SIGNED { Number::Signed(self.to_bits() as i64) } else { Number::Unsigned(self.to_bits()) }
     }
 
     /// Tests whether this is a finite number.
+    #[inline(always)]
     fn is_finite(self) -> bool {
         true
     }
 
     /// Tests whether this lies inside limits, both legal.
+    #[inline(always)]
     fn is_within(self, minimum: Self, maximum: Self) -> bool {
         let [value, minimum, maximum] = [self, minimum, maximum].map(Self::to_bits);
         if Self::SIGNED {
@@ -67,6 +72,7 @@ pub trait Raw: Copy + 'static {
     }
 
     /// Returns a limit as precisely as this type can meet it.
+    #[inline(always)]
     fn limit(exact: f64) -> f64 {
         exact
     }
@@ -125,12 +131,14 @@ macro_rules! unsigned {
         impl Raw for $type {
             const IS_NUMBER: bool = true;
 
+            #[inline(always)]
             #[expect(clippy::allow_attributes, reason = "not every width truncates")]
             #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
             fn from_bits(bits: u64) -> Self {
                 bits as Self
             }
 
+            #[inline(always)]
             fn to_bits(self) -> u64 {
                 self.into()
             }
@@ -154,12 +162,14 @@ macro_rules! signed {
             const SIGNED: bool = true;
             const IS_NUMBER: bool = true;
 
+            #[inline(always)]
             #[expect(clippy::allow_attributes, reason = "not every width truncates")]
             #[allow(clippy::cast_possible_truncation, reason = "the place is as wide as the type at most")]
             fn from_bits(bits: u64) -> Self {
                 bits as Self
             }
 
+            #[inline(always)]
             fn to_bits(self) -> u64 {
                 i64::from(self) as u64
             }
@@ -195,11 +205,13 @@ fn whole(meaning: Meaning<'_>) -> Option<i128> {
 impl Raw for f32 {
     const IS_NUMBER: bool = true;
 
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "a float has 32 bits")]
     fn from_bits(bits: u64) -> Self {
         Self::from_bits(bits as u32)
     }
 
+    #[inline(always)]
     fn to_bits(self) -> u64 {
         f32::to_bits(self).into()
     }
@@ -215,18 +227,22 @@ impl Raw for f32 {
         (nearest.is_finite() || !number.to_f64().is_finite()).then_some(nearest)
     }
 
+    #[inline(always)]
     fn number(self) -> Number {
         Number::Float(self.into())
     }
 
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.is_finite()
     }
 
+    #[inline(always)]
     fn is_within(self, minimum: Self, maximum: Self) -> bool {
         (minimum..=maximum).contains(&self)
     }
 
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what can be met")]
     fn limit(exact: f64) -> f64 {
         (exact as Self).into()

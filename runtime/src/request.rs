@@ -4,12 +4,13 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::ptr;
 
-use crate::address::{AddressType, Addressing, Kind, Mode, Pattern, Who};
+use crate::address::{Addressing, Kind, Mode, Who};
+use crate::filter::IdFilter;
 use crate::plumbing::Continuation;
 use crate::reply::answer;
 use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
-/// A target that a request of a protocol can address.
+/// A target that a request of a protocol can address. Generated code implements it.
 pub trait Destination: Copy {
     /// The messages of the protocol.
     type Protocol: Protocol;
@@ -17,8 +18,15 @@ pub trait Destination: Copy {
     /// Returns the mode as an index into [`Protocol::MODES`].
     fn mode(self) -> usize;
 
-    /// Returns the address, if the mode lets the caller choose one.
-    fn number(self) -> Option<i32>;
+    /// Returns what the identifier of a request shows. `sender` is the sender's own address, unless it is the usual one.
+    ///
+    /// # Errors
+    ///
+    /// Refuses addresses that the document does not name.
+    fn request(self, sender: Option<i32>) -> Result<IdFilter, Error>;
+
+    /// Returns what the identifiers of replies to this request show, if `who` answers in this mode.
+    fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter>;
 }
 
 /// A target, and the sender's own address.
@@ -29,6 +37,7 @@ pub struct Route<T> {
 }
 
 impl<T: Destination> From<T> for Route<T> {
+    #[inline(always)]
     fn from(target: T) -> Self {
         Self { target, sender: None }
     }
@@ -36,31 +45,9 @@ impl<T: Destination> From<T> for Route<T> {
 
 impl<T: Destination> Route<T> {
     /// Returns the route from a sender's own address.
+    #[inline(always)]
     pub const fn new(target: T, sender: i32) -> Self {
         Self { target, sender: Some(sender) }
-    }
-
-    /// Forgets the protocol, so that all messages share the code behind it.
-    fn choice(&self) -> Choice {
-        let mode = T::Protocol::MODES.get(self.target.mode());
-        Choice { index: self.target.mode(), mode, target: self.target.number(), sender: self.sender }
-    }
-}
-
-/// The mode and the addresses that a route chooses.
-struct Choice {
-    index: usize,
-    mode: Option<&'static Mode>,
-    target: Option<i32>,
-    sender: Option<i32>,
-}
-
-impl Choice {
-    /// Returns the number that a kind of address has in a request.
-    fn number(&self, kind: &AddressType) -> i32 {
-        let target = self.mode.and_then(|mode| mode.target);
-        let chosen = if target.is_some_and(|target| target.is(kind)) { self.target } else { self.sender };
-        chosen.unwrap_or(kind.sent_number())
     }
 }
 
@@ -237,14 +224,13 @@ impl Exchange {
     /// Refuses a mode that the message does not have, an address that the document does not name, and values outside
     /// their limits.
     #[doc(hidden)]
+    #[inline]
     pub fn request_to<T: Destination, R>(
-        &self,
+        &'static self,
         route: impl Into<Route<T>>,
         message: &impl Layout,
     ) -> Result<Request<T::Protocol, R>, Error> {
-        let choice = route.into().choice();
-        let built = self.built(&choice, None, &|payload| message.encode(payload));
-        built.map(|built| Request { built, reply: PhantomData })
+        self.built(route.into(), None, message)
     }
 
     /// Builds the request that carries `message` to a device model. Generated code calls it.
@@ -253,73 +239,38 @@ impl Exchange {
     ///
     /// The same as [`request_to`](Self::request_to), within the limits of the model.
     #[doc(hidden)]
+    #[inline]
     pub fn request_within<T: Destination, R>(
-        &self,
+        &'static self,
         model: impl Into<u8>,
         route: impl Into<Route<T>>,
         message: &impl Layout,
     ) -> Result<Request<T::Protocol, R>, Error> {
-        let choice = route.into().choice();
-        let built = self.built(&choice, Some(model.into()), &|payload| message.encode(payload));
-        built.map(|built| Request { built, reply: PhantomData })
+        self.built(route.into(), Some(model.into()), message)
     }
 
-    /// Builds a request whose values `encode` writes. All messages share this code.
-    fn built(
-        &self,
-        choice: &Choice,
+    #[inline(always)]
+    fn built<T: Destination, R>(
+        &'static self,
+        Route { target, sender }: Route<T>,
         model: Option<u8>,
-        encode: &dyn Fn(&mut Payload) -> Result<(), Error>,
-    ) -> Result<Built, Error> {
-        let Addressed { request: filter, replies, refusal } = self.addressed(choice)?;
+        message: &impl Layout,
+    ) -> Result<Request<T::Protocol, R>, Error> {
+        let who = self.answers.get(target.mode()).copied().flatten();
+        let (Some(who), Some(request)) = (who, self.request) else {
+            return Err(self.no_mode(T::Protocol::MODES.get(target.mode())));
+        };
+        let filter = request.narrowed(target.request(sender)?);
         let mut payload = Payload::within_limits(self.message, filter.data_value()).for_model(model);
-        encode(&mut payload)?;
+        message.encode(&mut payload)?;
         let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), self.length);
-        Ok(Built { frame, replies, refusal })
+        Ok(Request { frame, exchange: self, who, replies: target.replies(who, sender), carried: PhantomData })
     }
 
-    /// Returns what the request and its replies show.
-    fn addressed(&self, choice: &Choice) -> Result<Addressed, Error> {
-        let (mode, who, pattern, request) = self.way(choice)?;
-        for address in pattern.addresses {
-            address.kind().documented(choice.number(address.kind()))?;
-        }
-        let filter = pattern.narrow(request, |kind| Some(choice.number(kind)));
-        let number = |kind: &AddressType| pattern.has(kind).then(|| choice.number(kind));
-        let replies = self.replies(mode, who, number);
-        let refusal = self.refusal.zip(mode.reply(who)).map(|(refusal, pattern)| pattern.narrow(refusal, number));
-        Ok(Addressed { request: filter, replies, refusal })
-    }
-
-    fn way(&self, choice: &Choice) -> Result<(&'static Mode, Who, &'static Pattern, &Filter), Error> {
-        let mode = choice.mode;
-        let who = self.answers.get(choice.index).copied().flatten();
-        match (mode, who, mode.and_then(|mode| mode.request.as_ref()), &self.request) {
-            (Some(mode), Some(who), Some(pattern), Some(request)) => Ok((mode, who, pattern, request)),
-            _ => Err(self.no_mode(mode)),
-        }
-    }
-
+    #[cold]
     pub(crate) fn no_mode(&self, mode: Option<&Mode>) -> Error {
         Error::Mode { message: self.message, access: self.access, mode: mode.map(|mode| mode.name) }
     }
-
-    fn replies(&self, mode: &Mode, who: Who, number: impl Fn(&AddressType) -> Option<i32>) -> Replies {
-        let filter = self.reply.as_ref().zip(mode.reply(who)).map(|(reply, pattern)| pattern.narrow(reply, number));
-        match (who, filter) {
-            (Who::One, Some(filter)) => Replies::One(filter),
-            (Who::Each, Some(filter)) => Replies::Each(filter),
-            (Who::Coordinator, Some(filter)) => Replies::Coordinator(filter),
-            _ => Replies::Nobody,
-        }
-    }
-}
-
-/// What a request to an address shows, and what answers it.
-struct Addressed {
-    request: Filter,
-    replies: Replies,
-    refusal: Option<Filter>,
 }
 
 const fn narrowed(filter: Option<Filter>, own: Filter) -> Option<Filter> {
@@ -344,7 +295,7 @@ pub enum Replies {
 
 impl Replies {
     /// Returns what the replies show, as a filter that passes only them.
-    pub const fn filter(&self) -> Option<&Filter> {
+    pub const fn filter(self) -> Option<Filter> {
         match self {
             Self::Nobody => None,
             Self::One(filter) | Self::Each(filter) | Self::Coordinator(filter) => Some(filter),
@@ -352,43 +303,51 @@ impl Replies {
     }
 }
 
-/// What the requests of all messages share.
-#[derive(Clone, Copy, Debug)]
-struct Built {
-    frame: Frame,
-    replies: Replies,
-    refusal: Option<Filter>,
-}
-
 /// A request ready to be sent, whose replies carry `R`.
 #[must_use = "a request is only a frame; send it"]
 pub struct Request<P, R> {
-    built: Built,
-    reply: PhantomData<fn() -> (P, R)>,
+    frame: Frame,
+    exchange: &'static Exchange,
+    who: Who,
+    replies: Option<IdFilter>,
+    carried: PhantomData<fn() -> (P, R)>,
 }
 
 impl<P, R> Request<P, R> {
     /// Returns the frame to send.
     #[must_use]
+    #[inline]
     pub const fn frame(&self) -> &Frame {
-        &self.built.frame
+        &self.frame
     }
 
     /// Returns which replies it gets.
-    pub const fn replies(&self) -> &Replies {
-        &self.built.replies
+    #[inline]
+    pub fn replies(&self) -> Replies {
+        match (self.who, self.reply_filter()) {
+            (Who::One, Some(filter)) => Replies::One(filter),
+            (Who::Each, Some(filter)) => Replies::Each(filter),
+            (Who::Coordinator, Some(filter)) => Replies::Coordinator(filter),
+            (Who::Nobody, _) | (_, None) => Replies::Nobody,
+        }
     }
 
     /// Returns what a refusal of this request shows, if there is one. A refusal is another
     /// message's reply.
-    pub const fn refusal(&self) -> Option<&Filter> {
-        self.built.refusal.as_ref()
+    #[inline]
+    pub fn refusal(&self) -> Option<Filter> {
+        self.exchange.refusal.zip(self.replies).map(|(refusal, who)| refusal.narrowed(who))
+    }
+
+    #[inline]
+    fn reply_filter(&self) -> Option<Filter> {
+        self.exchange.reply.zip(self.replies).map(|(reply, who)| reply.narrowed(who))
     }
 
     /// Makes the frame say that more follow. Generated code calls it.
     #[doc(hidden)]
     pub fn followed(mut self, continuation: &Continuation) -> Self {
-        self.built.frame = continuation.put(&self.built.frame);
+        self.frame = continuation.put(&self.frame);
         self
     }
 }
@@ -396,31 +355,31 @@ impl<P, R> Request<P, R> {
 impl<P: Protocol, R> Request<P, R> {
     /// Decodes a frame if it answers this request, even with an error. Returns `None` for any other
     /// frame.
+    #[inline]
     pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Reply<P, R>>
     where
         R: Layout,
     {
-        let filter = self.built.replies.filter()?;
-        let refused = self.refusal().and_then(|refusal| Some((refusal, answer::<P>(refusal, frame)?)));
+        let filter = self.reply_filter()?;
+        let refused = self.refusal().and_then(|refusal| Some((refusal, answer::<P>(&refusal, frame)?)));
         if let Some((refusal, frame)) = refused {
             return Some(Reply::refused(refusal.data_selectors(), frame));
         }
-        let frame = answer::<P>(filter, frame)?;
-        Some(Reply::decode(filter.data_selectors(), self.built.frame.length(), frame))
+        let frame = answer::<P>(&filter, frame)?;
+        Some(Reply::decode(filter.data_selectors(), self.frame.length(), frame))
     }
 
     /// Tests whether a frame answers this request, even with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
-        let mut filters = self.built.replies.filter().into_iter().chain(self.refusal());
-        filters.any(|filter| answer::<P>(filter, frame).is_some())
+        let mut filters = self.reply_filter().into_iter().chain(self.refusal());
+        filters.any(|filter| answer::<P>(&filter, frame).is_some())
     }
 }
 
 impl<P, R> fmt::Debug for Request<P, R> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Built { frame, replies, refusal } = &self.built;
         let mut fields = formatter.debug_struct("Request");
-        fields.field("frame", frame).field("replies", replies).field("refusal", refusal).finish()
+        fields.field("frame", &self.frame).field("replies", &self.replies()).field("refusal", &self.refusal()).finish()
     }
 }
 

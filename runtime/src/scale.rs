@@ -50,7 +50,7 @@ impl Scale {
     ///
     /// Sum and product are exact while their size stays below 2⁵³. Then only the division rounds.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
-    #[inline]
+    #[inline(always)]
     pub const fn physical(self, raw: i64) -> f64 {
         self.sum(raw) as f64 / self.common_denominator() as f64
     }
@@ -58,6 +58,7 @@ impl Scale {
     /// Returns the raw value nearest to a physical value, with ties away from zero. It is `None` if
     /// 64 bits cannot hold it.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    #[inline(always)]
     pub const fn raw(self, physical: f64) -> Option<i64> {
         let offset = self.offset as f64 / self.common_denominator() as f64;
         nearest((physical - offset) * self.denominator as f64 / self.numerator as f64)
@@ -67,7 +68,7 @@ impl Scale {
     ///
     /// Sum and product are exact while their size stays below 2²⁴. Then only the division rounds.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
-    #[inline]
+    #[inline(always)]
     pub const fn physical_f32(self, raw: i64) -> f32 {
         self.sum(raw) as f32 / self.common_denominator() as f32
     }
@@ -78,18 +79,19 @@ impl Scale {
     /// It first recovers the sum, and then subtracts the offset. That rounds once less than the
     /// other order. So every raw value whose sum stays below 2²² comes back unchanged.
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
+    #[inline(always)]
     pub const fn raw_f32(self, physical: f32) -> Option<i64> {
         let sum = physical * self.common_denominator() as f32;
         nearest_f32((sum - self.offset as f32) / self.numerator.saturating_mul(self.factor) as f32)
     }
 
     /// Returns the physical value of `raw` as numerator over the common denominator.
-    #[inline]
+    #[inline(always)]
     const fn sum(self, raw: i64) -> i64 {
         raw.saturating_mul(self.numerator).saturating_mul(self.factor).saturating_add(self.offset)
     }
 
-    #[inline]
+    #[inline(always)]
     const fn common_denominator(self) -> i64 {
         self.denominator.saturating_mul(self.factor)
     }
@@ -97,34 +99,26 @@ impl Scale {
 
 /// Returns the integer nearest to `value`, with ties away from zero. It is `None` if 64 bits cannot
 /// hold it.
-#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the limits are tested first")]
+///
+/// The largest number below a half is added, and the fraction is cut off. The sum reaches the next integer from a
+/// half on, because it is rounded to even there.
+#[expect(clippy::cast_possible_truncation, reason = "the limits are tested first")]
+#[inline(always)]
 pub const fn nearest(value: f64) -> Option<i64> {
     const LIMIT: f64 = 9_223_372_036_854_775_808.0;
-    if !(value >= -LIMIT && value < LIMIT) {
-        return None;
-    }
-    let whole = value as i64;
-    let rest = value - whole as f64;
-    Some(if rest >= 0.5 {
-        whole.saturating_add(1)
-    } else if rest <= -0.5 {
-        whole.saturating_sub(1)
-    } else {
-        whole
-    })
+    const BELOW_HALF: f64 = 0.499_999_999_999_999_94;
+    let is_whole = value >= -LIMIT && value < LIMIT;
+    if is_whole { Some((value + BELOW_HALF.copysign(value)) as i64) } else { None }
 }
 
-/// Returns the integer nearest to `value`, with ties away from zero. It is `None` if 64 bits cannot
-/// hold it.
-#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the limits are tested first")]
+/// Returns the integer nearest to `value`, as [`nearest`] does.
+#[expect(clippy::cast_possible_truncation, reason = "the limits are tested first")]
+#[inline(always)]
 const fn nearest_f32(value: f32) -> Option<i64> {
     const LIMIT: f32 = 9_223_372_036_854_775_808.0;
-    if !(value >= -LIMIT && value < LIMIT) {
-        return None;
-    }
-    let whole = value as i64;
-    let rest = value - whole as f32;
-    Some(whole.saturating_add((rest >= 0.5) as i64).saturating_sub((rest <= -0.5) as i64))
+    const BELOW_HALF: f32 = 0.499_999_97;
+    let is_whole = value >= -LIMIT && value < LIMIT;
+    if is_whole { Some((value + BELOW_HALF.copysign(value)) as i64) } else { None }
 }
 
 /// Euclid's algorithm. Two zeros give 1, so the result can always divide.
@@ -144,6 +138,25 @@ mod tests {
     fn ties_go_away_from_zero() {
         let rounded = [0.5, 1.5, 2.5, -0.5, -1.5, -2.5, 0.499_999_999_999_999_94, -0.499_999_999_999_999_94];
         assert_eq!(rounded.map(nearest), [1, 2, 3, -1, -2, -3, 0, 0].map(Some));
+    }
+
+    /// Compares a number with its whole part and its rest, without any sum that rounds.
+    fn nearest_by_rest(value: f64) -> i64 {
+        let (whole, rest) = (value.trunc(), value.fract());
+        (whole + if rest.abs() >= 0.5 { 1.0_f64.copysign(value) } else { 0.0 }) as i64
+    }
+
+    #[test]
+    fn numbers_around_each_half_go_to_the_nearest_integer() {
+        let powers = (0..=53).map(|power| 2.0_f64.powi(power));
+        let wholes = powers.flat_map(|power| [power - 1.0, power, power + 1.0]).chain([0.0, 5.0, 1e6, 1e15]);
+        for near in wholes.flat_map(|whole| [whole, whole + 0.5, whole - 0.5, whole + 0.25, whole - 0.25]) {
+            for value in [near.next_down(), near, near.next_up()].into_iter().flat_map(|value| [value, -value]) {
+                assert_eq!(nearest(value), Some(nearest_by_rest(value)), "{value:?}");
+                let single = value as f32;
+                assert_eq!(nearest_f32(single), Some(nearest_by_rest(single.into())), "{single:?}");
+            }
+        }
     }
 
     #[test]

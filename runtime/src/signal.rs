@@ -98,6 +98,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     /// Returns the raw value.
+    #[inline(always)]
     pub fn get(&self, data: &Data) -> R {
         self.place.read(data)
     }
@@ -108,6 +109,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     ///
     /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
     /// refuses values outside them.
+    #[inline(always)]
     pub fn put(&self, raw: R, payload: &mut Payload) -> Result<(), Error> {
         if !raw.is_whole() {
             return Err(self.meaningless(payload));
@@ -115,55 +117,71 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if payload.keeps_limits() && self.special(raw.to_bits()).is_none() {
             self.check(self.physical(raw), payload)?;
         }
-        self.store(raw.to_bits(), || self.physical(raw).number(), payload)
+        if self.store(raw.to_bits(), payload) { Ok(()) } else { Err(self.too_wide(self.physical(raw), payload)) }
     }
 
+    #[inline(always)]
     fn bits(&self, data: Data) -> u64 {
         if R::SIGNED { self.place.get_signed(&data) as u64 } else { self.place.get(&data) }
     }
 
-    /// Writes bits if they can be read back unchanged.
-    fn store(&self, bits: u64, number: impl FnOnce() -> Number, payload: &mut Payload) -> Result<(), Error> {
+    /// Writes bits if they can be read back unchanged. Returns whether they can.
+    #[inline(always)]
+    fn store(&self, bits: u64, payload: &mut Payload) -> bool {
         let mut data = *payload.data();
         self.place.put(&mut data, bits);
-        if self.bits(data) != bits {
-            return Err(self.too_wide(number(), payload));
+        let is_kept = self.bits(data) == bits;
+        if is_kept {
+            payload.replace(data);
         }
-        payload.replace(data);
-        Ok(())
+        is_kept
     }
 
     /// Returns the value that limits apply to.
+    #[inline(always)]
     fn physical(&self, raw: R) -> F {
         F::of(raw, self.scale)
     }
 
     /// Tests a physical value against the limits.
+    #[inline(always)]
     fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
-        if !value.is_finite() {
-            return Err(self.not_finite(payload));
-        }
-        let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
-        match limits {
+        match self.limits_in(payload) {
+            _ if !value.is_finite() => Err(self.not_finite(payload)),
             Some((minimum, maximum)) if !value.is_within(minimum, maximum) => {
-                Err(self.outside(value.number(), minimum.number(), maximum.number(), payload))
+                Err(self.outside(value, minimum, maximum, payload))
             }
             _ => Ok(()),
         }
     }
 
+    #[inline(always)]
+    fn limits_in(&self, payload: &Payload) -> Option<(F, F)> {
+        payload.model().map_or(self.limits, |model| self.limits_for(model))
+    }
+
+    #[cold]
     fn meaningless(&self, payload: &Payload) -> Error {
         Error::Meaning { message: payload.message(), signal: self.name }
     }
 
+    #[cold]
     fn not_finite(&self, payload: &Payload) -> Error {
         Error::NotFinite { message: payload.message(), signal: self.name }
     }
 
-    fn outside(&self, value: Number, minimum: Number, maximum: Number, payload: &Payload) -> Error {
+    #[cold]
+    fn outside(&self, value: F, minimum: F, maximum: F, payload: &Payload) -> Error {
+        self.beyond([value, minimum, maximum].map(F::number), payload)
+    }
+
+    /// Says that a value lies outside what a minimum and a maximum allow.
+    #[cold]
+    fn beyond(&self, [value, minimum, maximum]: [Number; 3], payload: &Payload) -> Error {
         Error::Limits { message: payload.message(), signal: self.name, value, unit: self.unit, minimum, maximum }
     }
 
+    #[cold]
     fn hidden(&self, value: Number, name: &'static str, payload: &Payload) -> Error {
         Error::Special { message: payload.message(), signal: self.name, value, unit: self.unit, name }
     }
@@ -178,18 +196,27 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     /// Says that a value does not fit, with the limits of what the bits hold.
-    fn too_wide(&self, value: Number, payload: &Payload) -> Error {
+    #[cold]
+    fn too_wide(&self, value: F, payload: &Payload) -> Error {
+        self.unfit(value.number(), payload)
+    }
+
+    /// Says that a number does not fit, with the limits of what the bits hold.
+    #[cold]
+    fn unfit(&self, number: Number, payload: &Payload) -> Error {
         let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number());
         let is_falling = self.scale.is_some_and(Scale::is_falling);
         let (minimum, maximum) = if is_falling { (other, one) } else { (one, other) };
-        self.outside(value, minimum, maximum, payload)
+        self.beyond([number, minimum, maximum], payload)
     }
 
     /// Returns the name of a special raw value.
+    #[inline(always)]
     fn special(&self, bits: u64) -> Option<&'static str> {
         self.specials.iter().find(|(raw, _)| *raw as u64 == bits).map(|(_, name)| *name)
     }
 
+    #[inline(always)]
     const fn exact_scale(&self) -> Scale {
         match self.scale {
             Some(scale) => scale,
@@ -213,6 +240,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     }
 
     /// Returns the physical value: the number of type `F` nearest to the exact one.
+    #[inline(always)]
     pub fn decode(&self, data: &Data) -> F {
         F::scaled(self.bits(*data) as i64, self.exact_scale())
     }
@@ -224,32 +252,52 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
     /// refuses values outside them, before or after rounding. It then refuses values, too, that
     /// would be rounded to a special raw value.
+    #[inline(always)]
     pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
-        let (number, raw) = (Scaled::number(physical), physical.raw(self.exact_scale()));
+        let raw = physical.raw(self.exact_scale());
         if payload.keeps_limits() {
             self.check_rounded(physical, raw, payload)?;
         }
         match raw.and_then(R::bits_of) {
-            Some(bits) => self.store(bits, || number, payload),
-            None if physical.is_nan() => Err(self.not_finite(payload)),
-            None => Err(self.too_wide(number, payload)),
+            Some(bits) if self.store(bits, payload) => Ok(()),
+            _ if physical.is_nan() => Err(self.not_finite(payload)),
+            _ => Err(self.too_wide(physical, payload)),
         }
     }
 
     /// Tests a physical value, and the raw value that it is rounded to. A special raw value would
     /// have another meaning.
+    #[inline(always)]
     fn check_rounded(&self, physical: F, raw: Option<i64>, payload: &Payload) -> Result<(), Error> {
-        let sent = raw.map_or(physical, |raw| F::scaled(raw, self.exact_scale()));
-        let special = raw.and_then(R::bits_of).and_then(|bits| self.special(bits));
-        if sent == physical && special.is_some() {
-            return Ok(());
+        let sent = || raw.map_or(physical, |raw| F::scaled(raw, self.exact_scale()));
+        match raw.and_then(R::bits_of).and_then(|bits| self.special(bits)) {
+            Some(_) if sent() == physical => Ok(()),
+            Some(name) => {
+                self.check(physical, payload)?;
+                Err(self.hidden(Scaled::number(physical), name, payload))
+            }
+            None => {
+                self.check(physical, payload)?;
+                if self.has_limits_on_steps(payload) || sent() == physical {
+                    Ok(())
+                } else {
+                    self.check(sent(), payload)
+                }
+            }
         }
-        self.check(physical, payload)?;
-        match special {
-            Some(name) => Err(self.hidden(Scaled::number(physical), name, payload)),
-            None if sent == physical => Ok(()),
-            None => self.check(sent, payload),
-        }
+    }
+
+    /// Tests whether the limits are steps, and known when a program is compiled.
+    ///
+    /// What is rounded between them stays between them. The general limits are constants, so the
+    /// compiler answers.
+    #[inline(always)]
+    fn has_limits_on_steps(&self, payload: &Payload) -> bool {
+        let is_step = |limit: F| {
+            let raw = limit.raw(self.exact_scale());
+            raw.is_some_and(|raw| F::scaled(raw, self.exact_scale()) == limit)
+        };
+        payload.model().is_none() && self.limits.is_none_or(|(minimum, maximum)| is_step(minimum) && is_step(maximum))
     }
 }
 
@@ -319,6 +367,15 @@ mod tests {
     }
 
     #[test]
+    fn limits_of_signed_numbers_are_signed() {
+        const SLOPE: Signal<i16> = Signal::new("slope", Place::bytes(0, 1)).limits(-5, 5);
+        let takes = |slope| SLOPE.put(slope, &mut request()).is_ok();
+        assert_eq!([-6, -5, 0, 5, 6].map(takes), [false, true, true, true, false]);
+        let text = refusal(SLOPE.put(-6, &mut request()));
+        assert_eq!(text, "`slope` of `report` is -6, but its limits are -5 and 5");
+    }
+
+    #[test]
     fn a_special_value_is_legal_outside_the_limits() {
         assert_eq!(TEMPERATURE.put(255, &mut request()), Ok(()));
         assert_eq!(TEMPERATURE.encode(87.5, &mut request()), Ok(()));
@@ -338,6 +395,15 @@ mod tests {
         let slope = Signal::<u8, f64>::new("slope", Place::byte(0)).limits(0.5, 9.5);
         let written = |value| slope.write(Meaning::Number(Number::Float(value)), &mut request()).is_ok();
         assert_eq!([0.49, 0.5, 9.49, 9.5].map(written), [false, true, true, false]);
+    }
+
+    #[test]
+    fn a_limit_of_a_device_model_counts_for_what_is_sent_too() {
+        // 20.06 A would be raw 201.
+        let signal = LIMIT.limits(0.0, 25.0).model_limits(&[(3, Some((0.04, 20.06)))]);
+        let takes = |model, current| signal.encode(current, &mut request().for_model(model)).is_ok();
+        assert_eq!([20.04, 20.06].map(|current| takes(Some(3), current)), [true, false]);
+        assert_eq!([25.0, 25.04].map(|current| takes(None, current)), [true, false]);
     }
 
     #[test]

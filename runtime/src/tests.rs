@@ -75,7 +75,7 @@ fn each_heater_of_a_group_may_answer_and_nobody_answers_all() {
     assert!(request.is_reply(&frame(0x0107_F009, [2, 0xF0, 0, 0])));
     let coordinator: Request<Message, Heat> = Heat::READ.request_to(To::Group(2), &()).expect("a legal request");
     assert!(matches!(coordinator.replies(), Replies::Coordinator(filter) if filter.id_value() == 0x0108_F05D));
-    assert_eq!(HEAT.set(To::All).expect("a legal request").replies(), &Replies::Nobody);
+    assert_eq!(HEAT.set(To::All).expect("a legal request").replies(), Replies::Nobody);
 }
 
 #[test]

@@ -100,12 +100,12 @@ fn the_list_builds_the_requests_that_types_build() {
     let listed = |name| {
         let entry = mxr::MESSAGES.iter().find(|entry| entry.name() == name).expect("it is in the list");
         let request = entry.request("read", Target::Module(1)).expect("it can be read").expect("in range");
-        (*request.frame(), *request.replies())
+        (*request.frame(), request.replies())
     };
     let voltage = OutputVoltage::read(Target::Module(1)).expect("in range");
     let status = ModuleStatus::read(Target::Module(1)).expect("in range");
-    assert_eq!(listed("output_voltage"), (*voltage.frame(), *voltage.replies()));
-    assert_eq!(listed("module_status"), (*status.frame(), *status.replies()));
+    assert_eq!(listed("output_voltage"), (*voltage.frame(), voltage.replies()));
+    assert_eq!(listed("module_status"), (*status.frame(), status.replies()));
 }
 
 #[test]

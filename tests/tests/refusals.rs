@@ -45,6 +45,6 @@ fn a_filter_for_refusals_stands_beside_that_for_replies() {
     assert_eq!((refusal.id_value(), refusal.data_value()), (0x459, [0x80, 7, 0, 0, 0, 0, 0, 0]));
     assert_eq!(refusal.id_mask(), 0x7FF);
     let broadcast = Speed { value_rpm: 300 }.write(Target::All).expect("the limit");
-    assert_eq!((broadcast.replies(), broadcast.refusal()), (&Replies::Nobody, None));
+    assert_eq!((broadcast.replies(), broadcast.refusal()), (Replies::Nobody, None));
     assert!(!broadcast.is_reply(&frame(0x450, [0x80, 7, 0, 3])));
 }

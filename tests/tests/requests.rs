@@ -17,7 +17,7 @@ const OUTPUT: SetModuleOutput = SetModuleOutput { voltage_v: 750.0, current_a: 1
 fn a_set_point_for_all_modules_is_the_frame_of_the_document_and_nobody_answers() {
     let request = OUTPUT.set(Target::Broadcast).expect("0x1C can be broadcast");
     assert_eq!(request.frame(), &frame(0x029C_3FF0, 0x000B_71B0_0000_3A98));
-    assert_eq!(request.replies(), &Replies::Nobody);
+    assert_eq!(request.replies(), Replies::Nobody);
 }
 
 #[test]

@@ -228,7 +228,7 @@ fn a_set_is_asked_for_in_one_frame_or_in_one_a_member_of_which_the_last_says_so(
     assert_eq!(frames(&ovens, Some("scan"), "identity", &[]), ["0A7#03000000", "0A6#01000000"]);
     let refused = frames(&ovens, Some("read"), "identity", &[]);
     assert_eq!(refused, ["identity: it has no request of the access `read`"]);
-    let refused = frames(&ovens, None, "identity", &[("value", "1")]);
+    let refused = frames(&ovens, None, "identity", &[("value", "1"), ("other", "1")]);
     assert_eq!(refused, ["identity: there is no signal `value` to send; it has none"]);
     let pumps = protocol("tests/specs/devices/split_request.yaml");
     let target = Target::parse("pump:3").expect("a target");

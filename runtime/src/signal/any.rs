@@ -130,7 +130,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
                 self.put(raw, payload)
             }
             None if value.is_nan() => Err(self.not_finite(payload)),
-            None => Err(self.too_wide(number, payload)),
+            None => Err(self.unfit(number, payload)),
         }
     }
 
@@ -141,11 +141,10 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             return Ok(());
         }
         let number = Number::Float(value);
-        let limits = payload.model().map_or(self.limits, |model| self.limits_for(model));
-        let limits = limits.map(|(minimum, maximum)| (minimum.number(), maximum.number()));
+        let limits = self.limits_in(payload).map(|(minimum, maximum)| (minimum.number(), maximum.number()));
         match (limits, self.special(raw.to_bits())) {
             (Some((minimum, maximum)), _) if !(minimum.to_f64()..=maximum.to_f64()).contains(&value) => {
-                Err(self.outside(number, minimum, maximum, payload))
+                Err(self.beyond([number, minimum, maximum], payload))
             }
             (_, Some(name)) => Err(self.hidden(number, name, payload)),
             _ => Ok(()),

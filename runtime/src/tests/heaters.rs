@@ -1,6 +1,6 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Encode, Pattern, Recognised, Task, Who};
+use crate::plumbing::{Address, Decode, Encode, IdFilter, Pattern, Recognised, Task, Who};
 use crate::{
     AddressType, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout, Mode, Place,
     Problem, Protocol, Received, Request, Route, Selector, Signal,
@@ -69,10 +69,22 @@ impl Destination for To {
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Heater(number) | Self::Group(number) => Some(number.into()),
-            Self::All => None,
+    fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
+        let filter = match self {
+            Self::Heater(number) => IdFilter::ANY.documented(TARGET, &HEATER, number.into())?,
+            Self::Group(number) => IdFilter::ANY.documented(TARGET, &GROUP, number.into())?,
+            Self::All => IdFilter::ANY.id(TARGET, 0x3F),
+        };
+        filter.documented(SOURCE, &CONTROLLER, CONTROLLER.chosen(sender))
+    }
+
+    fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
+        let filter = IdFilter::ANY.address(TARGET, &CONTROLLER, CONTROLLER.chosen(sender));
+        match (self, who) {
+            (Self::Heater(number), Who::One) => Some(filter.address(SOURCE, &HEATER, number.into())),
+            (Self::Group(_), Who::Each) => Some(filter),
+            (Self::Group(number), Who::Coordinator) => Some(filter.address(SOURCE, &GROUP, number.into())),
+            _ => None,
         }
     }
 }

@@ -63,16 +63,32 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Meter(_) => 0,
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Meter(number) => Some(number.into()),
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Meter(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
+                Identifier::NODE,
+                &METER_ADDRESS,
+                number.into(),
+            )?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Meter(number), Who::One) => {
+                IdFilter::ANY.id(Identifier::DIRECTION, 0x1).address(Identifier::NODE, &METER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
     }
 }
 
@@ -98,21 +114,18 @@ pub const SINGLE_MODE: Mode = Mode {
 /// Set. Section 2.
 pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One)]).with_values().request(FRAME).reply(FRAME);
 
-/// Date of the last reading. Written as `20{year:2}-{month:2}-{day:2}`.
+/// Month of the last reading. Written as `20{year:2}-{month:2}`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct DateValue {
-    /// Day: byte 0, `1..=31`.
-    pub day: Bcd<u8>,
-    /// Month: byte 1, `1..=12`.
+pub struct MonthValue {
+    /// Month: byte 0, `1..=12`.
     pub month: Bcd<u8>,
-    /// Year: byte 2.
+    /// Year: byte 1.
     pub year: Bcd<u8>,
 }
 
-impl DateValue {
-    const DAY: Place = Place::byte(0);
-    const MONTH: Place = Place::byte(1);
-    const YEAR: Place = Place::byte(2);
+impl MonthValue {
+    const MONTH: Place = Place::byte(0);
+    const YEAR: Place = Place::byte(1);
 
     /// Returns the text, or `None` if it would not give the same value.
     #[must_use]
@@ -127,97 +140,55 @@ impl DateValue {
     }
 }
 
-impl Word for DateValue {
+impl Word for MonthValue {
     type Raw = u64;
     const LEGEND: Legend<Self> = Legend::Text(
-        3,
+        2,
         &[
             Piece::Literal("20"),
             Piece::digits::<Bcd<u8>>(Self::YEAR, 2),
             Piece::Literal("-"),
             Piece::digits::<Bcd<u8>>(Self::MONTH, 2).limits(1, 12),
-            Piece::Literal("-"),
-            Piece::digits::<Bcd<u8>>(Self::DAY, 2).limits(1, 31),
         ],
     );
     const FROM_RAW: fn(u64) -> Self = |raw| {
-        let data = left_aligned(raw, 3);
-        Self { day: Self::DAY.read(&data), month: Self::MONTH.read(&data), year: Self::YEAR.read(&data) }
+        let data = left_aligned(raw, 2);
+        Self { month: Self::MONTH.read(&data), year: Self::YEAR.read(&data) }
     };
     const RAW: fn(Self) -> u64 = |value| {
         let mut data = [0; 8];
-        Self::DAY.write(value.day, &mut data);
         Self::MONTH.write(value.month, &mut data);
         Self::YEAR.write(value.year, &mut data);
-        right_aligned(data, 3)
+        right_aligned(data, 2)
     };
 }
 
-impl core::fmt::Display for DateValue {
+impl core::fmt::Display for MonthValue {
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         Word::write(*self, formatter)
     }
 }
 
-/// Price of an hour: `command` 0x01. Section 2.
+/// Delay of the start: `command` 0x01. Section 2.
 /// - [`set`](SET_ACCESS): the module answers (`single`).
-/// - Request `013#5002100000000000`: `whole` 250, `delay` 10 min.
-/// - Reply `413#0100FF0000000000`: `whole` 1, `delay` none.
+/// - Request `013#5002000000000000`: `value` 250 min.
+/// - Reply `413#FFFF000000000000`: `value` none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Price {
-    /// Whole: bytes 1..0, decimal digits, `1..=500`.
-    pub whole: Bcd<u16>,
-    /// Delay in min: byte 2, decimal digits, `0..=59`, raw 255 is `none`.
-    pub delay_min: Bcd<u8>,
+pub struct Delay {
+    /// Value in min: bytes 1..0, decimal digits, `1..=500`, raw 65535 is `none`.
+    pub value_min: Bcd<u16>,
 }
 
-impl Price {
-    /// The signal `whole`, to read or write it alone, or to ask for its limits.
-    pub const WHOLE: Signal<Bcd<u16>, f64> = Signal::new("whole", Place::bytes(1, 0)).limits(1.0, 500.0);
-    /// The signal `delay`, to read or write it alone, or to ask for its limits.
-    pub const DELAY: Signal<Bcd<u8>, f64> =
-        Signal::new("delay", Place::byte(2)).unit("min").limits(0.0, 59.0).specials(&[(255, "none")]);
-    /// The value of `delay` that stands for `none`.
-    pub const DELAY_NONE: Bcd<u8> = Bcd::from_raw(255);
-    /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
-    /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("price", FRAME.id(Identifier::COMMAND, 0x01));
-
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::SET.request_to(route, self)
-    }
-}
-
-impl Layout for Price {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::WHOLE, &Self::DELAY];
-    const DECODE: Decode<Self> = |data| Self { whole: Self::WHOLE.get(data), delay_min: Self::DELAY.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::WHOLE.put(message.whole, payload)?;
-        Self::DELAY.put(message.delay_min, payload)
-    };
-}
-
-/// Date of the last reading: `command` 0x02. Section 2.
-/// - [`set`](SET_ACCESS): the module answers (`single`).
-/// - Request `023#3112840000000000`: `value` 2084-12-31.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Date {
-    /// Value: bytes 0..2.
-    pub value: DateValue,
-}
-
-impl Date {
+impl Delay {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
-    pub const VALUE: Signal<DateValue> = Signal::new("value", Place::bytes(0, 2));
+    pub const VALUE: Signal<Bcd<u16>, f64> =
+        Signal::new("value", Place::bytes(1, 0)).unit("min").limits(1.0, 500.0).specials(&[(65_535, "none")]);
+    /// The value of `value` that stands for `none`.
+    pub const VALUE_NONE: Bcd<u16> = Bcd::from_raw(65_535);
     /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
+    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("date", FRAME.id(Identifier::COMMAND, 0x02));
+    pub const SET: Exchange = SET_ACCESS.of("delay", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
     ///
@@ -228,7 +199,39 @@ impl Date {
     }
 }
 
-impl Layout for Date {
+impl Layout for Delay {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const DECODE: Decode<Self> = |data| Self { value_min: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_min, payload);
+}
+
+/// Month of the last reading: `command` 0x02. Section 2.
+/// - [`set`](SET_ACCESS): the module answers (`single`).
+/// - Request `023#1284000000000000`: `value` 2084-12.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Month {
+    /// Value: bytes 0..1.
+    pub value: MonthValue,
+}
+
+impl Month {
+    /// The signal `value`, to read or write it alone, or to ask for its limits.
+    pub const VALUE: Signal<MonthValue> = Signal::new("value", Place::bytes(0, 1));
+    /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
+    pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
+    /// The access `set`, for filters and blank frames of it.
+    pub const SET: Exchange = SET_ACCESS.of("month", FRAME.id(Identifier::COMMAND, 0x02));
+
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
+        Self::SET.request_to(route, self)
+    }
+}
+
+impl Layout for Month {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
@@ -237,10 +240,10 @@ impl Layout for Date {
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
-    /// Price of an hour.
-    Price(Price),
-    /// Date of the last reading.
-    Date(Date),
+    /// Delay of the start.
+    Delay(Delay),
+    /// Month of the last reading.
+    Month(Month),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -273,8 +276,8 @@ impl Protocol for Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match Identifier::COMMAND.of(id) {
-            0x01 => Recognised::request(&Price::SET, Self::Price(Layout::decode(data))),
-            0x02 => Recognised::request(&Date::SET, Self::Date(Layout::decode(data))),
+            0x01 => Recognised::request(&Delay::SET, Self::Delay(Layout::decode(data))),
+            0x02 => Recognised::request(&Month::SET, Self::Month(Layout::decode(data))),
             _ => return None,
         };
         Some(recognised)
@@ -284,8 +287,8 @@ impl Protocol for Message {
         let id = frame.raw_id();
         let data = &frame.bytes();
         let recognised = match Identifier::COMMAND.of(id) {
-            0x01 => Recognised::reply(&Price::SET, Self::Price(Layout::decode(data))),
-            0x02 => Recognised::reply(&Date::SET, Self::Date(Layout::decode(data))),
+            0x01 => Recognised::reply(&Delay::SET, Self::Delay(Layout::decode(data))),
+            0x02 => Recognised::reply(&Month::SET, Self::Month(Layout::decode(data))),
             _ => return None,
         };
         Some(recognised)
@@ -307,14 +310,14 @@ impl Protocol for Message {
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
-            Self::Price(message) => task.run(message),
-            Self::Date(message) => task.run(message),
+            Self::Delay(message) => task.run(message),
+            Self::Month(message) => task.run(message),
         }
     }
 }
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("Price of an hour", &[("command", 0x01)], &[&Price::WHOLE, &Price::DELAY], &[&Price::SET]),
-    Entry::new("Date of the last reading", &[("command", 0x02)], &[&Date::VALUE], &[&Date::SET]),
+    Entry::new("Delay of the start", &[("command", 0x01)], &[&Delay::VALUE], &[&Delay::SET]),
+    Entry::new("Month of the last reading", &[("command", 0x02)], &[&Month::VALUE], &[&Month::SET]),
 ];

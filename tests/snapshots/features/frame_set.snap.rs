@@ -81,16 +81,32 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Oven(_) => 0,
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Oven(number) => Some(number.into()),
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Oven(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
+                Identifier::NODE,
+                &OVEN_ADDRESS,
+                number.into(),
+            )?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Oven(number), Who::One) => {
+                IdFilter::ANY.id(Identifier::DIRECTION, 0x1).address(Identifier::NODE, &OVEN_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
     }
 }
 

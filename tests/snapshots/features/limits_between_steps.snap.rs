@@ -59,16 +59,26 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Charger => 0,
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Charger => None,
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Charger => IdFilter::ANY.id(Identifier::SENDER, 0x0),
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Charger, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
+            _ => return None,
+        })
     }
 }
 

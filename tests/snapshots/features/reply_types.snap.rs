@@ -65,16 +65,26 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Device => 0,
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Device => None,
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Device => IdFilter::ANY.id(Identifier::DIRECTION, 0x0),
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Device, Who::One) => IdFilter::ANY.id(Identifier::DIRECTION, 0x1),
+            _ => return None,
+        })
     }
 }
 

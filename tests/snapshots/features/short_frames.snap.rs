@@ -64,6 +64,7 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::All => 0,
@@ -71,11 +72,26 @@ impl Destination for Target {
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Rectifier(number) => Some(number.into()),
-            Self::All => None,
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::All => IdFilter::ANY.id(Identifier::FUNCTION, 0xF).id(Identifier::NODE, 0x00),
+            Self::Rectifier(number) => IdFilter::ANY.id(Identifier::FUNCTION, 0x6).documented(
+                Identifier::NODE,
+                &RECTIFIER_ADDRESS,
+                number.into(),
+            )?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Rectifier(number), Who::One) => {
+                IdFilter::ANY.id(Identifier::FUNCTION, 0x5).address(Identifier::NODE, &RECTIFIER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
     }
 }
 

@@ -103,6 +103,7 @@ impl Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
@@ -112,11 +113,56 @@ impl Destination for Target {
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Module(number) | Self::Group(number) => Some(number.into()),
-            Self::Broadcast | Self::AllGroups => None,
-        }
+    #[inline]
+    fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Module(number) => IdFilter::ANY
+                .id(Identifier::DEVICE, 0xA)
+                .documented(Identifier::TARGET, &MODULE_ADDRESS, number.into())?
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?,
+            Self::Group(number) => IdFilter::ANY
+                .id(Identifier::DEVICE, 0xB)
+                .documented(Identifier::TARGET, &GROUP_ADDRESS, number.into())?
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?,
+            Self::Broadcast => IdFilter::ANY.id(Identifier::DEVICE, 0xA).id(Identifier::TARGET, 0x3F).documented(
+                Identifier::SOURCE,
+                &CONTROLLER_ADDRESS,
+                CONTROLLER_ADDRESS.chosen(sender),
+            )?,
+            Self::AllGroups => IdFilter::ANY.id(Identifier::DEVICE, 0xB).id(Identifier::TARGET, 0x3F).documented(
+                Identifier::SOURCE,
+                &CONTROLLER_ADDRESS,
+                CONTROLLER_ADDRESS.chosen(sender),
+            )?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Module(number), Who::One) => IdFilter::ANY
+                .id(Identifier::DEVICE, 0xA)
+                .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))
+                .address(Identifier::SOURCE, &MODULE_ADDRESS, number.into()),
+            (Self::Group(_), Who::Each) => IdFilter::ANY.id(Identifier::DEVICE, 0xB).address(
+                Identifier::TARGET,
+                &CONTROLLER_ADDRESS,
+                CONTROLLER_ADDRESS.chosen(sender),
+            ),
+            (Self::Group(number), Who::Coordinator) => IdFilter::ANY
+                .id(Identifier::DEVICE, 0xB)
+                .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))
+                .address(Identifier::SOURCE, &GROUP_ADDRESS, number.into()),
+            (Self::Broadcast, Who::Coordinator) => IdFilter::ANY
+                .id(Identifier::DEVICE, 0xA)
+                .id(Identifier::SOURCE, 0x3F)
+                .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender)),
+            (Self::AllGroups, Who::Coordinator) => IdFilter::ANY
+                .id(Identifier::DEVICE, 0xB)
+                .id(Identifier::SOURCE, 0x3F)
+                .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender)),
+            _ => return None,
+        })
     }
 }
 

@@ -119,6 +119,7 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
@@ -126,11 +127,26 @@ impl Destination for Target {
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Module(number) => Some(number.into()),
-            Self::Broadcast => None,
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Module(number) => IdFilter::ANY.id(Identifier::SENDER, 0x1).documented(
+                Identifier::NODE,
+                &MODULE_ADDRESS,
+                number.into(),
+            )?,
+            Self::Broadcast => IdFilter::ANY.id(Identifier::NODE, 0x00).id(Identifier::SENDER, 0x1),
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Module(number), Who::One) => {
+                IdFilter::ANY.id(Identifier::SENDER, 0x0).address(Identifier::NODE, &MODULE_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
     }
 }
 

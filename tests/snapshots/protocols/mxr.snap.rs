@@ -136,6 +136,7 @@ impl Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
@@ -145,11 +146,38 @@ impl Destination for Target {
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Module(number) | Self::Group(number) | Self::ExtendedGroup(number) => Some(number.into()),
-            Self::Broadcast => None,
-        }
+    #[inline]
+    fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Module(number) => IdFilter::ANY
+                .id(Identifier::POINT_TO_POINT, 0x1)
+                .documented(Identifier::TARGET, &MODULE_ADDRESS, number.into())?
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?,
+            Self::Group(number) => IdFilter::ANY
+                .id(Identifier::POINT_TO_POINT, 0x0)
+                .id(Identifier::TARGET, 0xFE)
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?
+                .documented(Identifier::GROUP, &GROUP_ADDRESS, number.into())?,
+            Self::ExtendedGroup(number) => IdFilter::ANY
+                .id(Identifier::POINT_TO_POINT, 0x0)
+                .documented(Identifier::TARGET, &EXTENDED_GROUP_ADDRESS, number.into())?
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?,
+            Self::Broadcast => IdFilter::ANY
+                .id(Identifier::POINT_TO_POINT, 0x0)
+                .id(Identifier::TARGET, 0xFF)
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Module(number), Who::One) => IdFilter::ANY
+                .id(Identifier::POINT_TO_POINT, 0x1)
+                .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))
+                .address(Identifier::SOURCE, &MODULE_ADDRESS, number.into()),
+            _ => return None,
+        })
     }
 }
 

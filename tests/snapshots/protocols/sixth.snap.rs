@@ -79,6 +79,7 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Rectifier(_) => 0,
@@ -87,11 +88,27 @@ impl Destination for Target {
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Rectifier(number) => Some(number.into()),
-            Self::All | Self::KeepAlive => None,
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Rectifier(number) => IdFilter::ANY.id(Identifier::FUNCTION, 0x6).documented(
+                Identifier::NODE,
+                &RECTIFIER_ADDRESS,
+                number.into(),
+            )?,
+            Self::All => IdFilter::ANY.id(Identifier::FUNCTION, 0x6).id(Identifier::NODE, 0x00),
+            Self::KeepAlive => IdFilter::ANY.id(Identifier::FUNCTION, 0xF).id(Identifier::NODE, 0x00),
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Rectifier(number), Who::One) => {
+                IdFilter::ANY.id(Identifier::FUNCTION, 0x5).address(Identifier::NODE, &RECTIFIER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
     }
 }
 

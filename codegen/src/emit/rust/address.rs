@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
-use super::plan::address::{Address, AddressType, Mode, Number, Pattern, Sender, Target, Targets};
+use super::plan::address::{Address, AddressType, Mode, Number, Pattern, Sender, Shown, Target, Targets, Value};
 use crate::model::Id;
 
 /// Emits a kind of address.
@@ -112,32 +112,91 @@ fn destination(variants: &[Target]) -> TokenStream {
         let (index, number) = (Literal::usize_unsuffixed(mode.place()), number.map(|_| quote!((_))));
         quote!(Self::#variant #number => #index)
     });
-    let arms = Number::ALL.into_iter().filter_map(|number| numbers(variants, Some(number)));
-    let arms = arms.chain(numbers(variants, None));
+    let request = request(variants);
+    let replies = replies(variants);
     quote! {
         impl Destination for Target {
             type Protocol = Message;
 
+            #[inline]
             fn mode(self) -> usize {
                 match self { #(#modes),* }
             }
 
-            fn number(self) -> Option<i32> {
-                match self { #(#arms),* }
-            }
+            #request
+
+            #replies
         }
     }
 }
 
-/// Emits the arm for targets whose number has this type.
-fn numbers(variants: &[Target], number: Option<Number>) -> Option<TokenStream> {
-    let names: Vec<_> = variants.iter().filter(|target| target.number == number).map(|known| &known.variant).collect();
-    let arm = match number {
-        None => quote!(#(Self::#names)|* => None),
-        Some(number) => {
-            let value = widened(&quote::format_ident!("number"), number);
-            quote!(#(Self::#names(number))|* => Some(#value))
+/// Emits what the identifiers of requests show.
+fn request(variants: &[Target]) -> TokenStream {
+    let arms = variants.iter().map(|target| {
+        let pattern = pattern_of(target, &target.request);
+        let filter = id_filter(
+            target,
+            &target.request,
+            |place, kind, number| quote!(.documented(Identifier::#place, &#kind, #number)?),
+        );
+        quote!(#pattern => #filter)
+    });
+    let sender = sender_argument(variants.iter().flat_map(|target| &target.request));
+    quote! {
+        #[inline]
+        fn request(self, #sender: Option<i32>) -> Result<IdFilter, Error> {
+            Ok(match self { #(#arms),* })
         }
-    };
-    (!names.is_empty()).then_some(arm)
+    }
+}
+
+/// Emits what the identifiers of replies show.
+fn replies(variants: &[Target]) -> TokenStream {
+    let replies =
+        || variants.iter().flat_map(|target| target.replies.iter().map(move |(who, shown)| (target, who, shown)));
+    let arms = replies().map(|(target, who, shown)| {
+        let pattern = pattern_of(target, shown);
+        let filter =
+            id_filter(target, shown, |place, kind, number| quote!(.address(Identifier::#place, &#kind, #number)));
+        quote!((#pattern, Who::#who) => #filter)
+    });
+    let sender = sender_argument(replies().flat_map(|(.., shown)| shown));
+    quote! {
+        #[inline]
+        fn replies(self, who: Who, #sender: Option<i32>) -> Option<IdFilter> {
+            Some(match (self, who) {
+                #(#arms,)*
+                _ => return None,
+            })
+        }
+    }
+}
+
+/// Writes the pattern of a target, with its number if the identifier shows it.
+fn pattern_of(Target { variant, number, .. }: &Target, shown: &[Shown]) -> TokenStream {
+    let is_shown = shown.iter().any(|shown| matches!(shown.value, Value::Target(_)));
+    let number = number.map(|_| if is_shown { quote!((number)) } else { quote!((_)) });
+    quote!(Self::#variant #number)
+}
+
+/// Names the argument for the sender's address, if an identifier shows it.
+fn sender_argument<'a>(mut shown: impl Iterator<Item = &'a Shown>) -> TokenStream {
+    if shown.any(|shown| matches!(shown.value, Value::Sender(_))) { quote!(sender) } else { quote!(_) }
+}
+
+/// Writes a filter of identifiers. `address` writes the call that adds an address.
+fn id_filter(
+    target: &Target,
+    shown: &[Shown],
+    address: impl Fn(&Ident, &Ident, TokenStream) -> TokenStream,
+) -> TokenStream {
+    let fields = shown.iter().map(|Shown { place, value }| match value {
+        Value::Constant(value) => quote!(.id(Identifier::#place, #value)),
+        Value::Target(kind) => {
+            let number = target.number.map(|number| widened(&quote::format_ident!("number"), number));
+            address(place, kind, quote!(#number))
+        }
+        Value::Sender(kind) => address(place, kind, quote!(#kind.chosen(sender))),
+    });
+    quote!(IdFilter::ANY #(#fields)*)
 }

@@ -102,7 +102,7 @@ impl Plan {
             in_data: selector::in_data(protocol, &selectors),
             identifier: Identifier::new(protocol, types),
             continuation: continuation(protocol, &selectors),
-            targets: Targets::new(protocol),
+            targets: Targets::new(protocol, addresses),
             address_types: address_types.map(|(known, name)| AddressType::new(protocol, name, known)).collect(),
             modes: addressing,
             enumerations: Enumeration::all(protocol, types),

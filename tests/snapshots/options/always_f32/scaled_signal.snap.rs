@@ -77,16 +77,30 @@ impl Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Module(_) => 0,
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Module(number) => Some(number.into()),
-        }
+    #[inline]
+    fn request(self, sender: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Module(number) => IdFilter::ANY
+                .documented(Identifier::TARGET, &MODULE_ADDRESS, number.into())?
+                .documented(Identifier::SOURCE, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Module(number), Who::One) => IdFilter::ANY
+                .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))
+                .address(Identifier::SOURCE, &MODULE_ADDRESS, number.into()),
+            _ => return None,
+        })
     }
 }
 

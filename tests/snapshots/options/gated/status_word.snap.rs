@@ -84,16 +84,32 @@ pub enum Target {
 impl Destination for Target {
     type Protocol = Message;
 
+    #[inline]
     fn mode(self) -> usize {
         match self {
             Self::Heater(_) => 0,
         }
     }
 
-    fn number(self) -> Option<i32> {
-        match self {
-            Self::Heater(number) => Some(number.into()),
-        }
+    #[inline]
+    fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
+        Ok(match self {
+            Self::Heater(number) => IdFilter::ANY.id(Identifier::DIRECTION, 0x0).documented(
+                Identifier::NODE,
+                &HEATER_ADDRESS,
+                number.into(),
+            )?,
+        })
+    }
+
+    #[inline]
+    fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
+        Some(match (self, who) {
+            (Self::Heater(number), Who::One) => {
+                IdFilter::ANY.id(Identifier::DIRECTION, 0x1).address(Identifier::NODE, &HEATER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
     }
 }
 

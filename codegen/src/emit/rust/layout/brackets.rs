@@ -69,7 +69,7 @@ fn can_be_last(item: &Expr, count: usize) -> bool {
 }
 
 /// Tests for a chain, whatever stands before it.
-fn is_chain(item: &Expr) -> bool {
+pub fn is_chain(item: &Expr) -> bool {
     match item {
         Expr::MethodCall(_) => true,
         Expr::Cast(cast) => is_chain(&cast.expr),

@@ -37,10 +37,10 @@ impl Link<'_> {
     }
 }
 
-/// Counts the question marks behind a chain. rustfmt keeps one column more for each than it takes.
-pub fn tries(expr: &Expr) -> usize {
+/// Returns how many columns rustfmt keeps free behind a chain that ends with question marks: two for each.
+pub fn kept(expr: &Expr) -> usize {
     match expr {
-        Expr::Try(tried) => 1 + tries(&tried.expr),
+        Expr::Try(tried) if brackets::is_chain(&tried.expr) => 2 + kept(&tried.expr),
         _ => 0,
     }
 }
@@ -91,7 +91,7 @@ pub fn broken(expr: &Expr, shape: Shape) -> Option<String> {
     let before = if is_flat { root.clone() + &others.concat() } else { last_line(&root).to_owned() };
     let alone = last.rewrite(own.keeping(shape.after));
     let place = if is_flat { shape } else { own.keeping(shape.after) };
-    let taken = width(&before) + last.tries;
+    let taken = width(&before) + 2 * last.tries;
     let behind = Some(place.behind(taken)).filter(|_| is_flat || is_extended(&before));
     let budget = shape.behind(taken).width();
     let behind = behind.and_then(|shape| last.rewrite(shape));

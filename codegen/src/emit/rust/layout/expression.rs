@@ -8,7 +8,7 @@ use super::{brackets, chain, control};
 
 /// Lays out an expression; `None` if it does not fit.
 pub fn rewrite(expr: &Expr, shape: Shape) -> Option<String> {
-    flat(expr).filter(|text| width(text) + chain::tries(expr) <= shape.width()).or_else(|| broken(expr, shape))
+    flat(expr).filter(|text| width(text) + chain::kept(expr) <= shape.width()).or_else(|| broken(expr, shape))
 }
 
 fn broken(expr: &Expr, shape: Shape) -> Option<String> {

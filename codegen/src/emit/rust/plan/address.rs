@@ -82,6 +82,28 @@ pub struct Target {
     pub mode: ModeId,
     /// Type of its number, if it has one.
     pub number: Option<Number>,
+    /// What the identifier of a request shows.
+    pub request: Vec<Shown>,
+    /// Who answers, and what the identifiers of these replies show, as far as the request says it.
+    pub replies: Vec<(Ident, Vec<Shown>)>,
+}
+
+/// A field of the identifier in a request or its replies.
+pub struct Shown {
+    /// Place of the field.
+    pub place: Ident,
+    /// What it shows.
+    pub value: Value,
+}
+
+/// What a field of the identifier shows.
+pub enum Value {
+    /// A constant.
+    Constant(TokenStream),
+    /// The target's address. The identifier is the constant of its kind.
+    Target(Ident),
+    /// The sender's address. The identifier is the constant of its kind.
+    Sender(Ident),
 }
 
 /// The kind of address that requests are sent from.
@@ -106,9 +128,6 @@ pub enum Number {
 }
 
 impl Number {
-    /// All types.
-    pub const ALL: [Self; 3] = [Self::U8, Self::U16, Self::I32];
-
     fn of(address: &model::AddressType) -> Self {
         match (address.first, address.last) {
             (0.., ..=0xFF) => Self::U8,
@@ -191,11 +210,12 @@ impl Address {
 
 impl Targets {
     /// Plans the targets; `None` if nobody sends requests.
-    pub fn new(protocol: &Protocol) -> Option<Self> {
+    pub fn new(protocol: &Protocol, addresses: &Addresses) -> Option<Self> {
         let names = target_names(protocol);
-        let modes = protocol.modes.entries().filter(|(_, mode)| mode.request.is_some());
+        let modes = protocol.modes.entries().filter_map(|(id, mode)| Some((id, mode.request.as_ref()?)));
         let mut texts = Pool::default();
-        let variants: Vec<_> = modes.map(|(id, _)| Target::new(protocol, &names[id], &mut texts, id)).collect();
+        let target = |(id, request)| Target::new(protocol, addresses, &names[id], &mut texts, id, request);
+        let variants: Vec<_> = modes.map(target).collect();
         (!variants.is_empty()).then(|| Self { variants, sender: sender(protocol).map(Sender::new) })
     }
 }
@@ -206,8 +226,18 @@ fn target_names(protocol: &Protocol) -> Table<ModeId, Ident> {
 }
 
 impl Target {
-    fn new(protocol: &Protocol, name: &Ident, texts: &mut Pool, id: ModeId) -> Self {
+    fn new(
+        protocol: &Protocol,
+        addresses: &Addresses,
+        name: &Ident,
+        texts: &mut Pool,
+        id: ModeId,
+        request: &AddressPattern,
+    ) -> Self {
         let mode = &protocol[id];
+        let shown = |pattern: &AddressPattern| Shown::all(protocol, addresses, mode.target, request, pattern);
+        let replies = [("One", &mode.one), ("Each", &mode.each), ("Coordinator", &mode.coordinator)];
+        let replies = replies.into_iter().filter_map(|(who, pattern)| Some((ident(who), shown(pattern.as_ref()?))));
         let address = mode.target.map(|address| &protocol[address]);
         let numbers = address.map_or_else(String::new, |address| format!(": {}", range(address)));
         let sentence = doc::sentence_of(&format!("{}{numbers}", doc::title(&mode.doc, &mode.name)));
@@ -218,7 +248,31 @@ impl Target {
             comment: Comment::item(protocol, &errata_elsewhere, &sentence, None),
             mode: id,
             number: address.map(Number::of),
+            request: shown(request),
+            replies: replies.collect(),
         }
+    }
+}
+
+impl Shown {
+    /// Plans what a pattern shows of a request to a target: its constants, and the addresses that are in the request.
+    fn all(
+        protocol: &Protocol,
+        kinds: &Addresses,
+        target: Option<AddressTypeId>,
+        request: &AddressPattern,
+        pattern: &AddressPattern,
+    ) -> Vec<Self> {
+        let Pattern { constants, .. } = Pattern::new(protocol, kinds, pattern);
+        let constants = constants.into_iter().map(|(place, value)| Self { place, value: Value::Constant(value) });
+        let is_known =
+            |known: &&model::Address| request.addresses.iter().any(|own| own.address_type == known.address_type);
+        let addresses = pattern.addresses.iter().filter(is_known).map(|known| {
+            let kind = kinds[known.address_type].clone();
+            let value = if target == Some(known.address_type) { Value::Target(kind) } else { Value::Sender(kind) };
+            Self { place: field_place(protocol, known.field).0, value }
+        });
+        constants.chain(addresses).collect()
     }
 }
 

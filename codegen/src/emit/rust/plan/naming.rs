@@ -7,7 +7,7 @@ use proc_macro2::{Ident, Span};
 use crate::model::Signal;
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 76] = [
+const TAKEN: [&str; 77] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -36,6 +36,7 @@ const TAKEN: [&str; 76] = [
     "FrameSet",
     "From",
     "Hash",
+    "IdFilter",
     "Identifier",
     "IdentifierFields",
     "Into",
