@@ -43,7 +43,7 @@ pub const PARTS: [Part; 3] = [
     Part {
         name: "emitter",
         sources: &["codegen/src/emit/rust.rs", "codegen/src/emit/rust"],
-        without: &["doc.rs", "layout.rs", "layout", "manual.rs", "manual", "parts.rs"],
+        without: &["doc.rs", "layout.rs", "layout", "manual.rs", "manual", "parts.rs", "usage.rs"],
         tests: &["--manifest-path", "tests/downstream/Cargo.toml", "--test", "*"],
         optimization: "0",
     },
