@@ -92,7 +92,7 @@ impl Encode {
         let signals: Vec<_> = signals.iter().filter_map(pair).collect();
         let target = self.target(protocol, access, message)?;
         let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
-        let frames = frames.map_err(|refusal| Failure::Input(refusal.to_string()))?;
+        let frames = frames.map_err(|refusal| Failure::Call(refusal.to_string()))?;
         let mut out = output()?;
         frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
         Ok(Finish::Done)
@@ -105,7 +105,7 @@ impl Encode {
         match &self.to {
             Some(to) => Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string())),
             None => match interpret::targets(protocol, access, message) {
-                Err(refusal) => Err(Failure::Input(refusal.to_string())),
+                Err(refusal) => Err(Failure::Call(refusal.to_string())),
                 Ok(Targets::One(target)) => Ok(target),
                 Ok(Targets::Choice(forms)) => {
                     let forms: Vec<_> = forms.iter().map(|form| format!("`--to {form}`")).collect();

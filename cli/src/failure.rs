@@ -29,7 +29,7 @@ impl From<Finish> for ExitCode {
 /// Why a command was not carried out.
 #[derive(Debug)]
 pub enum Failure {
-    /// The call was wrong.
+    /// The call was wrong, or the settings that complete it.
     Call(String),
     /// The input has an error without a line.
     Input(String),

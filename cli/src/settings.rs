@@ -79,7 +79,7 @@ impl Settings {
         let Written { protocol, spec, model } = toml::from_str(text).map_err(|error| {
             let line =
                 text.get(..error.span().map_or(0, |span| span.start)).map_or(1, |before| before.lines().count().max(1));
-            Failure::Input(format!("{}:{line}: {}", shown(path), error.message()))
+            Failure::Call(format!("{}:{line}: {}", shown(path), error.message()))
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let specs = OneOrMany::names(spec).into_iter().map(|spec| folder.join(spec)).collect();
