@@ -23,7 +23,11 @@ impl Model {
         let is_meant =
             |model: &DeviceModel| model.name == *name || model.items.iter().any(|item| item.for_people() == name);
         let found: Vec<_> = protocols.iter().map(|protocol| protocol.models.position(is_meant)).collect();
-        if found.iter().all(Option::is_none) { Err(Failure::Call(unknown(name, protocols))) } else { Ok(found) }
+        match found.iter().all(Option::is_none).then(|| unknown(name, protocols)) {
+            None => Ok(found),
+            Some(why) if self.name.is_some() => Err(Failure::Call(why)),
+            Some(why) => Err(settings.refuse(&why)),
+        }
     }
 
     /// Returns the model in a protocol.

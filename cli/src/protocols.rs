@@ -59,7 +59,7 @@ fn chosen(protocols: &[String], specs: &[PathBuf]) -> Result<Settings, Failure> 
     if protocols.is_empty() && specs.is_empty() {
         return Settings::find();
     }
-    Ok(Settings { protocols: protocols.to_vec(), specs: specs.to_vec(), model: None })
+    Ok(Settings { protocols: protocols.to_vec(), specs: specs.to_vec(), ..Settings::default() })
 }
 
 /// Compiles the one spec of a choice.
@@ -67,8 +67,8 @@ pub fn load_one(choice: &Settings) -> Result<Protocol, Failure> {
     let protocols = load_all(choice)?;
     let names: Vec<String> = protocols.iter().map(|protocol| format!("`{}`", protocol.name)).collect();
     let [protocol] = <[Protocol; 1]>::try_from(protocols).map_err(|_| {
-        let why = format!("one protocol is needed, and the settings name {}", names.join(", "));
-        Failure::Call(format!("{why}; choose one with --protocol NAME or --spec FILE"))
+        let why = format!("one protocol is needed, and here are {}", names.join(", "));
+        choice.refuse(&format!("{why}; choose one with --protocol NAME or --spec FILE"))
     })?;
     Ok(protocol)
 }
@@ -76,8 +76,8 @@ pub fn load_one(choice: &Settings) -> Result<Protocol, Failure> {
 /// Compiles all specs of a choice, which has at least one.
 pub fn load_all(choice: &Settings) -> Result<Vec<Protocol>, Failure> {
     let files = choice.specs.iter().map(|path| load(file(path)?));
-    let protocols: Vec<Protocol> =
-        files.chain(choice.protocols.iter().map(|name| load(built_in(name)?))).collect::<Result<_, _>>()?;
+    let named = choice.protocols.iter().map(|name| load(text(built_in(name).map_err(|why| choice.refuse(&why))?)?));
+    let protocols: Vec<Protocol> = files.chain(named).collect::<Result<_, _>>()?;
     if protocols.is_empty() { Err(nothing_chosen()) } else { Ok(protocols) }
 }
 
@@ -100,15 +100,15 @@ pub fn text(spec: &Spec) -> Result<Source, Failure> {
 /// Returns the text of a built-in spec or else of a file.
 pub fn choose(name: Option<&str>, path: Option<&Path>) -> Result<Source, Failure> {
     match (name, path) {
-        (Some(name), _) => built_in(name),
+        (Some(name), _) => text(built_in(name).map_err(Failure::Call)?),
         (None, Some(path)) => file(path),
         (None, None) => Err(nothing_chosen()),
     }
 }
 
-fn built_in(name: &str) -> Result<Source, Failure> {
-    let spec = canspec_specs::find(name).ok_or_else(|| Failure::Call(unknown(name, SPECS)))?;
-    text(spec)
+/// Finds a built-in spec, or says which names there are.
+fn built_in(name: &str) -> Result<&'static Spec, String> {
+    canspec_specs::find(name).ok_or_else(|| unknown(name, SPECS))
 }
 
 /// Compiles a spec, or fails with all its mistakes.

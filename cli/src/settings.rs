@@ -24,6 +24,8 @@ pub struct Settings {
     pub specs: Vec<PathBuf>,
     /// The device model.
     pub model: Option<String>,
+    /// The variable or the file that says so, unless the call does.
+    pub origin: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -62,7 +64,7 @@ impl Settings {
         let names = value.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned);
         let protocols: Vec<String> = names.collect();
         if !protocols.is_empty() {
-            return Ok(Self { protocols, ..Self::default() });
+            return Ok(Self { protocols, origin: Some(VARIABLE.to_owned()), ..Self::default() });
         }
         for folder in folders() {
             let path = folder.join(FILE);
@@ -83,7 +85,13 @@ impl Settings {
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let specs = OneOrMany::names(spec).into_iter().map(|spec| folder.join(spec)).collect();
-        Ok(Self { protocols: OneOrMany::names(protocol), specs, model })
+        Ok(Self { protocols: OneOrMany::names(protocol), specs, model, origin: Some(shown(path)) })
+    }
+
+    /// Makes the failure of a wrong name, which says where the name stands.
+    pub fn refuse(&self, why: &str) -> Failure {
+        let origin = self.origin.as_ref().map_or(String::new(), |origin| format!("{origin}: "));
+        Failure::Call(format!("{origin}{why}"))
     }
 }
 

@@ -59,7 +59,7 @@ fn the_environment_names_protocols() {
     assert_refused(
         &output,
         2,
-        "unknown protocol `ifny`; built in: gcp, infy, megmeet, mxr, trio; did you mean `infy`?",
+        "canspec: CANSPEC_PROTOCOL: unknown protocol `ifny`; built in: gcp, infy, megmeet, mxr, trio; did you mean",
     );
     assert_refused(
         &canspec(folder.path(), Some(""), &["decode", "bus.log"]),
@@ -92,6 +92,16 @@ fn what_the_call_says_wins_over_the_environment_and_that_over_the_file() {
 }
 
 #[test]
+fn a_wrong_name_is_blamed_on_the_place_where_it_stands() {
+    let folder = folder(Some("protocol = \"ifny\"\n"));
+    let below = folder.path().join("logs/today");
+    let call = ["decode", "bus.log"];
+    assert_refused(&canspec(&below, None, &call), 2, "canspec: ../../canspec.toml: unknown protocol `ifny`");
+    let named = ["decode", "--protocol", "ifny", "bus.log"];
+    assert_refused(&canspec(&below, Some("fniy"), &named), 2, "canspec: unknown protocol `ifny`");
+}
+
+#[test]
 fn a_spec_of_the_file_stands_beside_the_file() {
     let folder = folder(Some("spec = \"specs/my.yaml\"\n"));
     fs::create_dir(folder.path().join("specs")).expect("the folder can be written");
@@ -102,7 +112,10 @@ fn a_spec_of_the_file_stands_beside_the_file() {
 #[test]
 fn the_device_model_of_the_file_counts_for_its_protocols() {
     let folder = folder(Some("protocol = \"infy\"\nmodel = \"NOSUCH\"\n"));
-    assert_refused(&canspec(folder.path(), None, &["decode", "bus.log"]), 2, "unknown model `NOSUCH`; `infy` has");
+    let refused = "canspec: canspec.toml: unknown model `NOSUCH`; `infy` has";
+    assert_refused(&canspec(folder.path(), None, &["decode", "bus.log"]), 2, refused);
+    let own = ["decode", "--model", "OTHER", "bus.log"];
+    assert_refused(&canspec(folder.path(), None, &own), 2, "canspec: unknown model `OTHER`");
     let call = ["encode", "set_module_output", "--to", "module:3", "voltage=750V", "current=15A"];
     assert_refused(&canspec(folder.path(), None, &call), 2, "unknown model `NOSUCH`");
     assert_eq!(protocol(folder.path(), None, &["--protocol", "infy"]), "infy");
@@ -117,8 +130,10 @@ fn the_device_model_of_the_file_counts_for_its_protocols() {
 fn commands_for_one_protocol_refuse_several() {
     let folder = folder(Some("protocol = [\"infy\", \"mxr\"]\n"));
     assert_eq!(protocol(folder.path(), None, &[]), "infy");
-    let why = "one protocol is needed, and the settings name `infy`, `mxr`; choose one with --protocol NAME";
-    assert_refused(&canspec(folder.path(), None, &["examples"]), 2, why);
+    let why = "one protocol is needed, and here are `infy`, `mxr`; choose one with --protocol NAME";
+    assert_refused(&canspec(folder.path(), None, &["examples"]), 2, &format!("canspec: canspec.toml: {why}"));
+    let variable = canspec(folder.path(), Some("infy,mxr"), &["examples"]);
+    assert_refused(&variable, 2, &format!("canspec: CANSPEC_PROTOCOL: {why}"));
     assert!(canspec(folder.path(), None, &["examples", "--protocol", "mxr"]).status.success());
 }
 
@@ -132,7 +147,7 @@ fn a_file_that_says_something_else_is_refused_in_its_place() {
         ),
         (2, "model = \"x\"\nprotocol = 7\n", "canspec.toml:2: expected a text or a list of texts"),
         (2, "\n\nprotocol = infy\n", "canspec.toml:3: "),
-        (2, "protocol = \"ifny\"\n", "did you mean `infy`?"),
+        (2, "protocol = \"ifny\"\n", "canspec: canspec.toml: unknown protocol `ifny`; built in: "),
         (1, "spec = \"nosuch.yaml\"\n", "there is no such file"),
         (
             2,
