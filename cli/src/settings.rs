@@ -15,6 +15,9 @@ const FILE: &str = "canspec.toml";
 /// Names a built-in protocol, or several with commas between them.
 const VARIABLE: &str = "CANSPEC_PROTOCOL";
 
+/// What is wrong with other values.
+const QUOTES: &str = "text needs quotes, as in `protocol = \"NAME\"`";
+
 /// What the settings name.
 #[derive(Debug, Default)]
 pub struct Settings {
@@ -79,9 +82,11 @@ impl Settings {
 
     fn read(path: &Path, text: &str) -> Result<Self, Failure> {
         let Written { protocol, spec, model } = toml::from_str(text).map_err(|error| {
-            let line =
-                text.get(..error.span().map_or(0, |span| span.start)).map_or(1, |before| before.lines().count().max(1));
-            Failure::Call(format!("{}:{line}: {}", shown(path), error.message()))
+            let before = text.get(..error.span().map_or(0, |span| span.start)).unwrap_or_default();
+            let line = before.lines().count().max(1);
+            let is_bare = text.lines().nth(line - 1).is_some_and(lacks_quotes);
+            let why = if is_bare { QUOTES } else { error.message() };
+            Failure::Call(format!("{}:{line}: {why}", shown(path)))
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let specs = OneOrMany::names(spec).into_iter().map(|spec| folder.join(spec)).collect();
@@ -93,6 +98,12 @@ impl Settings {
         let origin = self.origin.as_ref().map_or(String::new(), |origin| format!("{origin}: "));
         Failure::Call(format!("{origin}{why}"))
     }
+}
+
+/// Tests whether a value in a line of the file begins with a letter or a digit, as no text does.
+fn lacks_quotes(line: &str) -> bool {
+    let is_bare = |value: &str| value.trim_start().starts_with(char::is_alphanumeric);
+    line.split_once('=').is_some_and(|(_, values)| values.split(['[', ',']).any(is_bare))
 }
 
 /// Returns the current folder and those above it, as seen from the current one.

@@ -145,8 +145,11 @@ fn a_file_that_says_something_else_is_refused_in_its_place() {
             "protocl = \"infy\"\n",
             "canspec.toml:1: unknown field `protocl`, expected one of `protocol`, `spec`, `model`",
         ),
-        (2, "model = \"x\"\nprotocol = 7\n", "canspec.toml:2: expected a text or a list of texts"),
-        (2, "\n\nprotocol = infy\n", "canspec.toml:3: "),
+        (2, "model = \"x\"\nprotocol = {}\n", "canspec.toml:2: expected a text or a list of texts"),
+        (2, "\n\nprotocol = infy\n", "canspec.toml:3: text needs quotes, as in `protocol = \"NAME\"`"),
+        (2, "protocol = [\"mxr\", infy]\n", "canspec.toml:1: text needs quotes"),
+        (2, "model = 75\n", "canspec.toml:1: text needs quotes"),
+        (2, "[protocol]\n", "canspec.toml:1: expected a text or a list of texts"),
         (2, "protocol = \"ifny\"\n", "canspec: canspec.toml: unknown protocol `ifny`; built in: "),
         (1, "spec = \"nosuch.yaml\"\n", "there is no such file"),
         (
