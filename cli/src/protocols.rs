@@ -39,8 +39,8 @@ impl One {
 #[derive(Args)]
 #[group(multiple = true)]
 pub struct Several {
-    /// A built-in protocol; repeatable, and the first one that recognises a frame wins.
-    #[arg(long, value_name = "NAME")]
+    /// A built-in protocol, or several as `A,B`; the first one that recognises a frame wins.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
     protocol: Vec<String>,
     /// A spec file; repeatable, and tried before the built-in protocols.
     #[arg(long, value_name = "FILE")]
@@ -121,6 +121,7 @@ pub fn load(source: Source) -> Result<Protocol, Failure> {
 fn unknown(name: &str, specs: &[Spec]) -> String {
     let names: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
     let help = match nearest(name, names.iter().copied()) {
+        _ if name.contains(',') => "this command takes one".to_owned(),
         Some(known) => format!("did you mean `{known}`?"),
         None => "a spec of your own is named by its file".to_owned(),
     };
@@ -146,6 +147,7 @@ mod tests {
     fn a_name_like_no_other_gets_the_way_to_a_file() {
         let help = "a spec of your own is named by its file";
         assert_eq!(unknown("x.yaml", SPECS), format!("unknown protocol `x.yaml`; built in: acme, zeta; {help}"));
+        assert!(unknown("acme,zeta", SPECS).ends_with("; this command takes one"));
         assert_eq!(unknown("x", &[]), format!("unknown protocol `x`; none is built in; {help}"));
     }
 }
