@@ -39,7 +39,10 @@ impl Choice {
         let signals = || chosen().flat_map(|(_, message)| message.signals.iter().map(|signal| signal.name.as_str()));
         for name in &self.signal {
             let is_known = signals().any(|known| known == name);
-            is_known.then_some(()).ok_or_else(|| unknown("signal", name, signals()))?;
+            is_known.then_some(()).ok_or_else(|| {
+                let both = messages().find_map(|(protocol, message)| parted(protocol, message, name));
+                both.map_or_else(|| unknown("signal", name, signals()), |both| joined(name, both))
+            })?;
         }
         Ok(())
     }
@@ -70,6 +73,18 @@ impl Choice {
 fn is_called(protocol: &Protocol, message: &Message, name: &str) -> bool {
     let own = name.strip_prefix(protocol.name.as_str()).and_then(|rest| rest.strip_prefix('.'));
     message.name == name || own == Some(&message.name)
+}
+
+/// Splits `MESSAGE.SIGNAL` if the message has that signal.
+fn parted<'n>(protocol: &Protocol, message: &Message, name: &'n str) -> Option<(&'n str, &'n str)> {
+    let (own, signal) = name.rsplit_once('.')?;
+    let has_it = message.signals.iter().any(|known| known.name == signal);
+    (has_it && is_called(protocol, message, own)).then_some((own, signal))
+}
+
+/// Refuses `MESSAGE.SIGNAL`.
+fn joined(name: &str, (message, signal): (&str, &str)) -> Failure {
+    Failure::Call(format!("unknown signal `{name}`; write `--message {message} --signal {signal}`"))
 }
 
 fn unknown<'n>(what: &str, name: &str, known: impl IntoIterator<Item = &'n str>) -> Failure {
