@@ -82,14 +82,17 @@ impl Encode {
     }
 
     fn request(&self, protocol: &Protocol, model: Option<ModelId>) -> Result<Finish, Failure> {
-        let (signals, names): (Vec<&String>, Vec<&String>) = self.words.iter().partition(|word| word.contains('='));
-        let (access, message) = match names.as_slice() {
+        let first = self.words.iter().position(|word| word.contains('=')).unwrap_or(self.words.len());
+        let (names, signals) = self.words.split_at(first);
+        let signals = pairs(signals)?;
+        let (access, message) = match names {
             [message] => (None, message),
             [access, message] => (Some(access.as_str()), message),
-            _ => return Err(Failure::Call("name one message, or an access and a message".to_owned())),
+            _ => {
+                let why = "name one message, or an access and a message, and then each value as NAME=VALUE";
+                return Err(Failure::Call(why.to_owned()));
+            }
         };
-        let pair = |word: &&String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
-        let signals: Vec<_> = signals.iter().filter_map(pair).collect();
         let target = self.target(protocol, access, message)?;
         let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
         let frames = frames.map_err(|refusal| Failure::Call(refusal.to_string()))?;
@@ -114,6 +117,17 @@ impl Encode {
             },
         }
     }
+}
+
+/// Splits words of the form NAME=VALUE. The first one has that form.
+fn pairs(words: &[String]) -> Result<Vec<(String, String)>, Failure> {
+    if let Some([before, word]) = words.array_windows().find(|[_, word]| !word.contains('=')) {
+        let why = format!("`{word}` stands alone behind `{before}`");
+        let help = "write NAME=VALUE without a blank or in quotes, with the unit or without";
+        return Err(Failure::Call(format!("{why}; {help}")));
+    }
+    let pair = |word: &String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
+    Ok(words.iter().filter_map(pair).collect())
 }
 
 /// Turns a decoded line into one of a log.
