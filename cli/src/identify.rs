@@ -75,9 +75,7 @@ impl Identify {
         for candidate in &mut candidates {
             candidate.share = share(candidate.recognised, frames);
         }
-        candidates.sort_by_key(|candidate| {
-            (Reverse(candidate.recognised - candidate.contradicted), Reverse(candidate.recognised))
-        });
+        candidates.sort_by_key(|candidate| Reverse(candidate.fit()));
         self.write(&candidates)?;
         Ok(finish)
     }
@@ -95,6 +93,11 @@ impl Identify {
             Format::Text => {
                 let rows: Vec<Row> = candidates.iter().map(Candidate::row).collect();
                 columns::write(&mut out, &["PROTOCOL", "RECOGNISED", "SHARE", "CONTRADICTED"], "TITLE", &rows)?;
+                let best = candidates.chunk_by(|one, next| one.fit() == next.fit()).next().unwrap_or_default();
+                if best.len() > 1 {
+                    let names: Vec<_> = best.iter().map(|candidate| candidate.name.as_str()).collect();
+                    writeln!(out, "\n{} fit equally well", names.join(", "))?;
+                }
             }
             Format::Jsonl => {
                 for candidate in candidates {
@@ -116,6 +119,11 @@ impl Candidate {
         let Ok(decoded) = decode(&self.protocol, None, frame) else { return };
         self.recognised += 1;
         self.contradicted += u64::from(decoded.notes.iter().any(|note| contradicts(note.rule)));
+    }
+
+    /// Returns the frames without a contradiction, then all that are recognised.
+    fn fit(&self) -> (u64, u64) {
+        (self.recognised - self.contradicted, self.recognised)
     }
 
     fn row(&self) -> Row {
