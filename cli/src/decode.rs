@@ -12,7 +12,7 @@ use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
 use crate::capture::{self, Capture};
-use crate::failure::{Failure, Finish, shown};
+use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::Input;
 use crate::line::{self, Outcome};
 use crate::log::{Entry, Reader};
@@ -108,13 +108,27 @@ impl Decode {
         let mut reader = Reader::default();
         let input = Input::open(self.file.as_deref())?;
         let input = if self.summary { input.summed_up() } else { input };
+        let (mut frames, mut recognised) = (0, 0);
         let finish = input.each(&mut out, |out, line| {
             let entry = reader.read(line.text?)?;
-            Ok(entry.map_or(Ok(()), |entry| self.show(&mut printer, out, &devices, line.number, &entry)))
+            let Some(entry) = entry else { return Ok(Ok(())) };
+            let decoded = decode(&devices, &entry.frame);
+            frames += 1;
+            recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
+            Ok(decoded.map_or(Ok(()), |decoded| self.show(&mut printer, out, line.number, &entry, decoded)))
         })?;
         printer.end(&mut out)?;
         out.flush()?;
+        if frames > 0 && recognised == 0 {
+            self.suggest_identify();
+        }
         Ok(finish)
+    }
+
+    /// Says how to find the protocol of a log in which nothing was recognised.
+    fn suggest_identify(&self) {
+        let log = self.file.as_deref().map_or("LOG".to_owned(), shown);
+        tell(format_args!("canspec: no frame was recognised; `canspec identify {log}` tries every built-in protocol"));
     }
 
     fn printer(&self, protocols: &[Protocol]) -> Result<Printer, Failure> {
@@ -136,11 +150,10 @@ impl Decode {
         &self,
         printer: &mut Printer,
         out: &mut impl Write,
-        devices: &[Device<'_>],
         line: usize,
         entry: &Entry<'_>,
+        (protocol, mut decoded): Answer<'_>,
     ) -> io::Result<()> {
-        let Some((protocol, mut decoded)) = decode(devices, &entry.frame) else { return Ok(()) };
         let is_chosen = match &mut decoded {
             Ok(decoded) => self.choice.keep(protocol, decoded),
             Err(_) => self.choice.is_everything(),
@@ -181,8 +194,11 @@ impl Printer {
 /// A protocol, and the device model if one of its models is chosen.
 type Device<'a> = (&'a Protocol, Option<ModelId>);
 
+/// What a protocol says of a frame.
+type Answer<'a> = (&'a Protocol, Result<Decoded, Unrecognised>);
+
 /// Decodes by the first protocol that recognises the frame, else says what the first one has against it.
-fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<(&'a Protocol, Result<Decoded, Unrecognised>)> {
+fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
     let by = |(protocol, model): &Device<'a>| (*protocol, interpret::decode(protocol, *model, frame));
     devices.iter().map(by).find(|(_, decoded)| decoded.is_ok()).or_else(|| devices.first().map(by))
 }
