@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use clap::{Args, CommandFactory};
+use canspec_specs::SPECS;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Command, CommandFactory};
 use clap_complete::{Shell, generate};
 
 use crate::Canspec;
@@ -26,8 +28,15 @@ impl Completions {
     /// Writes the script for the shell.
     pub fn run(&self) -> Result<Finish, Failure> {
         let mut script = Vec::new();
-        generate(self.shell, &mut Canspec::command(), "canspec", &mut script);
+        generate(self.shell, &mut with_names(Canspec::command()), "canspec", &mut script);
         output()?.write_all(&script)?;
         Ok(Finish::Done)
     }
+}
+
+/// Offers the built-in protocols wherever one is named.
+fn with_names(command: Command) -> Command {
+    let names = || PossibleValuesParser::new(SPECS.iter().map(|spec| spec.name));
+    let command = command.mut_args(|arg| if arg.get_id() == "protocol" { arg.value_parser(names()) } else { arg });
+    command.mut_subcommands(with_names)
 }

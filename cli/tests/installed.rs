@@ -33,6 +33,15 @@ fn every_shell_learns_every_subcommand() {
     }
 }
 
+/// The scripts for elvish and PowerShell complete no values at all.
+#[test]
+fn shells_that_complete_values_know_the_built_in_protocols() {
+    for shell in ["bash", "fish", "zsh"] {
+        let script = text(&["completions", shell]);
+        assert!(canspec_specs::SPECS.iter().all(|spec| script.contains(spec.name)), "{shell}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn bash_completes_subcommands_and_options() {
@@ -48,6 +57,10 @@ fn bash_completes_subcommands_and_options() {
     assert_eq!(completed("canspec ident", 1), "identify");
     assert_eq!(completed("canspec decode --sum", 2), "--summary");
     assert_eq!(completed("canspec decode --format cs", 3), "csv");
+    for command in ["compile", "decode", "encode", "examples", "list"] {
+        assert_eq!(completed(&format!("canspec {command} --protocol in"), 3), "infy", "{command}");
+    }
+    assert_eq!(completed("canspec export dbc --protocol m", 4), "megmeet mxr");
 }
 
 #[test]
