@@ -37,6 +37,8 @@ enum Format {
     Slcan,
     Asc(asc::Base),
     Csv(Box<csv::Columns>),
+    /// A table without a column that it needs, and the complaint if nobody has heard it.
+    Incomplete(Option<String>),
 }
 
 impl Reader {
@@ -60,6 +62,7 @@ impl Reader {
             Some(Format::Slcan) => slcan::read(line),
             Some(Format::Asc(base)) => asc::read(base, line),
             Some(Format::Csv(columns)) => columns.read(line),
+            Some(Format::Incomplete(complaint)) => complaint.take().map_or(Ok(None), Err),
             None => Err(unknown(line)),
         }
     }
@@ -68,8 +71,10 @@ impl Reader {
     fn tell(&mut self, line: &str) {
         let told = match &self.0 {
             Some(Format::Asc(_) | Format::Csv(_)) => None,
-            Some(Format::Compact | Format::Plain | Format::Slcan) => frame(line).or_else(|| head(line)),
-            None => head(line).or_else(|| frame(line)).or_else(|| compact::has_stamp(line).then_some(Format::Compact)),
+            Some(Format::Compact | Format::Plain | Format::Slcan | Format::Incomplete(_)) => {
+                frame(line).or_else(|| head(line))
+            }
+            None => head(line).or_else(|| frame(line)).or_else(|| uncertain(line)),
         };
         if told.is_some() {
             self.0 = told;
@@ -81,6 +86,12 @@ impl Reader {
 fn head(line: &str) -> Option<Format> {
     let csv = || csv::Columns::of(line).map(|columns| Format::Csv(Box::new(columns)));
     csv().or_else(|| asc::begins(line).then(|| Format::Asc(asc::Base::default())))
+}
+
+/// Returns the format of a first line that has less than it should.
+fn uncertain(line: &str) -> Option<Format> {
+    let stamped = compact::has_stamp(line).then_some(Format::Compact);
+    stamped.or_else(|| csv::Columns::lack(line).map(|why| Format::Incomplete(Some(why))))
 }
 
 /// Returns the format that has frames in such a line.
@@ -136,6 +147,14 @@ mod tests {
         for log in logs {
             assert_eq!(last(log), Ok(Some(("123".to_owned(), "1122".to_owned()))), "{log:?}");
         }
+    }
+
+    #[test]
+    fn a_table_without_a_column_that_it_needs_is_complained_about_once() {
+        let mut reader = Reader::default();
+        assert!(reader.read("time,id,value").expect_err("there are no data").contains("no column for the data"));
+        assert!(reader.read("0.5,123,7").is_ok_and(|entry| entry.is_none()));
+        assert!(reader.read("(1.5) can0 123#1122").is_ok_and(|entry| entry.is_some()));
     }
 
     #[test]

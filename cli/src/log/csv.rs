@@ -6,7 +6,7 @@ use serde_json::value::RawValue;
 
 use super::Entry;
 use super::part::{
-    CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, fitting, is_hexadecimal, moved, quoted, seconds,
+    CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds,
 };
 
 /// What stands between two cells.
@@ -91,8 +91,24 @@ struct Cells<'a> {
 impl Columns {
     /// Reads a heading, `None` from a line that has none with an identifier and data.
     pub fn of(line: &str) -> Option<Self> {
+        Self::readings(line).find(|columns| columns.has() == (true, true))
+    }
+
+    /// Says what a heading lacks that has an identifier without data, or data without an identifier.
+    pub fn lack(line: &str) -> Option<String> {
+        let (what, names) = Self::readings(line).find_map(|columns| match columns.has() {
+            (true, false) => Some(("the data", "`data` or `d0`")),
+            (false, true) => Some(("the identifier", "`id`")),
+            (true, true) | (false, false) => None,
+        })?;
+        let heading = quoted(line.trim());
+        Some(format!("the heading {heading} has no column for {what}, such as {names}; no row below it is read"))
+    }
+
+    /// Parts a line by each separator that it has.
+    fn readings(line: &str) -> impl Iterator<Item = Self> {
         let separators = SEPARATORS.into_iter().filter(|separator| line.as_bytes().contains(separator));
-        separators.map(|separator| Self::parted(line, separator)).find(Self::suffices)
+        separators.map(|separator| Self::parted(line, separator))
     }
 
     fn parted(line: &str, separator: u8) -> Self {
@@ -113,9 +129,10 @@ impl Columns {
         }
     }
 
-    fn suffices(&self) -> bool {
+    /// Tests for an identifier and for data.
+    fn has(&self) -> (bool, bool) {
         let has = |column| self.kinds.contains(&column);
-        has(Column::Identifier) && (has(Column::Data) || has(Column::Byte))
+        (has(Column::Identifier), has(Column::Data) || has(Column::Byte))
     }
 
     /// Splits a line into cells, and returns how many there are.
@@ -210,10 +227,13 @@ fn id(text: &str, extended: Option<bool>) -> Result<(u32, bool), String> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     let marked = digits.strip_suffix(['x', 'X']);
     let digits = marked.unwrap_or(digits);
-    let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_hexadecimal(digits));
+    let append = |number: u32, digit: char| Some(number.saturating_mul(16).saturating_add(digit.to_digit(16)?));
+    let number = digits.chars().try_fold(0, append).filter(|_| !digits.is_empty());
     let number = number.ok_or_else(|| format!("the identifier {} is not hexadecimal", quoted(text)))?;
     let extended = extended.unwrap_or(marked.is_some() || digits.len() > 7 || number > super::part::LARGEST_STANDARD);
-    fitting(number, extended, digits).map(|number| (number, extended))
+    let looks_decimal = text.bytes().all(|byte| byte.is_ascii_digit());
+    let help = if looks_decimal { "; identifiers are read as hexadecimal" } else { "" };
+    fitting(number, extended, digits).map(|number| (number, extended)).map_err(|why| why + help)
 }
 
 /// Reads whether something is so; an empty cell does not say.
@@ -294,6 +314,16 @@ mod tests {
     }
 
     #[test]
+    fn a_heading_with_a_part_of_what_it_needs_says_what_it_lacks() {
+        let lacks = |line: &str, what: &str| Columns::lack(line).is_some_and(|why| why.contains(what));
+        assert!(lacks("time;id;value", "no column for the data, such as `data`"));
+        assert!(lacks("time,d0,d1", "no column for the identifier, such as `id`"));
+        for line in ["id,data", "0.5,123,00", "a;b", "id"] {
+            assert_eq!(Columns::lack(line), None, "{line}");
+        }
+    }
+
+    #[test]
     fn an_unreadable_line_says_why() {
         let heading = "time,id,extended,dlc,data";
         let reasons = [
@@ -303,7 +333,17 @@ mod tests {
             ("1 2,123,0,2,1122", "the stamp `1 2` is no date with a time"),
             ("0.5,12G,0,2,1122", "the identifier `12G` is not hexadecimal"),
             ("0.5,,0,2,1122", "the identifier `` is not hexadecimal"),
-            ("0.5,800,0,2,1122", "the identifier 800 is above 7FF, the largest of 11 bits"),
+            ("0.5,80F,0,2,1122", "the identifier 80F is above 7FF, the largest of 11 bits"),
+            ("0.5,0x800,0,2,1122", "the identifier 800 is above 7FF, the largest of 11 bits"),
+            (
+                "0.5,2047,0,2,1122",
+                "the identifier 2047 is above 7FF, the largest of 11 bits; identifiers are read as hexadecimal",
+            ),
+            (
+                "0.5,419385573,,2,1122",
+                "the identifier 419385573 is above 1FFFFFFF, the largest of 29 bits; identifiers are read as hexadecimal",
+            ),
+            ("0.5,18FF50E5A,,2,1122", "the identifier 18FF50E5A is above 1FFFFFFF, the largest of 29 bits"),
             ("0.5,123,maybe,2,1122", "`maybe` is neither 1 nor 0"),
             ("0.5,123,0,two,1122", "the length `two` is no number"),
             ("0.5,123,0,3,1122", "the line says that there are 3 data bytes, and has 2"),
