@@ -52,21 +52,38 @@ fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagn
         let has = |field: &&IdentifierField| one.has(field.mask()) && other.has(field.mask());
         let mut fields = protocol.identifier.fields.iter().filter(has);
         let is_same = |field: &IdentifierField| (one.pattern.value ^ other.pattern.value) & field.mask() == 0;
-        let first = fields.next().filter(|field| is_same(field) && fields.all(is_same))?;
+        let has_own = other.pattern.mask & !one.pattern.mask != 0;
+        let first = fields.next().filter(|field| !has_own && is_same(field) && fields.all(is_same))?;
         Some((one, other, first))
     });
     let Some((request, reply, field)) = common else {
         let text = "nothing in the identifier tells a request from a reply";
-        let help = "give one field different constants in requests and replies; \
-                    or, if no module has a controller's address, write `outside: refused` in the controller's type";
         let at = Path::default().key("addressing").at_key();
-        return diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(help));
+        let diagnostic = Diagnostic::error(&DIRECTION, at, text);
+        return diagnostics.push(diagnostic.help(way_out(protocol, &requests, &replies)));
     };
     let (name, value) = (&field.name, field.get(request.pattern.value));
     let text = format!("a request and a reply look alike: both have {value} in `{name}`");
     let place = |known: &Known| known.mode.doc.path.key(known.key).key(name).at_value();
     let diagnostic = Diagnostic::error(&DIRECTION, place(reply), text).other(place(request), "the request");
     diagnostics.push(diagnostic.help("give the reply another constant here"));
+}
+
+/// Says what could tell the direction. A constant that replies alone have may be a controller's address.
+fn way_out(protocol: &Protocol, requests: &[&Known], replies: &[&Known]) -> String {
+    let is_own = |field: &&IdentifierField| requests.iter().all(|request| !request.has(field.mask()));
+    let controller = replies.iter().find_map(|reply| {
+        let mut fields = protocol.identifier.fields.iter().filter(|field| reply.has(field.mask()));
+        Some(fields.find(is_own)?.get(reply.pattern.value))
+    });
+    let refusing = match controller {
+        Some(address) => {
+            let written = format!("{{range: {address:#04X}..{address:#04X}, outside: refused, send: {address:#04X}}}");
+            format!("if no module has the address {address:#04X}, put the name of a type there: `{written}`")
+        }
+        None => "if no module has a controller's address, write `outside: refused` in the controller's type".to_owned(),
+    };
+    format!("give one field different constants in requests and replies; or, {refusing}")
 }
 
 /// A pattern of an addressing mode, and its key.
