@@ -12,6 +12,9 @@ use crate::value;
 
 const HEADINGS: [&str; 6] = ["TIME", "CHANNEL", "IDENTIFIER", "ADDRESS", "ACCESS", "MESSAGE"];
 
+/// The digits of a day in seconds. A stamp has room for as many before its point.
+const DIGITS: usize = "86400".len();
+
 /// What stands between two signals.
 const GAP: &str = "  ";
 
@@ -61,6 +64,7 @@ impl Table {
         let cells = [time, outcome.channel.unwrap_or(""), &identifier, &address, access, &message];
         self.columns.widen(&cells);
         if !self.started {
+            self.columns.widen(&[&grown(time)]);
             self.columns.write(out, &HEADINGS, &["SIGNALS".to_owned()])?;
             self.started = true;
         }
@@ -79,6 +83,13 @@ impl Table {
             Err(_) => ("?".to_owned(), "", self.message(protocol, "?")),
         }
     }
+}
+
+/// Fills up a stamp to the width that later ones may have.
+fn grown(time: &str) -> String {
+    let whole = time.split('.').next().map_or(0, str::len);
+    let missing = if time.is_empty() { 0 } else { DIGITS.saturating_sub(whole) };
+    format!("{time}{}", " ".repeat(missing))
 }
 
 /// Returns the longest text that a request shows in this mode, as far as the document goes.

@@ -5,9 +5,7 @@ use csv_core::{ReadRecordResult, ReaderBuilder};
 use serde_json::value::RawValue;
 
 use super::Entry;
-use super::part::{
-    CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds,
-};
+use super::part::{CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds};
 
 /// What stands between two cells.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
