@@ -15,11 +15,11 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let is_idle = signal.range.is_some() && signal.specials.is_empty();
             if is_idle && is_own && !is_sent(protocol, message, id) {
                 let text = format!(
-                    "`{}.{}` has a range, which limits what is sent, but no request carries the field",
+                    "`{}.{}` has a range, but no request carries the field, so nothing is refused",
                     message.name, signal.name
                 );
                 let help =
-                    "take the range out, because only values to send have limits, or allow it with a reason in `allow`";
+                    "take the range out; or keep it for the note `out_of_range`, with a reason in an entry of `allow`";
                 diagnostics.push(Diagnostic::warning(&READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
             }
         }

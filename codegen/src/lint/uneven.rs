@@ -81,6 +81,11 @@ fn diagnostic(siblings: &[Sibling], odd: usize, key: &str) -> Diagnostic {
         .last()
         .map_or_else(|| path.clone(), |known| path.key(known));
     let text = format!("`{name}` has no `{key}`, which all {} others have", siblings.len() - 1);
-    let help = format!("write `{key}`; if the document leaves it out, say so with an entry of `allow`");
+    let help = match key {
+        "title" => {
+            "write a `title`, a few words for people; or say with an entry of `allow` why there is none".to_owned()
+        }
+        _ => format!("write `{key}`; if the document leaves it out, say so with an entry of `allow`"),
+    };
     Diagnostic::warning(&UNEVEN, at.at_key(), text).label(format!("`{key}` is missing after this")).help(help)
 }
