@@ -18,6 +18,7 @@ pub use allowed::Allowed;
 use crate::model::{
     Encoding, Enumeration, EnumerationId, Misfit, NoteRule, Protocol, Signal, StatusWord, StatusWordId, Table,
 };
+use crate::number::Rational;
 
 /// A physical value.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,7 +147,13 @@ fn bits_of_spec(signal: &Signal, raw: i128) -> Result<u64, Misfit> {
     signal.bits_of(raw).ok_or_else(|| {
         let why = format!("the raw value {raw} does not fit the {} bits of `{}`", signal.place.width(), signal.name);
         let is_below = raw < 0 && !signal.encoding.numeral().is_signed();
-        let help = is_below.then(|| "numbers below 0 need `as: signed` or an `offset`".to_owned());
-        Misfit { why, help }
+        let below = is_below.then_some("numbers below 0 need `as: signed` or an `offset`");
+        Misfit { why, help: about_offset(signal).or(below).map(str::to_owned) }
     })
+}
+
+/// Says how an offset counts, which many write in raw steps.
+pub fn about_offset(signal: &Signal) -> Option<&'static str> {
+    let linear = signal.encoding.linear().filter(|linear| linear.offset != Rational::ZERO);
+    linear.map(|_| "the offset is physical: value = raw x scale + offset")
 }

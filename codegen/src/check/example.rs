@@ -9,6 +9,7 @@ mod unread;
 
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::encoding::about_offset;
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
 };
@@ -164,7 +165,8 @@ impl<'a> Checker<'a> {
                 let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
                 contradicted(meaning.path.at_value(), text, field)
             };
-            return Err(Box::new(diagnostic.help_if(unnamed_bits(&reading.value, &read))));
+            let about_offset = || about_offset(signal).map(str::to_owned);
+            return Err(Box::new(diagnostic.help_if(unnamed_bits(&reading.value, &read).or_else(about_offset))));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {

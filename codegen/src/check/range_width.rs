@@ -1,6 +1,7 @@
 #![doc = include_str!("../rules/range_width.md")]
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
+use crate::encoding::about_offset;
 use crate::model::{Protocol, Range, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
@@ -19,7 +20,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let place = diagnostics.written(&signal.doc.path, &["bytes", "bits"]);
             let field = format!("`{}.{}` has {}", message.name, signal.name, held(signal, holds));
             if let Some(diagnostic) = report(signal, place, &field, &exceeding) {
-                diagnostics.push_first(diagnostic.help(help(exceeding[0].0, holds)));
+                diagnostics.push_first(diagnostic.help(help(signal, exceeding[0].0, holds)));
             }
         }
     }
@@ -47,11 +48,14 @@ fn held(signal: &Signal, holds: Range) -> String {
     format!("{}, which hold {}..{}", number_of_bits(signal.place.width()), holds.minimum, holds.maximum)
 }
 
-fn help(range: Range, holds: Range) -> &'static str {
+fn help(signal: &Signal, range: Range, holds: Range) -> String {
     if range.minimum < Rational::ZERO && holds.minimum == Rational::ZERO {
-        return "numbers below 0 need `as: signed` or an `offset`; or correct the limits";
+        return "numbers below 0 need `as: signed` or an `offset`; or correct the limits".to_owned();
     }
-    "correct the limits, the scale or the place"
+    match about_offset(signal) {
+        Some(why) => format!("correct the limits, the scale, the offset or the place; {why}"),
+        None => "correct the limits, the scale or the place".to_owned(),
+    }
 }
 
 fn number_of_bits(width: u8) -> String {
