@@ -102,7 +102,7 @@ fn frames_as_cansend_takes_them_and_people_write_them_are_read() {
 fn a_capture_is_the_same_whichever_program_wrote_the_log() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let capture = |log: &str| {
-        // Plain lines do not say what the flags of an FD frame are, nor do both have one error frame.
+        // Plain lines do not say what the flags of an FD frame are. One error frame is not in both logs.
         let text = fs::read_to_string(self::folder().join(log)).expect("the log can be read");
         let lines =
             text.lines().filter(|line| !["20000004", "20000080", "18FF50E5"].iter().any(|id| line.contains(id)));

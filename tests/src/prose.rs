@@ -12,10 +12,19 @@ pub struct Sentence {
 }
 
 impl Sentence {
-    /// Counts the words. A piece of code is one word.
+    /// Counts the words, also those in pieces of code.
     #[must_use]
     pub fn words(&self) -> usize {
-        self.text.split_ascii_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
+        self.text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
+    }
+
+    /// Tests whether the sentence has these words one after the other, whatever their case.
+    #[must_use]
+    pub fn says(&self, words: &str) -> bool {
+        let text = self.text.to_lowercase();
+        let said: Vec<_> =
+            text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        format!(" {} ", said.join(" ")).contains(&format!(" {words} "))
     }
 }
 
@@ -83,7 +92,7 @@ fn of_markdown(text: &str, first: usize) -> impl Iterator<Item = Sentence> {
     blocks(text).into_iter().flat_map(move |(at, words)| split(&words, line(at)))
 }
 
-/// Returns each paragraph, heading, item and cell with the place where it begins. Code in them is one word.
+/// Returns each paragraph, heading, item and cell with the place where it begins. No sentence ends within code.
 fn blocks(text: &str) -> Vec<(usize, String)> {
     let mut blocks = vec![(0, String::new())];
     let mut is_code = false;
@@ -149,8 +158,15 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_of_code_is_one_word_however_long_it_is() {
-        assert_eq!(words("Write `let x = 1;` and `let y = 2;` here"), 5);
+    fn a_piece_of_code_has_its_own_words() {
+        assert_eq!(words("Write `let x = 1;` and `a. b` here"), 8);
+    }
+
+    #[test]
+    fn a_sentence_says_whole_words_in_any_case_and_between_any_signs() {
+        let [sentence] = &sentences("page.md", "(So *is* this, also `are` those.)")[..] else { panic!("one sentence") };
+        assert!(["so is", "this also are", "those"].iter().all(|words| sentence.says(words)));
+        assert!(["so are", "so is th", "o is"].iter().all(|words| !sentence.says(words)));
     }
 
     #[test]

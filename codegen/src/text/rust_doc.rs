@@ -70,8 +70,8 @@ fn plain(word: &str) -> String {
     }
 }
 
-/// Tests for `snake_case`, `CamelCase`, paths, and addresses of pages. The latter must not become
-/// links.
+/// Tests for `snake_case`, `CamelCase`, paths, and addresses of pages. Such an address must not
+/// become a link.
 fn looks_like_code(word: &str) -> bool {
     let bytes = word.as_bytes();
     let camel = bytes.windows(2).any(|pair| pair[0].is_ascii_lowercase() && pair[1].is_ascii_uppercase());

@@ -53,7 +53,7 @@ impl Choice {
         let places =
             sources.iter().flat_map(Source::places).filter(|place| self.has_words(part, place) && is_new(place));
         let mut places = self.sample(places.collect());
-        // Whoever asks for changes does not ask again for what was accepted.
+        // A run for changes does not ask again for what was accepted.
         places.retain(|place| self.since.is_none() || !accepted.has(place.mistake));
         Ok(places)
     }

@@ -1,5 +1,5 @@
-//! Prints random frames of a protocol as a log, the same ones each time, for programs that are compared with canspec: `frames any SPEC COUNT SEED`
-//! or `frames known SPEC COUNT SEED`.
+//! Prints random frames of a protocol as a log, the same ones each time, for programs that are
+//! compared with canspec. Called as `frames any SPEC COUNT SEED` or `frames known SPEC COUNT SEED`.
 //!
 //! One in four of `any` frames is whatever comes. canspec recognises the others, and all `known`
 //! ones. Of the known ones, one in 250 has an address that the document does not name.

@@ -140,7 +140,7 @@ keys! {
     /// Beside `unit`, `scale`, `offset` or `range` these are special values, and lie outside the
     /// range.
     Values "values": values: Map<String>, inherited;
-    /// Fields by name that are the parts of a word, or of a text with a `format`:
+    /// The parts of a word, or of a text with a `format`, by name:
     /// `{mode: {bits: 7..4}, stage: {bits: 3..0}}`; none if absent.
     Fields "fields": fields: Map<Field>, inherited;
     /// Bits of a status word by name, in place of `fields`: `{fan_fault: {bit: 3, severity: fault}}`; none if absent.

@@ -17,8 +17,8 @@ pub struct Message {
     /// because it travels as part of the set.
     #[serde(default)]
     pub access: Vec<String>,
-    /// The addressing modes that may be used, and who answers in each, in place of the accesses'
-    /// `answers`: `{single: one}`; those of the accesses if absent.
+    /// The addressing modes that may be used, and who answers in each: `{single: one}`. They replace
+    /// the `answers` of the accesses, which hold if absent.
     #[serde(default)]
     pub answers: Map<String>,
     /// Number of data bytes of its frames, 0 to 8: `4`; the protocol's `length` if absent. It never
