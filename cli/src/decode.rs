@@ -26,8 +26,8 @@ use summary::Summary;
 
 /// Decode a log of a CAN bus.
 ///
-/// The log is one of candump, of an SLCAN adapter, of Vector's programs (ASC), or a table in CSV. The lines show
-/// which. Unreadable lines are reported and skipped.
+/// The log comes from candump, an SLCAN adapter or Vector's programs (ASC), or is a table in CSV. canspec recognises
+/// the format. Unreadable lines are reported and skipped.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Decode {
@@ -37,7 +37,7 @@ pub struct Decode {
     model: Model,
     #[command(flatten)]
     choice: Choice,
-    /// A table, a JSON object a frame, or a row of CSV a signal.
+    /// A table, a JSON object for each frame, or a row of CSV for each signal.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// Counts and rates in place of the frames.

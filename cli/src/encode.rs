@@ -17,9 +17,8 @@ use crate::protocols::{self, One};
 
 /// Make a request, or turn decoded lines back into frames.
 ///
-/// A request is named by its message, preceded by the access where the message has several. Its signals are set as
-/// NAME=VALUE, with a unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become
-/// a log again.
+/// Name the message of the request, after its access if the message has several. Set signals as NAME=VALUE, with a
+/// unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become a log again.
 #[derive(Args)]
 #[command(
     verbatim_doc_comment,
@@ -42,7 +41,7 @@ pub struct Encode {
     /// The sender's address, instead of the one that the spec names.
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
     source: Option<i64>,
-    /// `[ACCESS] MESSAGE NAME=VALUE...`, or after --from the file.
+    /// `[ACCESS] MESSAGE NAME=VALUE...`, or the file after --from.
     #[arg(value_name = "WORD")]
     words: Vec<String>,
 }

@@ -20,8 +20,8 @@ use crate::settings::Settings;
 
 /// Find out which protocols a log holds.
 ///
-/// Each built-in protocol and each given spec is tried on every frame. The one that recognises most frames without a
-/// contradiction stands first, and those with the same numbers fit equally well. A contradiction is a note, such as
+/// Tries each built-in protocol and each given spec on every frame. The one that recognises most frames without a
+/// contradiction stands first. Protocols with the same numbers fit equally well. A contradiction is a note, such as
 /// a value outside its range or a reserved bit.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec identify --spec my.yaml bus.log")]
@@ -29,7 +29,7 @@ pub struct Identify {
     /// A spec file to try beside the built-in protocols; repeatable.
     #[arg(long, value_name = "FILE")]
     spec: Vec<PathBuf>,
-    /// A table, or a JSON object a protocol.
+    /// A table, or a JSON object for each protocol.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// The log; standard input without one, or for `-`.

@@ -9,7 +9,7 @@ use crate::settings::Settings;
 /// Chooses a device model.
 #[derive(Args)]
 pub struct Model {
-    /// Device model, by name or item number, whose layouts and limits count.
+    /// Device model, by name or item number; its layouts and limits apply.
     #[arg(long = "model", value_name = "NAME")]
     name: Option<String>,
 }
