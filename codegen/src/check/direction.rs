@@ -79,11 +79,11 @@ fn way_out(protocol: &Protocol, requests: &[&Known], replies: &[&Known]) -> Stri
     let refusing = match controller {
         Some(address) => {
             let written = format!("{{range: {address:#04X}..{address:#04X}, outside: refused, send: {address:#04X}}}");
-            format!("if no module has the address {address:#04X}, put the name of a type there: `{written}`")
+            format!("If no module has the address {address:#04X}, put the name of a type there: `{written}`")
         }
-        None => "if no module has a controller's address, write `outside: refused` in the controller's type".to_owned(),
+        None => "If no module has a controller's address, write `outside: refused` in the controller's type".to_owned(),
     };
-    format!("give one field different constants in requests and replies; or, {refusing}")
+    format!("give one field different constants in requests and replies. {refusing}")
 }
 
 /// A pattern of an addressing mode, and its key.
