@@ -12,6 +12,7 @@ pub trait Layout: Sized + 'static {
     const ENCODE: Encode<Self>;
 
     /// Reads the values from the data of such a frame.
+    #[inline(always)]
     fn decode(data: &Data) -> Self {
         Self::DECODE(data)
     }
@@ -22,6 +23,7 @@ pub trait Layout: Sized + 'static {
     ///
     /// Refuses values that the signals cannot hold. If `payload` keeps to limits, it also refuses
     /// values outside them.
+    #[inline(always)]
     fn encode(&self, payload: &mut Payload) -> Result<(), Error> {
         Self::ENCODE(self, payload)
     }

@@ -77,16 +77,19 @@ pub struct Recognised<M> {
 
 impl<M: Protocol> Recognised<M> {
     /// Returns the message of a request.
+    #[inline(always)]
     pub const fn request(exchange: &'static Exchange, message: M) -> Self {
         Self { exchange, kind: Kind::Request, message }
     }
 
     /// Returns the message of a reply.
+    #[inline(always)]
     pub const fn reply(exchange: &'static Exchange, message: M) -> Self {
         Self { exchange, kind: Kind::Reply, message }
     }
 
     /// Returns the message of a report.
+    #[inline(always)]
     pub const fn report(exchange: &'static Exchange, message: M) -> Self {
         Self { exchange, kind: Kind::Report, message }
     }
@@ -104,6 +107,7 @@ impl<M: Protocol> Recognised<M> {
         (self.has_length_of(frame), is_of_model, addressing.map(|addressing| addressing.rank()))
     }
 
+    #[inline(always)]
     pub(crate) fn has_length_of(&self, frame: &Frame) -> bool {
         usize::from(self.exchange.data_length()) == frame.length()
     }
@@ -141,6 +145,7 @@ impl fmt::Display for Problem {
 impl core::error::Error for Problem {}
 
 /// Tests the identifier, and tells whether it goes to a module.
+#[inline]
 pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
     let id = frame.raw_id();
     let has_width = frame.is_extended() == P::FRAME.is_extended();

@@ -14,11 +14,12 @@ use crate::{
 /// A recognised frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Received<P: Protocol> {
-    identifier: P::Identifier,
     content: P,
     exchange: &'static Exchange,
     kind: Kind,
     model: Option<u8>,
+    /// Another identifier than the frame's.
+    identifier: Option<P::Identifier>,
     frame: Frame,
 }
 
@@ -29,6 +30,7 @@ impl<P: Protocol> Received<P> {
     ///
     /// Says why the frame is not recognised. The tests have the order of [`Problem`], with one
     /// exception: selectors in the data are tested after the length.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         Self::decode_by(None, frame)
     }
@@ -39,22 +41,22 @@ impl<P: Protocol> Received<P> {
     /// # Errors
     ///
     /// The same as [`decode`](Self::decode).
+    #[inline]
     pub fn decode_for(model: impl Into<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         Self::decode_by(Some(model.into()), frame)
     }
 
+    #[inline]
     fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         let frame = classic(frame).ok_or(Problem::Frame)?;
         let is_request = is_to_module::<P>(&frame)?;
         match if is_request { P::request(&frame, model) } else { P::reply(&frame, model) } {
-            Some(recognised) if recognised.has_length_of(&frame) => Ok(Self::new(recognised, model, frame)),
+            Some(recognised) if recognised.has_length_of(&frame) => {
+                let Recognised { exchange, kind, message: content } = recognised;
+                Ok(Self { content, exchange, kind, model, identifier: None, frame })
+            }
             _ => Err(problem::<P>(is_request, &frame)),
         }
-    }
-
-    fn new(recognised: Recognised<P>, model: Option<u8>, frame: Frame) -> Self {
-        let Recognised { exchange, kind, message: content } = recognised;
-        Self { identifier: P::Identifier::FROM_RAW(frame.raw_id()), content, exchange, kind, model, frame }
     }
 
     /// Returns what a request asks for.
@@ -84,14 +86,15 @@ impl<P: Protocol> Received<P> {
     }
 
     /// Returns the identifier.
-    pub const fn identifier(&self) -> P::Identifier {
-        self.identifier
+    #[inline]
+    pub fn identifier(&self) -> P::Identifier {
+        self.identifier.unwrap_or_else(|| P::Identifier::FROM_RAW(self.frame.raw_id()))
     }
 
     /// Returns the same message under another identifier. [`encode`](Self::encode) makes its frame.
     #[must_use]
     pub const fn with_identifier(self, identifier: P::Identifier) -> Self {
-        Self { identifier, ..self }
+        Self { identifier: Some(identifier), ..self }
     }
 
     /// Returns other values under the same identifier. [`encode`](Self::encode) makes their frame.
@@ -117,7 +120,7 @@ impl<P: Protocol> Received<P> {
 
     /// Returns the addressing mode that the identifier shows.
     pub fn addressing(&self) -> Option<Addressing> {
-        self.exchange.addressing(P::MODES, self.kind, P::Identifier::TO_RAW(self.identifier))
+        self.exchange.addressing(P::MODES, self.kind, P::Identifier::TO_RAW(self.identifier()))
     }
 
     /// Tests whether the frame goes to the controller and shows an error code.
@@ -167,7 +170,7 @@ impl<P: Protocol> Received<P> {
     /// - addressing modes that the message does not have,
     /// - addresses that the document does not name.
     pub fn encode(&self) -> Result<Frame, Error> {
-        let id = P::Identifier::TO_RAW(self.identifier);
+        let id = P::Identifier::TO_RAW(self.identifier());
         let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());
         match Self::decode_by(self.model, &frame) {
             Ok(again) if again.is_like(self) => again.check_request(id).map(|()| frame),
@@ -179,15 +182,13 @@ impl<P: Protocol> Received<P> {
     fn is_like(&self, other: &Self) -> bool {
         let is_same_variant = discriminant(&self.content) == discriminant(&other.content);
         let is_same_frame = is_same_variant && self.kind == other.kind && self.exchange.is(other.exchange);
-        is_same_frame && self.identifier == other.identifier
+        is_same_frame && self.identifier() == other.identifier()
     }
 
     /// Writes the signals over the received data.
     fn data(&self) -> Result<Data, Error> {
-        let signals = self.signals().iter();
-        let data = signals.fold(self.frame.bytes(), |data, signal| cleared(data, signal.place()));
         let new = if self.kind.is_to_module() { Payload::within_limits } else { Payload::new };
-        let mut payload = new(self.exchange().message(), data).for_model(self.model);
+        let mut payload = new(self.exchange().message(), self.frame.bytes()).for_model(self.model);
         self.content.run(&mut payload)?;
         Ok(*payload.data())
     }
@@ -217,6 +218,7 @@ fn cleared(mut data: Data, place: Place) -> Data {
 }
 
 /// Says whether the length or the selectors are wrong.
+#[cold]
 fn problem<P: Protocol>(is_request: bool, frame: &Frame) -> Problem {
     let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(frame.raw_id());
     let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());

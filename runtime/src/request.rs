@@ -379,7 +379,11 @@ impl<P: Protocol, R> Request<P, R> {
 impl<P, R> fmt::Debug for Request<P, R> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut fields = formatter.debug_struct("Request");
-        fields.field("frame", &self.frame).field("replies", &self.replies()).field("refusal", &self.refusal()).finish()
+        fields
+            .field("frame", &self.frame)
+            .field("replies", &self.replies())
+            .field("refusal", &self.refusal())
+            .finish_non_exhaustive()
     }
 }
 

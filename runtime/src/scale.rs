@@ -130,7 +130,7 @@ const fn greatest_common_divisor(mut a: i64, mut b: i64) -> i64 {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "scaling is exact")]
+#[expect(clippy::float_cmp, clippy::cast_possible_truncation, reason = "scaling is exact")]
 mod tests {
     use super::*;
 

@@ -6,7 +6,7 @@ use canspec_codegen::emit::{self, Float, Options, Switch};
 use canspec_tests::{protocol, specs};
 
 /// Snapshots of one-feature specs stay short enough to be read.
-const LINES: usize = 330;
+const LINES: usize = 340;
 
 /// Returns the Rust of a spec.
 fn rust(path: &Path) -> String {

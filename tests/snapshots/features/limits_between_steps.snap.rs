@@ -25,12 +25,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { command: Self::COMMAND.read(id), sender: Self::SENDER.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::COMMAND.write(self.command) | Self::SENDER.write(self.sender)
     }
@@ -40,10 +42,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         Self::SENDER.of(id) == 0x0
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::SENDER.of(id) == 0x1
     }
@@ -225,6 +229,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CHARGER_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -236,6 +241,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

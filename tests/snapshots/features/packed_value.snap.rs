@@ -29,12 +29,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id), node: Self::NODE.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::DIRECTION.write(self.direction) | Self::COMMAND.write(self.command) | Self::NODE.write(self.node)
     }
@@ -44,10 +46,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         Self::DIRECTION.of(id) == 0x0
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::DIRECTION.of(id) == 0x1
     }
@@ -242,11 +246,13 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         (Identifier::COMMAND.of(id) == 0x06).then(|| Recognised::request(&Label::READ, Self::ReadLabel))
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -31,12 +31,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { direction: Self::DIRECTION.read(id), command: Self::COMMAND.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::DIRECTION.write(self.direction) | Self::COMMAND.write(self.command)
     }
@@ -46,10 +48,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         Self::DIRECTION.of(id) == 0x0
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::DIRECTION.of(id) == 0x1
     }
@@ -224,6 +228,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[DEVICE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
@@ -234,6 +239,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {

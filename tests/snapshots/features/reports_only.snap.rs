@@ -21,12 +21,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { battery: Self::BATTERY.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::BATTERY.write(self.battery)
     }
@@ -36,10 +38,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(_: u32) -> bool {
         false
     }
 
+    #[inline]
     fn is_to_controller(_: u32) -> bool {
         true
     }
@@ -118,6 +122,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         Some(Recognised::report(&Voltage::REPORT, Self::Voltage(Layout::decode(data))))

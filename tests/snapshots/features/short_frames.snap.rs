@@ -28,12 +28,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { function: Self::FUNCTION.read(id), node: Self::NODE.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::FUNCTION.write(self.function) | Self::NODE.write(self.node)
     }
@@ -43,10 +45,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         (Self::FUNCTION.of(id) == 0xF) || (Self::FUNCTION.of(id) == 0x6)
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::FUNCTION.of(id) == 0x5
     }
@@ -243,6 +247,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[ALL_MODE, SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -254,6 +259,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

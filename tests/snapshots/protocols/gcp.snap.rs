@@ -51,6 +51,7 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self {
             error: Self::ERROR.read(id),
@@ -63,6 +64,7 @@ impl Identifier {
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::ERROR.write(self.error)
             | Self::DEVICE.write(self.device)
@@ -76,10 +78,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_foreign(id: u32) -> bool {
         (0x0757_F800..=0x0757_F8FF).contains(&id)
     }
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         (!(0x80..=0xBB).contains(&Self::TARGET.of(id))
             && !(0xF0..=0xF8).contains(&Self::TARGET.of(id))
@@ -87,6 +91,7 @@ impl IdentifierFields for Identifier {
             || ((0x80..=0xBB).contains(&Self::TARGET.of(id)) && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)))
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         ((0xF0..=0xF8).contains(&Self::TARGET.of(id))
             && !(0x80..=0xBB).contains(&Self::SOURCE.of(id))
@@ -1827,6 +1832,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, MPPT_MODE, GROUP_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -1857,6 +1863,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -39,6 +39,7 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self {
             error: Self::ERROR.read(id),
@@ -51,6 +52,7 @@ impl Identifier {
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::ERROR.write(self.error)
             | Self::DEVICE.write(self.device)
@@ -64,14 +66,17 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_foreign(id: u32) -> bool {
         (0x0757_F800..=0x0757_F8FF).contains(&id)
     }
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         !(0xF0..=0xF8).contains(&Self::TARGET.of(id)) && (0xF0..=0xF8).contains(&Self::SOURCE.of(id))
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         (0xF0..=0xF8).contains(&Self::TARGET.of(id)) && !(0xF0..=0xF8).contains(&Self::SOURCE.of(id))
     }
@@ -2015,6 +2020,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -2042,6 +2048,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

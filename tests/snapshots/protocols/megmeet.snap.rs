@@ -65,6 +65,7 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self {
             protocol: Self::PROTOCOL.read(id),
@@ -77,6 +78,7 @@ impl Identifier {
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         0x0000_007E
             | Self::PROTOCOL.write(self.protocol)
@@ -91,14 +93,17 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_foreign(id: u32) -> bool {
         Self::PROTOCOL.of(id) == 0x22
     }
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         Self::SENDER.of(id) == 0x1
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::SENDER.of(id) == 0x0
     }
@@ -5675,6 +5680,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -5755,6 +5761,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

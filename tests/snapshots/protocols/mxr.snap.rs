@@ -73,6 +73,7 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self {
             protocol: Self::PROTOCOL.read(id),
@@ -85,6 +86,7 @@ impl Identifier {
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::PROTOCOL.write(self.protocol)
             | Self::POINT_TO_POINT.write(self.point_to_point)
@@ -98,6 +100,7 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         (!(0xC1..=0xFD).contains(&Self::TARGET.of(id)) && Self::TARGET.of(id) != 0xF0 && Self::SOURCE.of(id) == 0xF0)
             || (Self::POINT_TO_POINT.of(id) == 0x0
@@ -105,6 +108,7 @@ impl IdentifierFields for Identifier {
                 && Self::SOURCE.of(id) == 0xF0)
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0
     }
@@ -2379,6 +2383,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, EXTENDED_GROUP_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
@@ -2429,6 +2434,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {

@@ -37,12 +37,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { function: Self::FUNCTION.read(id), node: Self::NODE.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::FUNCTION.write(self.function) | Self::NODE.write(self.node)
     }
@@ -52,14 +54,17 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_foreign(id: u32) -> bool {
         Self::FUNCTION.of(id) == 0x0
     }
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         (Self::FUNCTION.of(id) == 0x6) || (Self::FUNCTION.of(id) == 0xF)
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         (Self::FUNCTION.of(id) == 0x5) || (Self::FUNCTION.of(id) == 0x1) || (Self::FUNCTION.of(id) == 0x2)
     }
@@ -1578,6 +1583,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[RECTIFIER_MODE, ALL_MODE, KEEP_ALIVE_MODE, MEASUREMENT_A_MODE, MEASUREMENT_B_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -1617,6 +1623,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -51,6 +51,7 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self {
             priority: Self::PRIORITY.read(id),
@@ -64,6 +65,7 @@ impl Identifier {
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::PRIORITY.write(self.priority)
             | Self::RESERVED.write(self.reserved)
@@ -78,10 +80,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         Self::TARGET.of(id) != 0xF3 && Self::SOURCE.of(id) == 0xF3
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::TARGET.of(id) == 0xF3 && Self::SOURCE.of(id) != 0xF3
     }
@@ -959,6 +963,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -970,6 +975,7 @@ impl Protocol for Message {
         Some(recognised)
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

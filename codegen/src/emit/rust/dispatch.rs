@@ -20,7 +20,8 @@ pub fn recognising(name: &str, Cases { arms, rest }: &Cases<Outcome>, selectors:
         let outcomes = known.by_ref().take(arms.len()).map(|arm| &arm.outcome).chain(rest);
         let reads = outcomes.fold(Reads::default(), |reads, outcome| reads.or(outcome.reads));
         let found = found(selectors, arms, rest, next.as_ref());
-        function(&part_name(name, index), reads, next.is_some(), &found)
+        let function = function(&part_name(name, index), reads, next.is_some(), &found);
+        if index == 0 { quote!(#[inline] #function) } else { function }
     });
     functions.collect()
 }

@@ -32,12 +32,14 @@ fn splitting(Identifier { fields, ones, .. }: &Identifier) -> TokenStream {
     quote! {
         /// Splits an identifier.
         #[must_use]
+        #[inline]
         pub fn from_raw(id: u32) -> Self {
             Self { #(#members: Self::#places.read(id)),* }
         }
 
         /// Joins the fields; bits that a field cannot hold are dropped.
         #[must_use]
+        #[inline]
         pub fn to_raw(self) -> u32 {
             #(#ones |)* #(Self::#places.write(self.#members))|*
         }
@@ -70,7 +72,7 @@ fn test(name: &str, test: &Test) -> TokenStream {
         1 => conditions.remove(0),
         _ => quote!(#((#conditions))||*),
     };
-    quote!(fn #name(#id: u32) -> bool { #condition })
+    quote!(#[inline] fn #name(#id: u32) -> bool { #condition })
 }
 
 fn all(tests: &[Comparison]) -> TokenStream {

@@ -34,12 +34,14 @@ impl Identifier {
 
     /// Splits an identifier.
     #[must_use]
+    #[inline]
     pub fn from_raw(id: u32) -> Self {
         Self { command: Self::COMMAND.read(id), target: Self::TARGET.read(id), source: Self::SOURCE.read(id) }
     }
 
     /// Joins the fields; bits that a field cannot hold are dropped.
     #[must_use]
+    #[inline]
     pub fn to_raw(self) -> u32 {
         Self::COMMAND.write(self.command) | Self::TARGET.write(self.target) | Self::SOURCE.write(self.source)
     }
@@ -49,10 +51,12 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
+    #[inline]
     fn is_to_module(id: u32) -> bool {
         Self::TARGET.of(id) != 0xF0 && Self::SOURCE.of(id) == 0xF0
     }
 
+    #[inline]
     fn is_to_controller(id: u32) -> bool {
         Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0
     }
@@ -239,6 +243,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[MODULE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    #[inline]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -246,6 +251,7 @@ impl Protocol for Message {
             .then(|| Recognised::request(&SetOutput::WRITE, Self::SetOutput(Layout::decode(data))))
     }
 
+    #[inline]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
