@@ -141,7 +141,7 @@ impl Pool {
 
     /// Takes a name. If it is taken already, it gets as many suffixes as it needs.
     pub fn take(&mut self, name: String, suffix: &str) -> Ident {
-        ident(&self.take_text(name, suffix))
+        ident(&self.take_text(unreserved(name), suffix))
     }
 
     /// Takes the name of a variant in texts: that of the spec, if serde would not make it of the variant.
@@ -169,10 +169,18 @@ pub fn is_word_of_rust(name: &str) -> bool {
 /// Makes an identifier. A keyword of Rust becomes a raw identifier.
 pub fn ident(name: &str) -> Ident {
     match name {
-        "self" | "super" | "crate" | "Self" | "_" => Ident::new(&format!("{name}_"), Span::call_site()),
+        _ if RESERVED.contains(&name) => Ident::new(&unreserved(name.to_owned()), Span::call_site()),
         _ if is_word_of_rust(name) => Ident::new_raw(name, Span::call_site()),
         _ => Ident::new(name, Span::call_site()),
     }
+}
+
+/// The words that no raw identifier can be.
+const RESERVED: [&str; 5] = ["self", "super", "crate", "Self", "_"];
+
+/// Returns a name that can be an identifier.
+fn unreserved(name: String) -> String {
+    if RESERVED.contains(&name.as_str()) { name + "_" } else { name }
 }
 
 /// Converts `set_output` to `SetOutput`.
@@ -256,6 +264,13 @@ mod tests {
         let mut constants = Pool::of_constants();
         let names = ["module_ADDRESS", "Module_ADDRESS", "frame"].map(|name| constants.constant(name).to_string());
         assert_eq!(names, ["MODULE_ADDRESS", "MODULE_ADDRESS_", "FRAME_"]);
+    }
+
+    #[test]
+    fn a_name_that_rust_reserves_meets_no_other_one() {
+        let mut pool = Pool::default();
+        let names = ["Self", "Self", "Self_", "gen", "gen"].map(|name| pool.take(name.to_owned(), "_").to_string());
+        assert_eq!(names, ["Self_", "Self__", "Self___", "r#gen", "gen_"]);
     }
 
     #[test]
