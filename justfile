@@ -41,8 +41,9 @@ editor:
 mutants *words:
     cargo run --quiet --bin canspec-mutants -- {{words}}
 
-# Rewrite the expected outputs: generated code, diagnostics, whole commands. Read the difference before you commit it.
+# Rewrite the expected outputs: generated code, diagnostics, whole commands, public interfaces. Read the difference before you commit it.
 bless:
     INSTA_UPDATE=always CANSPEC_BLESS=1 cargo test -p canspec-tests
     TRYCMD=overwrite cargo test -p canspec --test commands
+    cargo run --quiet --bin public_api -- --bless
     git diff --stat
