@@ -55,7 +55,7 @@ impl Text<'_> {
         let printable = text.bytes().all(|byte| byte == b' ' || byte.is_ascii_graphic());
         if !printable || text.len() > bytes {
             let name = &self.signal.name;
-            return Err(format!("`{text}` is not a text of at most {bytes} ASCII characters for `{name}`"));
+            return Err(format!("`{text}` is not a text of at most {bytes} printable ASCII characters for `{name}`"));
         }
         let filled = text.bytes().chain(std::iter::repeat_n(0, bytes - text.len()));
         Ok(filled.fold(0, |bits, byte| bits << 8 | u64::from(byte)))

@@ -33,7 +33,12 @@ pub fn report(protocol: &Protocol, example: &Example, decoded: &Decoded, place: 
             "correct the range; if the document shows a value outside it, add `out_of_range` to the example's `notes`";
         (format!("{range} leaves out {value}, which an example shows"), "this frame has the note `out_of_range`", help)
     } else {
-        let help = "correct the range, or take `out_of_range` out of the example's `notes`";
+        let has_models = !signal.model_ranges.is_empty() && example.model.is_none();
+        let help = if has_models {
+            "name the device model whose range is smaller as `model` of the example, or correct the range"
+        } else {
+            "correct the range, or take `out_of_range` out of the example's `notes`"
+        };
         (
             format!("{range} holds {value}, which an example shows outside it"),
             "this frame has no note `out_of_range`",
