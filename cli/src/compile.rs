@@ -80,7 +80,7 @@ impl Compile {
 
     fn compiled(&self) -> Result<Vec<Generated>, Failure> {
         let Some(name) = &self.protocol else { return self.builder().compile().map_err(Failure::Specs) };
-        let source = protocols::choose(Some(name), None)?;
+        let source = protocols::text_of(name)?;
         generate(source, &self.options()).map(|one| vec![one]).map_err(|refused| Failure::Specs(vec![refused]))
     }
 

@@ -82,9 +82,9 @@ impl Identify {
 
     fn candidates(&self) -> Result<Vec<Candidate>, Failure> {
         let specs = if self.spec.is_empty() { Settings::find()?.specs } else { self.spec.clone() };
-        let files = specs.iter().map(|path| protocols::file(path));
-        let sources = files.chain(SPECS.iter().map(protocols::text));
-        sources.map(|source| Ok(Candidate::new(protocols::load(source?)?))).collect()
+        let files = specs.iter().map(|path| protocols::load(protocols::file(path)?));
+        let protocols = files.chain(SPECS.iter().map(protocols::load_built_in));
+        protocols.map(|protocol| protocol.map(Candidate::new)).collect()
     }
 
     fn write(&self, candidates: &[Candidate]) -> io::Result<()> {

@@ -32,7 +32,7 @@ impl List {
         let mut out = BufWriter::new(output()?);
         match (self.protocol.as_deref(), self.spec.as_deref()) {
             (None, None) => built_in(&mut out)?,
-            (name, path) => messages(&mut out, &protocols::load(protocols::choose(name, path)?)?)?,
+            (name, path) => messages(&mut out, &protocols::load_chosen(name, path)?)?,
         }
         out.flush()?;
         Ok(Finish::Done)
@@ -42,7 +42,7 @@ impl List {
 fn built_in(out: &mut impl Write) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for spec in SPECS {
-        rows.push(protocol_row(spec.name, &protocols::load(protocols::text(spec)?)?));
+        rows.push(protocol_row(spec.name, &protocols::load_built_in(spec)?));
     }
     Ok(columns::write(out, &["NAME", "TITLE", "MESSAGES", "EXAMPLES", "VERSION"], "DOCUMENT", &rows)?)
 }

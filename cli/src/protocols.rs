@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use canspec_codegen::model::Protocol;
 use canspec_codegen::source::Source;
-use canspec_codegen::{Outcome, compile, nearest};
+use canspec_codegen::{Outcome, compile, compile_proven, nearest};
 use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
@@ -76,7 +76,7 @@ pub fn load_one(choice: &Settings) -> Result<Protocol, Failure> {
 /// Compiles all specs of a choice, which has at least one.
 pub fn load_all(choice: &Settings) -> Result<Vec<Protocol>, Failure> {
     let files = choice.specs.iter().map(|path| load(file(path)?));
-    let named = choice.protocols.iter().map(|name| load(text(built_in(name).map_err(|why| choice.refuse(&why))?)?));
+    let named = choice.protocols.iter().map(|name| load_built_in(built_in(name).map_err(|why| choice.refuse(&why))?));
     let protocols: Vec<Protocol> = files.chain(named).collect::<Result<_, _>>()?;
     if protocols.is_empty() { Err(nothing_chosen()) } else { Ok(protocols) }
 }
@@ -97,13 +97,18 @@ pub fn text(spec: &Spec) -> Result<Source, Failure> {
     source.map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
 }
 
-/// Returns the text of a built-in spec or else of a file.
-pub fn choose(name: Option<&str>, path: Option<&Path>) -> Result<Source, Failure> {
+/// Compiles a built-in spec or else a file.
+pub fn load_chosen(name: Option<&str>, path: Option<&Path>) -> Result<Protocol, Failure> {
     match (name, path) {
-        (Some(name), _) => text(built_in(name).map_err(Failure::Call)?),
-        (None, Some(path)) => file(path),
+        (Some(name), _) => load_built_in(built_in(name).map_err(Failure::Call)?),
+        (None, Some(path)) => load(file(path)?),
         (None, None) => Err(nothing_chosen()),
     }
+}
+
+/// Returns the text of the built-in spec of a name.
+pub fn text_of(name: &str) -> Result<Source, Failure> {
+    text(built_in(name).map_err(Failure::Call)?)
 }
 
 /// Finds a built-in spec, or says which names there are.
@@ -115,6 +120,11 @@ fn built_in(name: &str) -> Result<&'static Spec, String> {
 pub fn load(source: Source) -> Result<Protocol, Failure> {
     let Outcome { protocol, diagnostics, .. } = compile(source);
     protocol.filter(|_| !diagnostics.has_errors()).ok_or_else(|| Failure::Spec(Box::new(diagnostics)))
+}
+
+/// Compiles a built-in spec. The tests have proven that it has no mistakes.
+pub fn load_built_in(spec: &Spec) -> Result<Protocol, Failure> {
+    compile_proven(text(spec)?).map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
 }
 
 /// Says which names could be meant.
@@ -133,10 +143,23 @@ fn unknown(name: &str, specs: &[Spec]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Spec, unknown};
+    use canspec_codegen::{Outcome, compile};
+
+    use super::{Spec, load_built_in, text, unknown};
 
     const SPECS: &[Spec] =
         &[Spec { name: "acme", file: "acme.yaml", text: "" }, Spec { name: "zeta", file: "zeta.yaml", text: "" }];
+
+    #[test]
+    fn a_built_in_spec_has_nothing_that_lint_or_check_finds() {
+        for spec in canspec_specs::SPECS {
+            let source = text(spec).expect("a built-in spec is text");
+            let Outcome { protocol, diagnostics, .. } = compile(source);
+            assert_eq!(diagnostics.concise(), "", "{}", spec.name);
+            let unchecked = load_built_in(spec).expect("it is the same without lint and check");
+            assert_eq!(format!("{unchecked:?}"), format!("{:?}", protocol.expect("it has no errors")), "{}", spec.name);
+        }
+    }
 
     #[test]
     fn an_unknown_protocol_gets_the_nearest_name() {

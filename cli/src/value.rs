@@ -82,8 +82,7 @@ mod tests {
     /// Calls back with every signal of the built-in protocols, and how its values are made if that is by a scale.
     fn every_signal(mut work: impl FnMut(&Protocol, &Message, &Signal, SignalId)) {
         for spec in SPECS {
-            let source = protocols::text(spec).expect("a built-in spec is text");
-            let protocol = protocols::load(source).expect("a built-in spec has no errors");
+            let protocol = protocols::load_built_in(spec).expect("a built-in spec has no errors");
             for message in &protocol.messages {
                 message.signals.ids().for_each(|id| work(&protocol, message, &message.signals[id], id));
             }

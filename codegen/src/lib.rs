@@ -60,17 +60,28 @@ pub fn compile(source: Source) -> Outcome {
     compile_with_examples(source, None)
 }
 
+/// Compiles a spec that [`compile`] is known to accept, without the stages that only look for
+/// mistakes: lint and check.
+///
+/// # Errors
+///
+/// Says why the spec cannot be read or resolved.
+pub fn compile_proven(source: Source) -> Result<Protocol, Diagnostics> {
+    let file = file_name(&source);
+    let (spec, mut diagnostics) = syntax::parse(source);
+    let resolved = spec.and_then(|spec| resolve::resolve(&spec, file, &rules::RULES, &mut diagnostics));
+    resolved.filter(|_| !diagnostics.has_errors()).ok_or(diagnostics)
+}
+
 /// Compiles a spec. At least `percent` of a hundred messages must have an example.
 pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
-    let name = source.name().to_owned();
-    let file = name.rsplit(['/', '\\']).next().unwrap_or(&name).to_owned();
+    let (name, file) = (source.name().to_owned(), file_name(&source));
     let (spec, mut diagnostics) = syntax::parse(source);
     let usable = spec.filter(|_| !diagnostics.has_errors());
     if usable.is_some() {
         lint::lint(&mut diagnostics);
     }
-    let resolved =
-        usable.as_ref().and_then(|spec| resolve::resolve(spec, Text::new(&file), &rules::RULES, &mut diagnostics));
+    let resolved = usable.as_ref().and_then(|spec| resolve::resolve(spec, file, &rules::RULES, &mut diagnostics));
     let counts = match &resolved {
         Some(protocol) if !diagnostics.has_errors() => check::check(protocol, percent, &mut diagnostics),
         _ => check::Counts::default(),
@@ -79,4 +90,10 @@ pub fn compile_with_examples(source: Source, percent: Option<u8>) -> Outcome {
     let summary = Summary::new(&name, resolved.as_ref(), counts, &diagnostics);
     let protocol = resolved.filter(|_| !diagnostics.has_errors());
     Outcome { protocol, diagnostics, summary }
+}
+
+/// Returns the name of a spec's file without folders.
+fn file_name(source: &Source) -> Text {
+    let name = source.name();
+    Text::new(name.rsplit(['/', '\\']).next().unwrap_or(name))
 }

@@ -1,6 +1,7 @@
 //! The checked, target-neutral description of a protocol that both engines and every emitter read.
 //!
-//! Only the compiler makes these values: a [`Protocol`] that exists has passed every check.
+//! Only the compiler makes these values. A [`Protocol`] that exists has passed every check, unless
+//! [`compile_proven`](crate::compile_proven) made it, whose caller vouches for the spec.
 
 mod address;
 mod data;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// Bytes between two entries of the character index.
-const BLOCK: usize = 256;
+const BLOCK: usize = 32;
 
 pub(super) const BYTE_ORDER_MARK: char = '\u{FEFF}';
 
@@ -75,7 +75,7 @@ impl Source {
 /// Names the kind of a character that specs, file names and channel names must not hold.
 pub fn forbidden(character: char) -> Option<&'static str> {
     match character {
-        '\t' | '\n' => None,
+        ' '..='~' | '\t' | '\n' => None,
         '\r' => Some("carriage return"),
         BYTE_ORDER_MARK => Some("byte order mark"),
         '\u{85}' | '\u{2028}' | '\u{2029}' => Some("line separator that not every reader takes for one"),
