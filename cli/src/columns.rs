@@ -10,27 +10,38 @@ const NARROWEST: usize = 40;
 const WIDEST: usize = 80;
 const GAP: &str = "  ";
 
-/// The widths of all columns but the last.
-pub struct Columns(Vec<usize>);
+/// What fills up the widest cell.
+const BLANKS: &str = match str::from_utf8(&[b' '; WIDEST]) {
+    Ok(blanks) => blanks,
+    Err(_) => "",
+};
+
+/// The columns of a table.
+pub struct Columns {
+    /// The widths of all columns but the last.
+    widths: Vec<usize>,
+    /// The row that is being written.
+    row: String,
+}
 
 impl Columns {
     /// Makes columns as wide as their headings.
     pub fn new(headings: &[&str]) -> Self {
-        let mut columns = Self(vec![0; headings.len()]);
+        let mut columns = Self { widths: vec![0; headings.len()], row: String::new() };
         columns.widen(headings);
         columns
     }
 
     /// Makes room for these cells.
     pub fn widen(&mut self, cells: &[&str]) {
-        for (width, cell) in self.0.iter_mut().zip(cells) {
-            *width = (*width).max(cell.chars().count()).min(WIDEST);
+        for (column, cell) in self.widths.iter_mut().zip(cells) {
+            *column = (*column).max(width(cell)).min(WIDEST);
         }
     }
 
     /// Returns the width of the last column.
     pub fn room(&self) -> usize {
-        let left: usize = self.0.iter().map(|width| width + GAP.len()).sum();
+        let left: usize = self.widths.iter().map(|width| width + GAP.len()).sum();
         WIDTH.saturating_sub(left).max(NARROWEST)
     }
 
@@ -39,39 +50,82 @@ impl Columns {
     /// # Errors
     ///
     /// Where `out` cannot be written.
-    pub fn write(&mut self, out: &mut impl Write, cells: &[&str], last: &[String]) -> io::Result<()> {
-        self.widen(cells);
-        self.line(out, cells, last.first().map_or("", String::as_str))?;
-        last.iter().skip(1).try_for_each(|line| self.line(out, &[], line))
+    pub fn write(&mut self, out: &mut impl Write, cells: &[&str], last: &Lines) -> io::Result<()> {
+        let mut cells = cells;
+        for line in last.text.split('\n') {
+            self.line(out, cells, line)?;
+            cells = &[];
+        }
+        Ok(())
     }
 
-    fn line(&self, out: &mut impl Write, cells: &[&str], last: &str) -> io::Result<()> {
-        let mut line = String::new();
+    fn line(&mut self, out: &mut impl Write, cells: &[&str], last: &str) -> io::Result<()> {
+        let Self { widths, row } = self;
+        row.clear();
         let blanks = std::iter::repeat("");
-        for (width, cell) in self.0.iter().zip(cells.iter().copied().chain(blanks)) {
-            let blank = width.saturating_sub(cell.chars().count());
-            line.extend([cell, &" ".repeat(blank), GAP]);
+        for (column, cell) in widths.iter().zip(cells.iter().copied().chain(blanks)) {
+            row.push_str(cell);
+            row.push_str(&BLANKS[..column.saturating_sub(width(cell))]);
+            row.push_str(GAP);
         }
-        line.push_str(last);
-        writeln!(out, "{}", line.trim_end())
+        row.push_str(last);
+        row.truncate(row.trim_end().len());
+        row.push('\n');
+        out.write_all(row.as_bytes())
     }
 }
 
-/// Joins items with a separator into lines of at most `width` characters, unless an item alone is longer.
-pub fn wrap<S: AsRef<str>>(items: impl IntoIterator<Item = S>, separator: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    let length = |text: &str| text.chars().count();
-    for item in items {
-        let item = item.as_ref();
-        match lines.last_mut() {
-            Some(line) if length(line) + length(separator) + length(item) <= width => line.extend([separator, item]),
-            Some(line) => {
-                line.push_str(separator.trim_end());
-                lines.push(item.to_owned());
-            }
-            None => lines.push(item.to_owned()),
-        }
+/// Returns the number of characters of a text.
+fn width(text: &str) -> usize {
+    if text.is_ascii() { text.len() } else { text.chars().count() }
+}
+
+/// Items in lines of the last column.
+#[derive(Default)]
+pub struct Lines {
+    /// The lines, with a line feed between them.
+    text: String,
+    /// The width of the last line, unless the next item begins a new one.
+    width: Option<usize>,
+}
+
+impl Lines {
+    /// Takes all lines away.
+    pub fn clear(&mut self) {
+        self.text.clear();
+        self.width = None;
     }
+
+    /// Adds an item to the last line, or a new line if it would become wider than `room`.
+    pub fn add(&mut self, item: &str, separator: &str, room: usize) {
+        let length = width(item);
+        let joined = self.width.map(|line| line + width(separator) + length);
+        if let Some(joined) = joined.filter(|joined| *joined <= room) {
+            self.text.push_str(separator);
+            self.width = Some(joined);
+        } else {
+            if self.width.is_some() {
+                self.text.push_str(separator.trim_end());
+            }
+            if self.width.is_some() || !self.text.is_empty() {
+                self.text.push('\n');
+            }
+            self.width = Some(length);
+        }
+        self.text.push_str(item);
+    }
+
+    /// Adds the words of a sentence, which begins a line.
+    pub fn add_sentence(&mut self, text: &str, room: usize) {
+        self.width = None;
+        text.split(' ').for_each(|word| self.add(word, " ", room));
+    }
+}
+
+/// Joins items with a separator into lines of at most `room` characters, unless an item alone is longer.
+pub fn wrap<S: AsRef<str>>(items: impl IntoIterator<Item = S>, separator: &str, room: usize) -> Lines {
+    let mut lines = Lines::default();
+    items.into_iter().for_each(|item| lines.add(item.as_ref(), separator, room));
     lines
 }
 
@@ -85,7 +139,7 @@ pub fn write(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) 
     for row in rows {
         columns.widen(&row.cells());
     }
-    columns.write(out, headings, &[last.to_owned()])?;
+    columns.write(out, headings, &wrap([last], "", 0))?;
     let room = columns.room();
     rows.iter().try_for_each(|row| columns.write(out, &row.cells(), &wrap(&row.last, row.separator, room)))
 }
@@ -143,8 +197,18 @@ mod tests {
 
     #[test]
     fn items_share_a_line_as_long_as_they_fit() {
-        assert_eq!(wrap(["aa", "bb", "cc"], ", ", 6), ["aa, bb,", "cc"]);
-        assert_eq!(wrap(["°C°C", "m"], "  ", 7), ["°C°C  m"]);
-        assert_eq!(wrap(["too long", "m"], " ", 3), ["too long", "m"]);
+        assert_eq!(wrap(["aa", "bb", "cc"], ", ", 6).text, "aa, bb,\ncc");
+        assert_eq!(wrap(["°C°C", "m"], "  ", 7).text, "°C°C  m");
+        assert_eq!(wrap(["too long", "m"], " ", 3).text, "too long\nm");
+    }
+
+    #[test]
+    fn a_sentence_begins_a_line_of_its_own() {
+        let mut lines = wrap(["a", "b"], " ", 9);
+        lines.add_sentence("c d", 9);
+        assert_eq!(lines.text, "a b\nc d");
+        lines.clear();
+        lines.add_sentence("c d e", 3);
+        assert_eq!(lines.text, "c d\ne");
     }
 }

@@ -56,6 +56,9 @@ const EXAMPLES: &str = "Examples:
   canspec decode --protocol NAME --message output --signal voltage --format csv bus.log
   canspec decode --to pcapng bus.pcapng bus.log";
 
+/// Bytes that are written at once, if the input does not pause.
+const BUFFER: usize = 1 << 16;
+
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     Text,
@@ -104,7 +107,7 @@ impl Decode {
         self.choice.check(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
         let mut printer = self.printer(&protocols)?;
-        let mut out = BufWriter::new(output()?);
+        let mut out = BufWriter::with_capacity(BUFFER, output()?);
         let mut reader = Reader::default();
         let input = Input::open(self.file.as_deref())?;
         let input = if self.summary { input.summed_up() } else { input };

@@ -6,6 +6,14 @@ mod output;
 pub use input::Content;
 pub use output::{Outcome, bit_names, write};
 
+use serde::{Serialize, Serializer};
+
 /// The members of a JSON object, in order.
 #[derive(Debug, Default)]
 pub struct Members<K, V>(pub Vec<(K, V)>);
+
+impl<K: Serialize, V: Serialize> Serialize for Members<K, V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}

@@ -9,7 +9,6 @@ mod slcan;
 mod write;
 
 use canspec_codegen::interpret::Frame;
-use serde_json::value::RawValue;
 
 pub use part::{channel, is_finite, is_number};
 pub use write::{hexadecimal, identifier_digits, identifier_text, write};
@@ -18,7 +17,7 @@ pub use write::{hexadecimal, identifier_digits, identifier_text, write};
 #[derive(Debug)]
 pub struct Entry<'a> {
     /// The stamp as written, but for leading zeros.
-    pub time: Option<Box<RawValue>>,
+    pub time: Option<part::Stamp<'a>>,
     /// The name of the interface.
     pub channel: Option<&'a str>,
     pub frame: Frame,

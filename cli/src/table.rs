@@ -1,11 +1,12 @@
 //! The table of frames that `decode` writes for people.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
+use canspec_codegen::interpret::{Decoded, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressPattern, Kind, Mode, Protocol};
 
-use crate::columns::{Columns, wrap};
+use crate::columns::{Columns, Lines, wrap};
 use crate::line::Outcome;
 use crate::log;
 use crate::value;
@@ -24,12 +25,24 @@ pub struct Table {
     /// Every row says by which protocol it was read.
     several: bool,
     started: bool,
+    row: Row,
+}
+
+/// The texts of a row that are made for it.
+#[derive(Default)]
+struct Row {
+    address: String,
+    message: String,
+    lines: Lines,
+    /// The signal or note that is added next.
+    item: String,
 }
 
 impl Table {
     /// Makes columns that the names of these protocols fit.
     pub fn new(protocols: &[Protocol]) -> Self {
-        let mut table = Self { columns: Columns::new(&HEADINGS), several: protocols.len() > 1, started: false };
+        let (columns, several) = (Columns::new(&HEADINGS), protocols.len() > 1);
+        let mut table = Self { columns, several, started: false, row: Row::default() };
         for protocol in protocols {
             table.make_room(protocol);
         }
@@ -49,7 +62,9 @@ impl Table {
     }
 
     fn message(&self, protocol: &Protocol, name: &str) -> String {
-        if self.several { format!("{}.{name}", protocol.name) } else { name.to_owned() }
+        let mut text = String::new();
+        message(&mut text, self.several.then_some(protocol), name);
+        text
     }
 
     /// Writes a frame as a row, with its notes below.
@@ -58,31 +73,48 @@ impl Table {
     ///
     /// Where `out` cannot be written.
     pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
-        let (address, access, message) = self.names(outcome);
+        let Self { columns, several, started, row } = self;
+        let access = row.name(outcome, several.then_some(outcome.protocol));
         let identifier = log::identifier_text(outcome.frame);
         let time = outcome.time.map_or("", |time| time.get());
-        let cells = [time, outcome.channel.unwrap_or(""), &identifier, &address, access, &message];
-        self.columns.widen(&cells);
-        if !self.started {
-            self.columns.widen(&[&grown(time)]);
-            self.columns.write(out, &HEADINGS, &["SIGNALS".to_owned()])?;
-            self.started = true;
+        let cells = [time, outcome.channel.unwrap_or(""), &identifier, &row.address, access, &row.message];
+        columns.widen(&cells);
+        if !*started {
+            columns.widen(&[&grown(time)]);
+            columns.write(out, &HEADINGS, &wrap(["SIGNALS"], "", 0))?;
+            *started = true;
         }
-        let lines = lines(outcome, self.columns.room());
-        self.columns.write(out, &cells, &lines)
+        row.lines.clear();
+        lines(&mut row.lines, &mut row.item, outcome, columns.room());
+        columns.write(out, &cells, &row.lines)
     }
+}
 
-    /// Returns what stands under address, access and message.
-    fn names<'a>(&self, outcome: &Outcome<'a>) -> (String, &'a str, String) {
+impl Row {
+    /// Sets address and message, and returns the access.
+    fn name<'a>(&mut self, outcome: &Outcome<'a>, named: Option<&Protocol>) -> &'a str {
         let protocol = outcome.protocol;
+        self.address.clear();
+        self.message.clear();
         match outcome.decoded {
             Ok(decoded) => {
-                let message = self.message(protocol, &protocol.messages[decoded.message].name);
-                (address(protocol, decoded, outcome.frame.id), &protocol.accesses[decoded.access].name, message)
+                address(&mut self.address, protocol, decoded, outcome.frame.id);
+                message(&mut self.message, named, &protocol.messages[decoded.message].name);
+                &protocol.accesses[decoded.access].name
             }
-            Err(_) => ("?".to_owned(), "", self.message(protocol, "?")),
+            Err(_) => {
+                self.address.push('?');
+                message(&mut self.message, named, "?");
+                ""
+            }
         }
     }
+}
+
+/// Adds the name of a message, behind that of its protocol if one is given.
+fn message(text: &mut String, protocol: Option<&Protocol>, name: &str) {
+    protocol.iter().for_each(|protocol| text.extend([&protocol.name, "."]));
+    text.push_str(name);
 }
 
 /// Fills up a stamp to the width that later ones may have.
@@ -100,72 +132,77 @@ fn widest_address(protocol: &Protocol, mode: &Mode) -> String {
     }
 }
 
-/// Returns an arrow and the addresses of a frame, but for those that everybody uses.
-fn address(protocol: &Protocol, decoded: &Decoded, id: u32) -> String {
-    let arrow = match decoded.kind {
-        Kind::Request => "→",
-        Kind::Reply => "←",
-        Kind::Report => "⇐",
-    };
-    let Some(travel) = decoded.addressing else { return format!("{arrow} ?") };
+/// Adds an arrow and the addresses of a frame, but for those that everybody uses.
+fn address(text: &mut String, protocol: &Protocol, decoded: &Decoded, id: u32) {
+    text.push_str(match decoded.kind {
+        Kind::Request => "→ ",
+        Kind::Reply => "← ",
+        Kind::Report => "⇐ ",
+    });
+    let Some(travel) = decoded.addressing else { return text.push('?') };
     let mode = &protocol[travel.mode];
-    let pattern = mode.pattern(decoded.kind, travel.who);
-    let addresses = pattern.map_or(Vec::new(), |pattern| addresses(protocol, pattern, id));
-    if addresses.is_empty() { format!("{arrow} {}", mode.name) } else { format!("{arrow} {}", addresses.join(", ")) }
+    let alone = text.len();
+    mode.pattern(decoded.kind, travel.who).iter().for_each(|pattern| addresses(text, protocol, pattern, id));
+    if text.len() == alone {
+        text.push_str(&mode.name);
+    }
 }
 
-fn addresses(protocol: &Protocol, pattern: &AddressPattern, id: u32) -> Vec<String> {
-    let mut addresses = Vec::new();
+fn addresses(text: &mut String, protocol: &Protocol, pattern: &AddressPattern, id: u32) {
+    let mut separator = "";
     for address in &pattern.addresses {
         let address_type = &protocol.address_types[address.address_type];
         let number = address_type.number(protocol.identifier.fields[address.field].get(id));
         if address_type.send != Some(number) {
-            addresses.push(format!("{} {number}", address_type.name));
+            text.extend([separator, &address_type.name]);
+            let _ = write!(text, " {number}");
+            separator = ", ";
         }
     }
-    addresses
 }
 
-/// Returns the lines of the last column.
-fn lines(outcome: &Outcome<'_>, room: usize) -> Vec<String> {
+/// Adds the lines of the last column. `item` is room to write in.
+fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usize) {
     match outcome.decoded {
-        Ok(decoded) if decoded.is_error_reply() => refusal(outcome, decoded, room),
+        Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded, room),
         Ok(decoded) => {
-            let signals = decoded.signals.iter().map(|reading| signal(outcome.protocol, decoded, reading));
-            let texts: Vec<String> = signals.map(|text| text + GAP).collect();
-            let pieces = texts.iter().flat_map(|text| text.split_inclusive(", "));
-            let mut lines = wrap(pieces, "", room + 1);
-            lines.extend(decoded.notes.iter().flat_map(|Note { rule, text }| remark(rule.name(), text, room)));
-            lines
+            for reading in &decoded.signals {
+                item.clear();
+                signal(item, outcome.protocol, decoded, reading);
+                item.push_str(GAP);
+                item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
+            }
+            decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
         }
         Err(Unrecognised { problem, text, .. }) => {
             let data = log::hexadecimal(&outcome.frame.data);
             let separated = if data.is_empty() { data } else { data + GAP };
-            wrap(format!("{separated}! {}: {text}", problem.name()).split(' '), " ", room)
+            lines.add_sentence(&format!("{separated}! {}: {text}", problem.name()), room);
         }
     }
 }
 
-/// Returns the data of a frame that reports an error in place of its values, and why.
-fn refusal(outcome: &Outcome<'_>, decoded: &Decoded, room: usize) -> Vec<String> {
+/// Adds the data of a frame that reports an error in place of its values, and why.
+fn refusal(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, decoded: &Decoded, room: usize) {
     let what = if decoded.kind == Kind::Reply { "refused" } else { "in error" };
     let data = log::hexadecimal(&outcome.frame.data);
     let separator = if data.is_empty() { "" } else { ", data " };
-    let mut lines = vec![format!("{what}{separator}{data}")];
+    lines.add(&format!("{what}{separator}{data}"), "", room);
     let notes = decoded.notes.iter().filter(|note| !note.is_about_value());
-    lines.extend(notes.flat_map(|Note { rule, text }| remark(rule.name(), text, room)));
-    lines
+    notes.for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
 }
 
-fn remark(rule: &str, text: &str, room: usize) -> Vec<String> {
-    wrap(format!("! {rule}: {text}").split(' '), " ", room)
+fn remark(lines: &mut Lines, item: &mut String, rule: &str, text: &str, room: usize) {
+    item.clear();
+    item.extend(["! ", rule, ": ", text]);
+    lines.add_sentence(item, room);
 }
 
-fn signal(protocol: &Protocol, decoded: &Decoded, reading: &Reading) -> String {
+fn signal(text: &mut String, protocol: &Protocol, decoded: &Decoded, reading: &Reading) {
     let signal = &protocol.messages[decoded.message].signals[reading.signal];
-    let value = value::shown(protocol, signal, reading);
-    match (&reading.value, signal.unit) {
-        (Value::Integer(_) | Value::Number(_), Some(unit)) => format!("{} {value} {}", signal.name, unit.symbol),
-        _ => format!("{} {value}", signal.name),
+    text.extend([&signal.name, " "]);
+    value::write(text, protocol, signal, reading);
+    if let (Value::Integer(_) | Value::Number(_), Some(unit)) = (&reading.value, signal.unit) {
+        text.extend([" ", unit.symbol]);
     }
 }

@@ -1,5 +1,7 @@
 //! Values as people read them in a table; JSON has the exact ones.
 
+use std::fmt::{self, Write};
+
 use canspec_codegen::interpret::{Reading, Value};
 use canspec_codegen::model::{Linear, Protocol, Signal};
 
@@ -8,18 +10,67 @@ use crate::line::bit_names;
 /// More decimals than any scale needs that `check` accepts.
 const MOST_DECIMALS: usize = 18;
 
-/// Returns the value of a signal without its unit.
-pub fn shown(protocol: &Protocol, signal: &Signal, reading: &Reading) -> String {
-    match &reading.value {
-        Value::None => format!("? (raw 0x{:X})", reading.bits),
-        Value::Integer(number) => number.to_string(),
+/// Adds the value of a signal, without its unit, to a text.
+pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &Reading) {
+    let _ = match &reading.value {
+        Value::None => write!(text, "? (raw 0x{:X})", reading.bits),
+        Value::Integer(number) => write!(text, "{number}"),
         Value::Number(number) => match signal.encoding.linear() {
-            Some(linear) => format!("{number:.0$}", decimals(&linear)),
-            None => single(*number),
+            Some(linear) => fixed(text, *number, decimals(&linear)),
+            None => single(text, *number),
         },
-        Value::Name(text) | Value::Text(text) => text.escape_debug().to_string(),
-        Value::Status { set, unknown } => status(&bit_names(protocol, signal, set), *unknown),
+        Value::Name(value) | Value::Text(value) => escaped(text, value),
+        Value::Status { set, unknown } => status(text, bit_names(protocol, signal, set), *unknown),
+    };
+}
+
+fn escaped(text: &mut String, value: &str) -> fmt::Result {
+    let is_plain = |byte| matches!(byte, b' '..=b'~') && !matches!(byte, b'"' | b'\'' | b'\\');
+    if value.bytes().all(is_plain) { text.write_str(value) } else { write!(text, "{}", value.escape_debug()) }
+}
+
+/// Writes a number with so many decimals.
+///
+/// Values lie on the grid of their scale. So a value is nearly always next to a whole number of its last decimal, as
+/// an integer, which is cheap to write.
+fn fixed(text: &mut String, number: f64, decimals: usize) -> fmt::Result {
+    const EXACT: f64 = (1_u64 << 50) as f64;
+    let scaled = POWERS.get(decimals).map_or(f64::NAN, |power| number.abs() * power);
+    let whole = scaled.round();
+    // The product is off by less than an eighth.
+    if whole < EXACT && (scaled - whole).abs() < 0.25 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is a small whole number")]
+        digits(text, number.is_sign_negative(), whole as u64, decimals)
+    } else {
+        write!(text, "{number:.decimals$}")
     }
+}
+
+/// Powers of ten.
+const POWERS: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+
+/// Writes a number of units of the last decimal.
+fn digits(text: &mut String, is_negative: bool, number: u64, decimals: usize) -> fmt::Result {
+    let mut digits = [b'0'; 24];
+    let (mut rest, mut start) = (number, digits.len());
+    let mut put = |byte: u8| {
+        start -= 1;
+        digits[start] = byte;
+    };
+    for place in 0.. {
+        if rest == 0 && place > decimals {
+            break;
+        }
+        if place == decimals && decimals > 0 {
+            put(b'.');
+        }
+        put(b'0' + u8::try_from(rest % 10).unwrap_or(0));
+        rest /= 10;
+    }
+    if is_negative {
+        put(b'-');
+    }
+    text.write_str(str::from_utf8(&digits[start..]).unwrap_or_default())
 }
 
 /// Returns the fewest decimals with which each value still leads back to its own raw number.
@@ -39,16 +90,23 @@ fn decimals(linear: &Linear) -> usize {
     (0..MOST_DECIMALS).find(suffices).unwrap_or(MOST_DECIMALS)
 }
 
-/// Returns the shortest text of a number that came as an `f32`.
+/// Writes the shortest text of a number that came as an `f32`.
 #[expect(clippy::cast_possible_truncation, reason = "it was an `f32` on the bus")]
-fn single(number: f64) -> String {
-    format!("{:?}", number as f32)
+fn single(text: &mut String, number: f64) -> fmt::Result {
+    write!(text, "{:?}", number as f32)
 }
 
-fn status(set: &[&str], unknown: u64) -> String {
-    let unknown = (unknown != 0).then(|| format!("0x{unknown:X}"));
-    let bits: Vec<&str> = set.iter().copied().chain(unknown.as_deref()).collect();
-    format!("{{{}}}", bits.join(", "))
+fn status<'a>(text: &mut String, set: impl Iterator<Item = &'a str>, unknown: u64) -> fmt::Result {
+    let mut separator = "{";
+    for name in set {
+        text.extend([separator, name]);
+        separator = ", ";
+    }
+    if unknown != 0 {
+        write!(text, "{separator}0x{unknown:X}")?;
+        separator = ", ";
+    }
+    text.write_str(if separator == "{" { "{}" } else { "}" })
 }
 
 #[cfg(test)]
@@ -98,7 +156,8 @@ mod tests {
                 if !matches!(value, Value::Integer(_) | Value::Number(_)) {
                     continue;
                 }
-                let text = shown(protocol, signal, &Reading { signal: id, bits, value });
+                let mut text = String::new();
+                write(&mut text, protocol, signal, &Reading { signal: id, bits, value });
                 let found = back(protocol, message, signal, &text);
                 assert_eq!(found, Some(bits), "{}.{}.{}: {text}", protocol.name, message.name, signal.name);
                 numbers += 1;
@@ -122,6 +181,20 @@ mod tests {
             rounded += 1;
         });
         assert!(rounded >= 50, "{rounded} signals");
+    }
+
+    #[test]
+    fn a_number_has_the_digits_that_the_standard_library_writes() {
+        let steps = (0..200_000_u32).map(|step| f64::from(step.wrapping_mul(2_654_435_761)) / 1000.0);
+        let ties = (0..4000).map(|step| f64::from(step) / 32.0);
+        let edges = [0.0, 0.05, 0.45, 0.999_95, 1e15, 1_125_899_906_842.625, 1e17, 1e300, f64::INFINITY, f64::NAN];
+        for number in steps.chain(ties).chain(edges).flat_map(|number| [number, -number]) {
+            for decimals in [0, 1, 2, 3, 4, 9, 10, 12] {
+                let mut text = String::new();
+                fixed(&mut text, number, decimals).expect("a string takes everything");
+                assert_eq!(text, format!("{number:.decimals$}"), "{number:?} {decimals}");
+            }
+        }
     }
 
     #[test]

@@ -66,7 +66,7 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
         Value::Integer(number) => number.to_string(),
         Value::Number(number) => format!("{number:?}"),
         Value::Name(text) | Value::Text(text) => text.clone(),
-        Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).join(" "),
+        Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).collect::<Vec<_>>().join(" "),
     };
     let unit = signal.unit.map_or("", |unit| unit.symbol);
     [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit.to_owned()]

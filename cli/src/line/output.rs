@@ -2,12 +2,11 @@
 
 use std::io::{self, Write};
 
-use canspec_codegen::interpret::{Decoded, Frame, Note, Reading, Unrecognised, Value};
-use canspec_codegen::model::{FieldId, Message, Protocol, SelectorId, Signal, Table};
-use serde::{Serialize, Serializer};
+use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
+use canspec_codegen::model::{FieldId, Protocol, SelectorId, Signal, Table};
+use serde::Serialize;
 use serde_json::value::RawValue;
 
-use super::Members;
 use crate::log;
 
 /// A frame of a log, and what a protocol makes of it.
@@ -26,194 +25,166 @@ pub struct Outcome<'a> {
 ///
 /// Where `out` cannot be written.
 pub fn write(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
+    head(out, outcome)?;
     match outcome.decoded {
-        Ok(decoded) => serde_json::to_writer(&mut *out, &Recognised::new(outcome, decoded))?,
-        Err(unrecognised) => serde_json::to_writer(&mut *out, &Unknown::new(outcome, unrecognised))?,
+        Ok(decoded) => recognised(out, outcome.protocol, decoded)?,
+        Err(unrecognised) => unknown(out, outcome.protocol, unrecognised)?,
     }
-    writeln!(out)
+    out.write_all(b"}\n")
 }
 
-#[derive(Serialize)]
-struct Head<'a> {
-    line: usize,
-    time: Option<&'a RawValue>,
-    channel: Option<&'a str>,
-    id: String,
-    data: String,
-    protocol: &'a str,
+fn head(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
+    out.write_all(b"{\"line\":")?;
+    number(out, outcome.line)?;
+    out.write_all(b",\"time\":")?;
+    out.write_all(outcome.time.map_or("null", RawValue::get).as_bytes())?;
+    out.write_all(b",\"channel\":")?;
+    optional(out, outcome.channel)?;
+    out.write_all(b",\"id\":\"")?;
+    out.write_all(log::identifier_text(outcome.frame).as_bytes())?;
+    out.write_all(b"\",\"data\":\"")?;
+    out.write_all(log::hexadecimal(&outcome.frame.data).as_bytes())?;
+    out.write_all(b"\",\"protocol\":")?;
+    text(out, &outcome.protocol.name)
 }
 
-impl<'a> Head<'a> {
-    fn new(outcome: &Outcome<'a>) -> Self {
-        Self {
-            line: outcome.line,
-            time: outcome.time,
-            channel: outcome.channel,
-            id: log::identifier_text(outcome.frame),
-            data: log::hexadecimal(&outcome.frame.data),
-            protocol: &outcome.protocol.name,
-        }
+fn recognised(out: &mut impl Write, protocol: &Protocol, decoded: &Decoded) -> io::Result<()> {
+    let message = &protocol.messages[decoded.message];
+    out.write_all(b",\"message\":")?;
+    text(out, &message.name)?;
+    out.write_all(b",\"access\":")?;
+    text(out, &protocol.accesses[decoded.access].name)?;
+    out.write_all(b",\"kind\":")?;
+    text(out, decoded.kind.name())?;
+    out.write_all(b",\"addressing\":")?;
+    optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()))?;
+    selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
+    out.write_all(b",\"signals\":")?;
+    let signals = decoded.signals.iter().map(|reading| {
+        let signal = &message.signals[reading.signal];
+        (signal.name.as_str(), (signal, reading))
+    });
+    object(out, signals, |out, (signal, reading)| value(out, protocol, signal, reading))?;
+    let reserved = decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
+    if reserved.iter().any(|byte| *byte != 0) {
+        // It has as many digits as the data.
+        out.write_all(b",\"reserved\":")?;
+        text(out, &log::hexadecimal(reserved))?;
     }
+    out.write_all(b",\"notes\":")?;
+    list(out, &decoded.notes, |out, note| {
+        out.write_all(b"{\"rule\":")?;
+        text(out, note.rule.name())?;
+        out.write_all(b",\"text\":")?;
+        text(out, &note.text)?;
+        out.write_all(b"}")
+    })
 }
 
-#[derive(Serialize)]
-struct Recognised<'a> {
-    #[serde(flatten)]
-    head: Head<'a>,
-    message: &'a str,
-    access: &'a str,
-    kind: &'static str,
-    addressing: Option<&'a str>,
-    identifier: Members<&'a str, u32>,
-    selectors: Members<&'a str, u64>,
-    signals: Members<&'a str, SignalObject<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reserved: Option<String>,
-    notes: Vec<NoteObject<'a>>,
+fn unknown(out: &mut impl Write, protocol: &Protocol, unrecognised: &Unrecognised) -> io::Result<()> {
+    out.write_all(b",\"message\":null,\"problem\":{\"kind\":")?;
+    text(out, unrecognised.problem.name())?;
+    out.write_all(b",\"text\":")?;
+    text(out, &unrecognised.text)?;
+    out.write_all(b"}")?;
+    selectors(out, protocol, &unrecognised.identifier, &unrecognised.selectors)
 }
 
-impl<'a> Recognised<'a> {
-    fn new(outcome: &Outcome<'a>, decoded: &'a Decoded) -> Self {
-        let protocol = outcome.protocol;
-        let message = &protocol.messages[decoded.message];
-        Self {
-            head: Head::new(outcome),
-            message: &message.name,
-            access: &protocol.accesses[decoded.access].name,
-            kind: decoded.kind.name(),
-            addressing: decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()),
-            identifier: identifier(protocol, &decoded.identifier),
-            selectors: selectors(protocol, &decoded.selectors),
-            signals: signals(protocol, message, &decoded.signals),
-            reserved: reserved(decoded),
-            notes: decoded.notes.iter().map(NoteObject::new).collect(),
-        }
+/// Writes the fields of the identifier, and the selectors of the data bytes.
+fn selectors(
+    out: &mut impl Write,
+    protocol: &Protocol,
+    identifier: &Table<FieldId, u32>,
+    selectors: &[(SelectorId, u64)],
+) -> io::Result<()> {
+    out.write_all(b",\"identifier\":")?;
+    let names = protocol.identifier.fields.iter().map(|field| field.name.as_str());
+    object(out, names.zip(identifier.iter().copied()), number)?;
+    out.write_all(b",\"selectors\":")?;
+    object(out, selectors.iter().map(|&(selector, value)| (protocol[selector].name.as_str(), value)), number)
+}
+
+fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &Reading) -> io::Result<()> {
+    out.write_all(b"{\"raw\":")?;
+    if let Value::Status { set, unknown } = &reading.value {
+        number(out, reading.bits)?;
+        out.write_all(b",\"set\":")?;
+        list(out, bit_names(protocol, signal, set), text)?;
+        out.write_all(b",\"unknown\":")?;
+        number(out, *unknown)?;
+        return out.write_all(b"}");
     }
-}
-
-#[derive(Serialize)]
-struct Unknown<'a> {
-    #[serde(flatten)]
-    head: Head<'a>,
-    message: (),
-    problem: ProblemObject<'a>,
-    identifier: Members<&'a str, u32>,
-    selectors: Members<&'a str, u64>,
-}
-
-impl<'a> Unknown<'a> {
-    fn new(outcome: &Outcome<'a>, unrecognised: &'a Unrecognised) -> Self {
-        Self {
-            head: Head::new(outcome),
-            message: (),
-            problem: ProblemObject { kind: unrecognised.problem.name(), text: &unrecognised.text },
-            identifier: identifier(outcome.protocol, &unrecognised.identifier),
-            selectors: selectors(outcome.protocol, &unrecognised.selectors),
-        }
+    number(out, signal.raw_of(reading.bits))?;
+    out.write_all(b",\"value\":")?;
+    match &reading.value {
+        Value::None | Value::Status { .. } => out.write_all(b"null")?,
+        Value::Integer(value) => number(out, *value)?,
+        Value::Number(value) => number(out, *value)?,
+        Value::Name(value) | Value::Text(value) => text(out, value)?,
     }
-}
-
-#[derive(Serialize)]
-struct ProblemObject<'a> {
-    kind: &'static str,
-    text: &'a str,
-}
-
-#[derive(Serialize)]
-struct NoteObject<'a> {
-    rule: &'static str,
-    text: &'a str,
-}
-
-impl<'a> NoteObject<'a> {
-    fn new(note: &'a Note) -> Self {
-        Self { rule: note.rule.name(), text: &note.text }
+    if let Some(unit) = signal.unit {
+        out.write_all(b",\"unit\":")?;
+        text(out, unit.symbol)?;
     }
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum SignalObject<'a> {
-    Value {
-        raw: i128,
-        value: ValueObject<'a>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        unit: Option<&'static str>,
-    },
-    Status {
-        raw: u64,
-        set: Vec<&'a str>,
-        unknown: u64,
-    },
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum ValueObject<'a> {
-    None,
-    Integer(i128),
-    Number(f64),
-    Text(&'a str),
-}
-
-impl<'a> SignalObject<'a> {
-    fn new(protocol: &'a Protocol, signal: &'a Signal, reading: &'a Reading) -> Self {
-        let value = match &reading.value {
-            Value::None => ValueObject::None,
-            Value::Integer(number) => ValueObject::Integer(*number),
-            Value::Number(number) => ValueObject::Number(*number),
-            Value::Name(text) | Value::Text(text) => ValueObject::Text(text),
-            Value::Status { set, unknown } => {
-                return Self::Status { raw: reading.bits, set: bit_names(protocol, signal, set), unknown: *unknown };
-            }
-        };
-        Self::Value { raw: signal.raw_of(reading.bits), value, unit: signal.unit.map(|unit| unit.symbol) }
-    }
+    out.write_all(b"}")
 }
 
 /// Returns the names of the set bits of a status word.
-pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> Vec<&'a str> {
-    let Some(word) = signal.encoding.status_word() else { return Vec::new() };
-    let bits = protocol.status_words[word].bits.iter();
-    bits.filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str()).collect()
+pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> impl Iterator<Item = &'a str> {
+    let bits = signal.encoding.status_word().map_or(&[][..], |word| &protocol.status_words[word].bits);
+    bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str())
 }
 
-fn identifier<'a>(protocol: &'a Protocol, values: &Table<FieldId, u32>) -> Members<&'a str, u32> {
-    let names = protocol.identifier.fields.iter().map(|field| field.name.as_str());
-    Members(names.zip(values.iter().copied()).collect())
-}
-
-fn selectors<'a>(protocol: &'a Protocol, values: &[(SelectorId, u64)]) -> Members<&'a str, u64> {
-    let named = |&(selector, value): &(SelectorId, u64)| (protocol[selector].name.as_str(), value);
-    Members(values.iter().map(named).collect())
-}
-
-fn signals<'a>(
-    protocol: &'a Protocol,
-    message: &'a Message,
-    readings: &'a [Reading],
-) -> Members<&'a str, SignalObject<'a>> {
-    let object = |reading: &'a Reading| {
-        let signal = &message.signals[reading.signal];
-        (signal.name.as_str(), SignalObject::new(protocol, signal, reading))
-    };
-    Members(readings.iter().map(object).collect())
-}
-
-/// Returns the set reserved bits with as many digits as the data, if there are any.
-fn reserved(decoded: &Decoded) -> Option<String> {
-    let bytes = decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
-    bytes.iter().any(|byte| *byte != 0).then(|| log::hexadecimal(bytes))
-}
-
-impl<K: Serialize + PartialEq, V: Serialize> Serialize for Members<K, V> {
-    /// If members have the same name, the first one counts. A field that messages have in different
-    /// places is such a case.
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let is_first = |index: usize, name: &K| self.0[..index].iter().all(|(other, _)| other != name);
-        let members = self.0.iter().enumerate().filter(|(index, (name, _))| is_first(*index, name));
-        serializer.collect_map(members.map(|(_, (name, value))| (name, value)))
+/// Writes members in their order. If some have the same name, the first one counts. A field that messages have in
+/// different places is such a case.
+fn object<'a, W: Write, V>(
+    out: &mut W,
+    members: impl Iterator<Item = (&'a str, V)> + Clone,
+    mut write: impl FnMut(&mut W, V) -> io::Result<()>,
+) -> io::Result<()> {
+    let all = members.clone();
+    let is_first = |index: usize, name: &str| all.clone().take(index).all(|(other, _)| other != name);
+    let firsts = members.enumerate().filter(|(index, (name, _))| is_first(*index, name));
+    let mut separator = "{";
+    for (_, (name, value)) in firsts {
+        out.write_all(separator.as_bytes())?;
+        text(out, name)?;
+        out.write_all(b":")?;
+        write(out, value)?;
+        separator = ",";
     }
+    out.write_all(if separator == "{" { b"{}" } else { b"}" })
+}
+
+fn list<W: Write, V>(
+    out: &mut W,
+    items: impl IntoIterator<Item = V>,
+    mut write: impl FnMut(&mut W, V) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut separator = "[";
+    for item in items {
+        out.write_all(separator.as_bytes())?;
+        write(out, item)?;
+        separator = ",";
+    }
+    out.write_all(if separator == "[" { b"[]" } else { b"]" })
+}
+
+fn optional(out: &mut impl Write, value: Option<&str>) -> io::Result<()> {
+    if let Some(value) = value { text(out, value) } else { out.write_all(b"null") }
+}
+
+fn text(out: &mut impl Write, value: &str) -> io::Result<()> {
+    if value.bytes().any(|byte| matches!(byte, 0..b' ' | b'"' | b'\\')) {
+        return Ok(serde_json::to_writer(out, value)?);
+    }
+    out.write_all(b"\"")?;
+    out.write_all(value.as_bytes())?;
+    out.write_all(b"\"")
+}
+
+fn number(out: &mut impl Write, value: impl Serialize) -> io::Result<()> {
+    Ok(serde_json::to_writer(out, &value)?)
 }
 
 #[cfg(test)]

@@ -2,10 +2,9 @@
 
 use canspec_codegen::interpret::{Form, Frame};
 use csv_core::{ReadRecordResult, ReaderBuilder};
-use serde_json::value::RawValue;
 
 use super::Entry;
-use super::part::{CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds};
+use super::part::{CLASSIC, FLEXIBLE, Stamp, as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds};
 
 /// What stands between two cells.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
@@ -76,7 +75,7 @@ fn is_byte(name: &str) -> bool {
 /// What the cells of a line say.
 #[derive(Default)]
 struct Cells<'a> {
-    time: Option<Box<RawValue>>,
+    time: Option<Stamp<'a>>,
     channel: Option<&'a str>,
     identifier: &'a str,
     extended: Option<bool>,
@@ -212,7 +211,7 @@ impl<'a> Cells<'a> {
 }
 
 /// Reads seconds, or smaller units, or a date with a time of day.
-fn time(text: &str, places: usize) -> Result<Box<RawValue>, String> {
+fn time(text: &str, places: usize) -> Result<Stamp<'_>, String> {
     match text.split_once([' ', 'T']) {
         Some((day, time)) => date(day, time.trim_end_matches('Z')),
         None if places > 0 => moved(text, places),

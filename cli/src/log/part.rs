@@ -1,5 +1,7 @@
 //! What the lines of all formats are made of: stamps, channels, identifiers and data.
 
+use std::borrow::Cow;
+
 use canspec_codegen::source::forbidden;
 use serde_json::value::RawValue;
 
@@ -13,33 +15,43 @@ pub const FLEXIBLE: usize = 64;
 /// Characters of the name of an interface, which has 15 on Linux, and of a stamp.
 const LONGEST_NAME: usize = 64;
 
+/// The seconds of a line: a number of JSON.
+pub type Stamp<'a> = Cow<'a, RawValue>;
+
+/// Keeps a stamp whose text is dropped.
+pub fn owned<'a>(stamp: Stamp<'_>) -> Stamp<'a> {
+    Cow::Owned(stamp.into_owned())
+}
+
 /// Reads `(SECONDS)`.
-pub fn stamp(word: &str) -> Result<Box<RawValue>, String> {
+pub fn stamp(word: &str) -> Result<Stamp<'_>, String> {
     let refusal = || format!("the stamp {} is no number in parentheses", quoted(word));
     let seconds = word.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(refusal)?;
     short("stamp", word, LONGEST_NAME + "()".len())?;
-    let number = without_leading_zeros(seconds);
-    let value = RawValue::from_string(number.to_owned()).ok().filter(|value| is_number(value));
-    finite(value.ok_or_else(refusal)?, word)
+    finite(number(seconds).ok_or_else(refusal)?, word)
 }
 
 /// Reads seconds without parentheses.
-pub fn seconds(word: &str) -> Result<Box<RawValue>, String> {
+pub fn seconds(word: &str) -> Result<Stamp<'_>, String> {
     short("stamp", word, LONGEST_NAME)?;
-    let number = RawValue::from_string(without_leading_zeros(word).to_owned()).ok().filter(|value| is_number(value));
-    finite(number.ok_or_else(|| format!("the stamp {} is no number", quoted(word)))?, word)
+    finite(number(word).ok_or_else(|| format!("the stamp {} is no number", quoted(word)))?, word)
 }
 
-fn finite(value: Box<RawValue>, word: &str) -> Result<Box<RawValue>, String> {
-    if is_finite(&value) {
-        Ok(value)
+/// Reads a number as JSON has it, but for leading zeros.
+fn number(text: &str) -> Option<&RawValue> {
+    serde_json::from_str::<&RawValue>(without_leading_zeros(text)).ok().filter(|value| is_number(value))
+}
+
+fn finite<'a>(value: &'a RawValue, word: &str) -> Result<Stamp<'a>, String> {
+    if is_finite(value) {
+        Ok(Cow::Borrowed(value))
     } else {
         Err(format!("the stamp {} is larger than any number of JSON", quoted(word)))
     }
 }
 
 /// Returns a number of smaller units in seconds, by moving its point to the left.
-pub fn moved(word: &str, places: usize) -> Result<Box<RawValue>, String> {
+pub fn moved(word: &str, places: usize) -> Result<Stamp<'_>, String> {
     let (sign, digits) = word.split_at(usize::from(word.starts_with('-')));
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
     let is_plain = |digits: &str| digits.len() <= LONGEST_NAME && digits.bytes().all(|digit| digit.is_ascii_digit());
@@ -48,11 +60,11 @@ pub fn moved(word: &str, places: usize) -> Result<Box<RawValue>, String> {
     }
     let filled = format!("{whole:0>width$}", width = places + 1);
     let (whole, moved) = filled.split_at(filled.len() - places);
-    seconds(&format!("{sign}{whole}.{moved}{fraction}"))
+    seconds(&format!("{sign}{whole}.{moved}{fraction}")).map(owned)
 }
 
 /// Reads a date and a time of day as seconds since 1970, as if they were those of UTC.
-pub fn date(date: &str, time: &str) -> Result<Box<RawValue>, String> {
+pub fn date(date: &str, time: &str) -> Result<Stamp<'static>, String> {
     let refusal = || format!("the stamp {} is no date with a time", quoted(&format!("{date} {time}")));
     let [year, month, day] = numbers(date, '-').filter(is_day).ok_or_else(refusal)?;
     let (time, fraction) = time.split_once('.').unwrap_or((time, ""));
@@ -60,7 +72,7 @@ pub fn date(date: &str, time: &str) -> Result<Box<RawValue>, String> {
     let is_fraction = fraction.bytes().all(|digit| digit.is_ascii_digit());
     let total = ((days(year, month, day) * 24 + hour) * 60 + minute) * 60 + second;
     let point = if fraction.is_empty() { "" } else { "." };
-    if is_fraction { seconds(&format!("{total}{point}{fraction}")) } else { Err(refusal()) }
+    if is_fraction { seconds(&format!("{total}{point}{fraction}")).map(owned) } else { Err(refusal()) }
 }
 
 fn is_day([year, month, day]: &[i64; 3]) -> bool {
@@ -123,7 +135,8 @@ pub fn channel(name: &str) -> Result<&str, String> {
 
 /// Refuses what is longer than anybody writes it.
 fn short(what: &str, text: &str, most: usize) -> Result<(), String> {
-    let count = text.chars().count();
+    // There are at least as many bytes as characters.
+    let count = if text.len() > most { text.chars().count() } else { 0 };
     if count > most {
         return Err(format!("the {what} {} has {count} characters, more than {most}", quoted(text)));
     }
@@ -194,7 +207,7 @@ pub fn quoted(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn text(value: Result<Box<RawValue>, String>) -> Result<String, String> {
+    fn text(value: Result<Stamp<'_>, String>) -> Result<String, String> {
         value.map(|value| value.get().to_owned())
     }
 

@@ -4,10 +4,9 @@ use std::iter::Peekable;
 use std::str::SplitAsciiWhitespace;
 
 use canspec_codegen::interpret::{Form, Frame};
-use serde_json::value::RawValue;
 
 use super::Entry;
-use super::part::{CLASSIC, FLEXIBLE, as_many, bytes, channel, date, fewer, identifier, quoted, stamp};
+use super::part::{CLASSIC, FLEXIBLE, Stamp, as_many, bytes, channel, date, fewer, identifier, quoted, stamp};
 
 type Words<'a> = Peekable<SplitAsciiWhitespace<'a>>;
 
@@ -55,7 +54,7 @@ pub fn read(line: &str) -> Result<Option<Entry<'_>>, String> {
 }
 
 /// Reads seconds in parentheses, or a date with a time of day.
-fn time(words: &mut Words<'_>) -> Result<Option<Box<RawValue>>, String> {
+fn time<'a>(words: &mut Words<'a>) -> Result<Option<Stamp<'a>>, String> {
     let Some(first) = words.next_if(|word| word.starts_with('(')) else { return Ok(None) };
     if first.ends_with(')') {
         return stamp(first).map(Some);

@@ -1,10 +1,9 @@
 //! Lines of SLCAN, the format of serial adapters: `tIIILDD..`, with a stamp of four digits where the adapter gives one.
 
 use canspec_codegen::interpret::{Form, Frame};
-use serde_json::value::RawValue;
 
 use super::Entry;
-use super::part::{bytes, identifier, is_hexadecimal, moved, quoted};
+use super::part::{Stamp, bytes, identifier, is_hexadecimal, moved, owned, quoted};
 
 /// Milliseconds at which the stamps begin anew.
 const MINUTE: u32 = 60_000;
@@ -58,14 +57,14 @@ fn short(line: &str) -> String {
 }
 
 /// Reads milliseconds in four digits.
-fn stamp(digits: &str) -> Result<Option<Box<RawValue>>, String> {
+fn stamp(digits: &str) -> Result<Option<Stamp<'static>>, String> {
     if digits.is_empty() {
         return Ok(None);
     }
     let milliseconds = u32::from_str_radix(digits, 16).ok();
     let milliseconds = milliseconds.filter(|time| digits.len() == 4 && is_hexadecimal(digits) && *time < MINUTE);
     let refusal = || format!("{} after the data is no stamp, four hexadecimal digits below EA60", quoted(digits));
-    moved(&milliseconds.ok_or_else(refusal)?.to_string(), 3).map(Some)
+    moved(&milliseconds.ok_or_else(refusal)?.to_string(), 3).map(owned).map(Some)
 }
 
 #[cfg(test)]

@@ -29,15 +29,18 @@ pub fn identifier_text(frame: &Frame) -> String {
 
 /// Returns an identifier in 8 digits if it has 29 bits, else in 3.
 pub fn identifier_digits(id: u32, extended: bool) -> String {
-    let width = if extended { 8 } else { 3 };
-    format!("{id:0width$X}")
+    if extended { hexadecimal(&id.to_be_bytes()) } else { format!("{id:03X}") }
 }
 
 /// Returns bytes in upper-case hexadecimal digits.
 pub fn hexadecimal(bytes: &[u8]) -> String {
-    const DIGITS: [char; 16] = ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'A', 'B', 'C', 'D', 'E', 'F'];
-    let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 0x0F]);
-    digits.filter_map(|digit| DIGITS.get(usize::from(digit))).collect()
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    let mut digits = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
+        let halves = [byte >> 4, byte & 0x0F].map(|half| char::from(DIGITS[usize::from(half)]));
+        digits.extend(halves);
+    }
+    digits
 }
 
 #[cfg(test)]
