@@ -17,6 +17,7 @@ const BLANKS: &str = match str::from_utf8(&[b' '; WIDEST]) {
 };
 
 /// The columns of a table.
+#[derive(Clone)]
 pub struct Columns {
     /// The widths of all columns but the last.
     widths: Vec<usize>,
@@ -37,6 +38,11 @@ impl Columns {
         for (column, cell) in self.widths.iter_mut().zip(cells) {
             *column = (*column).max(width(cell)).min(WIDEST);
         }
+    }
+
+    /// Tests whether all columns have the same widths.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.widths == other.widths
     }
 
     /// Returns the width of the last column.
@@ -81,7 +87,7 @@ fn width(text: &str) -> usize {
 }
 
 /// Items in lines of the last column.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Lines {
     /// The lines, with a line feed between them.
     text: String,

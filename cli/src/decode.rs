@@ -1,5 +1,6 @@
 //! `canspec decode`.
 
+mod ahead;
 mod choice;
 mod rows;
 mod summary;
@@ -13,7 +14,7 @@ use clap::{Args, ValueEnum};
 
 use crate::capture::{self, Capture};
 use crate::failure::{Failure, Finish, shown, tell};
-use crate::input::Input;
+use crate::input::{Input, Line};
 use crate::line::{self, Outcome};
 use crate::log::{Entry, Reader};
 use crate::model::Model;
@@ -66,6 +67,28 @@ enum Format {
     Csv,
 }
 
+/// What the lines so far decide about those to come.
+#[derive(Clone)]
+struct State {
+    reader: Reader,
+    printer: Printer,
+}
+
+impl State {
+    /// Tests whether the lines to come are surely read and written in the same way.
+    fn is_like(&self, other: &Self) -> bool {
+        self.reader.is_like(&other.reader) && self.printer.is_like(&other.printer)
+    }
+}
+
+/// What is counted of a log.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    frames: u64,
+    recognised: u64,
+}
+
+#[derive(Clone)]
 enum Printer {
     Text(Table),
     Jsonl,
@@ -106,26 +129,40 @@ impl Decode {
         let models = self.model.find(&protocols, &settings)?;
         self.choice.check(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
-        let mut printer = self.printer(&protocols)?;
+        let mut state = State { reader: Reader::default(), printer: self.printer(&protocols)? };
         let mut out = BufWriter::with_capacity(BUFFER, output()?);
-        let mut reader = Reader::default();
         let input = Input::open(self.file.as_deref())?;
         let input = if self.summary { input.summed_up() } else { input };
-        let (mut frames, mut recognised) = (0, 0);
-        let finish = input.each(&mut out, |out, line| {
-            let entry = reader.read(line.text?)?;
-            let Some(entry) = entry else { return Ok(Ok(())) };
-            let decoded = decode(&devices, &entry.frame);
-            frames += 1;
-            recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
-            Ok(decoded.map_or(Ok(()), |decoded| self.show(&mut printer, out, line.number, &entry, decoded)))
-        })?;
-        printer.end(&mut out)?;
+        let mut counts = Counts::default();
+        let finish = if input.has_parts() && !self.summary {
+            ahead::decode(input, &mut out, &mut state, &mut counts, |state, counts, out, line| {
+                self.line(&devices, state, counts, out, line)
+            })?
+        } else {
+            input.each(&mut out, |out, line| self.line(&devices, &mut state, &mut counts, out, line))?
+        };
+        state.printer.end(&mut out)?;
         out.flush()?;
-        if frames > 0 && recognised == 0 {
+        if counts.frames > 0 && counts.recognised == 0 {
             self.suggest_identify();
         }
         Ok(finish)
+    }
+
+    /// Writes what the protocols say of a line.
+    fn line(
+        &self,
+        devices: &[Device<'_>],
+        state: &mut State,
+        counts: &mut Counts,
+        out: &mut impl Write,
+        line: Line<'_>,
+    ) -> Result<io::Result<()>, String> {
+        let Some(entry) = state.reader.read(line.text?)? else { return Ok(Ok(())) };
+        let decoded = decode(devices, &entry.frame);
+        counts.frames += 1;
+        counts.recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
+        Ok(decoded.map_or(Ok(()), |decoded| self.show(&mut state.printer, out, line.number, &entry, decoded)))
     }
 
     /// Says how to find the protocol of a log in which nothing was recognised.
@@ -171,6 +208,16 @@ impl Decode {
 }
 
 impl Printer {
+    /// Tests whether the frames to come are surely written in the same way.
+    fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Text(one), Self::Text(another)) => one.is_like(another),
+            (Self::Csv(one), Self::Csv(another)) => one == another,
+            (Self::Jsonl, Self::Jsonl) => true,
+            _ => false,
+        }
+    }
+
     fn frame(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
         match self {
             Self::Text(table) => table.write(out, outcome),

@@ -3,12 +3,16 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::failure::{Failure, Finish, escaped, shown, tell};
 use crate::progress::Progress;
 
 /// Longer lines are unreadable.
 const LONGEST: usize = 1 << 16;
+
+/// Bytes of a file that are decoded at once, beside what completes their last line.
+const PART: u64 = 1 << 18;
 
 /// Some editors put it before the first line.
 const BYTE_ORDER_MARK: &[u8] = "\u{FEFF}".as_bytes();
@@ -44,6 +48,8 @@ pub struct Input {
     length: Option<u64>,
     /// The output comes when all is read.
     is_summed_up: bool,
+    /// What somebody at a terminal sees.
+    progress: Option<Progress>,
 }
 
 /// A line of the input.
@@ -82,7 +88,7 @@ impl Input {
     fn new(name: &Path, reader: Box<dyn Read>) -> Self {
         let reader = BufReader::with_capacity(LONGEST, reader);
         let (name, line) = (name.to_owned(), Vec::new());
-        Self { name, file: None, reader, number: 0, line, length: None, is_summed_up: false }
+        Self { name, file: None, reader, number: 0, line, length: None, is_summed_up: false, progress: None }
     }
 
     /// Says that nothing is written before all is read.
@@ -131,28 +137,51 @@ impl Input {
     pub fn each<W: Write>(
         mut self,
         mut out: W,
-        mut work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
+        work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
     ) -> Result<Finish, Failure> {
         let mut finish = Finish::Done;
-        let mut progress = self.length.and_then(|length| Progress::of(length, !self.is_summed_up));
+        self.progress = self.length.and_then(|length| Progress::of(length, !self.is_summed_up));
+        self.walk(&mut out, work, |input, out, why| {
+            finish = Finish::Errors;
+            out.flush()?;
+            input.tell(&why);
+            Ok(())
+        })?;
+        Ok(finish)
+    }
+
+    /// Does `work` on each line, and calls `complain` with what it refuses.
+    fn walk<W: Write>(
+        &mut self,
+        out: &mut W,
+        mut work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
+        mut complain: impl FnMut(&mut Self, &mut W, String) -> io::Result<()>,
+    ) -> Result<(), Failure> {
         while let Some(line) = self.next_line()? {
-            match work(&mut out, line) {
+            match work(out, line) {
                 Ok(written) => written?,
                 Err(why) => {
-                    out.flush()?;
-                    progress.iter_mut().for_each(Progress::clear);
-                    self.complain(&why);
-                    finish = Finish::Errors;
+                    let complaint = format!("{}:{}: {}", shown(&self.name), self.number, escaped(&why));
+                    complain(self, out, complaint)?;
                 }
             }
-            if let Some(progress) = &mut progress {
-                progress.advance(self.line.len());
-            }
+            self.advance(self.line.len());
             if self.may_wait() {
                 out.flush()?;
             }
         }
-        Ok(finish)
+        Ok(())
+    }
+
+    /// Shows that more bytes are read.
+    pub fn advance(&mut self, bytes: usize) {
+        self.progress.iter_mut().for_each(|progress| progress.advance(bytes));
+    }
+
+    /// Says something on standard error.
+    pub fn tell(&mut self, what: &str) {
+        self.progress.iter_mut().for_each(Progress::clear);
+        tell(what);
     }
 
     /// Tests whether the next line may have to be waited for, so that what is known should be shown first.
@@ -160,10 +189,64 @@ impl Input {
         !self.reader.buffer().contains(&b'\n')
     }
 
-    /// Says on standard error what is wrong with the line read last.
-    fn complain(&self, why: &str) {
-        tell(format_args!("{}:{}: {}", shown(&self.name), self.number, escaped(why)));
+    /// Tests for a file of several parts.
+    pub fn has_parts(&self) -> bool {
+        self.length.is_some_and(|length| length > PART)
     }
+
+    /// Reads the next lines of a file; `None` at the end.
+    ///
+    /// # Errors
+    ///
+    /// Where the input cannot be read any further.
+    pub fn next_part(&mut self) -> Result<Option<Part>, Failure> {
+        self.line.clear();
+        let read = self.reader.by_ref().take(PART).read_to_end(&mut self.line);
+        let ends_line = self.line.last().is_none_or(|byte| *byte == b'\n');
+        let read = read.and_then(|_| if ends_line { Ok(false) } else { self.fill() });
+        read.map_err(|error| Failure::input(&self.name, &error))?;
+        let part = Part { name: self.name.clone(), number: self.number, bytes: self.line.as_slice().into() };
+        self.number += self.line.split_inclusive(|byte| *byte == b'\n').count();
+        Ok(Some(part).filter(|part| part.length() > 0))
+    }
+}
+
+/// Whole lines of a file.
+#[derive(Clone)]
+pub struct Part {
+    name: PathBuf,
+    /// How many lines come before.
+    number: usize,
+    bytes: Arc<[u8]>,
+}
+
+impl Part {
+    /// Returns how many bytes there are.
+    pub fn length(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Does `work` on each line, and returns what it writes, with the complaints about what it refuses.
+    pub fn work(self, work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String>) -> Written {
+        let mut written = Written::default();
+        let lines = Box::new(io::Cursor::new(self.bytes));
+        let mut input = Input { number: self.number, ..Input::new(&self.name, lines) };
+        let complaints = &mut written.complaints;
+        let walked = input.walk(&mut written.text, work, |_, out, why| {
+            complaints.push((out.len(), why));
+            Ok(())
+        });
+        debug_assert!(walked.is_ok(), "memory is read and written");
+        written
+    }
+}
+
+/// What was written about a part.
+#[derive(Default)]
+pub struct Written {
+    pub text: Vec<u8>,
+    /// Complaints, and how many bytes of the text come before each.
+    pub complaints: Vec<(usize, String)>,
 }
 
 #[cfg(test)]
@@ -211,6 +294,40 @@ mod tests {
     #[test]
     fn a_byte_order_mark_belongs_to_no_line() {
         assert_eq!(lines("\u{FEFF}a\n\u{FEFF}b".into()), [good(1, "a"), good(2, "\u{FEFF}b")]);
+    }
+
+    #[test]
+    fn parts_have_the_lines_of_the_whole() {
+        let filler = |size: usize| "y".repeat(size);
+        let part = usize::try_from(PART).expect("a part fits into memory");
+        let ends = [&filler(60_000), "", &filler(LONGEST + 1), "last"].map(str::to_owned);
+        for (count, length) in [(8, 40_000), (5, LONGEST), (3, 2 * LONGEST + 1), (2, part), (1, 3 * part)] {
+            let lines_before = vec![format!("\u{FEFF}{}", filler(length)); count];
+            let text = [lines_before, ends.to_vec()].concat().join("\n").into_bytes();
+            let mut input = Input::new(Path::new("test"), Box::new(io::Cursor::new(text.clone())));
+            let (mut found, mut parts) = (Vec::new(), 0);
+            while let Ok(Some(part)) = input.next_part() {
+                part.work(|_, line| {
+                    found.push((line.number, line.text.map(str::to_owned)));
+                    Ok(Ok(()))
+                });
+                parts += 1;
+            }
+            assert!(found == lines(text), "{count} {length}");
+            assert!(parts > 1, "{count} {length}");
+        }
+    }
+
+    #[test]
+    fn complaints_about_a_part_stand_where_they_came() {
+        let mut input = Input::new(Path::new("test"), Box::new(io::Cursor::new(b"a\nbad\nb\n".to_vec())));
+        let part = input.next_part().expect("memory is read").expect("it has lines");
+        let written = part.work(|out, line| match line.text? {
+            "bad" => Err("it is bad".to_owned()),
+            text => Ok(out.write_all(text.as_bytes())),
+        });
+        assert_eq!((written.text, written.complaints), (b"ab".to_vec(), vec![(1, "test:2: it is bad".to_owned())]));
+        assert!(input.next_part().is_ok_and(|part| part.is_none()));
     }
 
     #[test]

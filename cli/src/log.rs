@@ -26,10 +26,11 @@ pub struct Entry<'a> {
 }
 
 /// What is known of a log after the lines read so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Reader(Option<Format>);
 
 /// How lines look, and what the head of the log says of those below.
+#[derive(Clone)]
 enum Format {
     Compact,
     Plain,
@@ -64,6 +65,16 @@ impl Reader {
             Some(Format::Incomplete(complaint)) => complaint.take().map_or(Ok(None), Err),
             None => Err(unknown(line)),
         }
+    }
+
+    /// Tests whether both readers surely read the same from each line to come: they have the same format, and it keeps
+    /// nothing of the lines so far.
+    pub fn is_like(&self, other: &Self) -> bool {
+        use Format::{Compact, Plain, Slcan};
+        matches!(
+            (&self.0, &other.0),
+            (Some(Compact), Some(Compact)) | (Some(Plain), Some(Plain)) | (Some(Slcan), Some(Slcan))
+        )
     }
 
     /// Finds out the format of a line. A line that shows none has the format so far.

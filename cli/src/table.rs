@@ -20,6 +20,7 @@ const DIGITS: usize = "86400".len();
 const GAP: &str = "  ";
 
 /// A table whose rows are written as their frames come.
+#[derive(Clone)]
 pub struct Table {
     columns: Columns,
     /// Every row says by which protocol it was read.
@@ -29,7 +30,7 @@ pub struct Table {
 }
 
 /// The texts of a row that are made for it.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Row {
     address: String,
     message: String,
@@ -59,6 +60,11 @@ impl Table {
         for message in &protocol.messages {
             self.columns.widen(&["", "", "", "", "", &self.message(protocol, &message.name)]);
         }
+    }
+
+    /// Tests whether both tables write the same of each frame to come.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.started == other.started && self.columns.is_like(&other.columns)
     }
 
     fn message(&self, protocol: &Protocol, name: &str) -> String {
@@ -96,24 +102,23 @@ impl Row {
         let protocol = outcome.protocol;
         self.address.clear();
         self.message.clear();
-        match outcome.decoded {
-            Ok(decoded) => {
-                address(&mut self.address, protocol, decoded, outcome.frame.id);
-                message(&mut self.message, named, &protocol.messages[decoded.message].name);
-                &protocol.accesses[decoded.access].name
-            }
-            Err(_) => {
-                self.address.push('?');
-                message(&mut self.message, named, "?");
-                ""
-            }
+        if let Ok(decoded) = outcome.decoded {
+            address(&mut self.address, protocol, decoded, outcome.frame.id);
+            message(&mut self.message, named, &protocol.messages[decoded.message].name);
+            &protocol.accesses[decoded.access].name
+        } else {
+            self.address.push('?');
+            message(&mut self.message, named, "?");
+            ""
         }
     }
 }
 
 /// Adds the name of a message, behind that of its protocol if one is given.
 fn message(text: &mut String, protocol: Option<&Protocol>, name: &str) {
-    protocol.iter().for_each(|protocol| text.extend([&protocol.name, "."]));
+    if let Some(protocol) = protocol {
+        text.extend([&protocol.name, "."]);
+    }
     text.push_str(name);
 }
 
@@ -170,7 +175,13 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
                 item.clear();
                 signal(item, outcome.protocol, decoded, reading);
                 item.push_str(GAP);
-                item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
+                match &reading.value {
+                    Value::None | Value::Integer(_) | Value::Number(_) => lines.add(item, "", room + 1),
+                    // These may be long, and be parted after a comma.
+                    Value::Name(_) | Value::Text(_) | Value::Status { .. } => {
+                        item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
+                    }
+                }
             }
             decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
         }

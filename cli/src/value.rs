@@ -34,7 +34,8 @@ fn escaped(text: &mut String, value: &str) -> fmt::Result {
 /// Values lie on the grid of their scale. So a value is nearly always next to a whole number of its last decimal, as
 /// an integer, which is cheap to write.
 fn fixed(text: &mut String, number: f64, decimals: usize) -> fmt::Result {
-    const EXACT: f64 = (1_u64 << 50) as f64;
+    /// 2 to the power of 50.
+    const EXACT: f64 = 1_125_899_906_842_624.0;
     let scaled = POWERS.get(decimals).map_or(f64::NAN, |power| number.abs() * power);
     let whole = scaled.round();
     // The product is off by less than an eighth.

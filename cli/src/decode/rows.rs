@@ -10,7 +10,7 @@ use crate::log;
 const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,signal,raw,value,unit,notes";
 
 /// Rows that are written as their frames come.
-#[derive(Default)]
+#[derive(Clone, Default, PartialEq)]
 pub struct Rows {
     started: bool,
 }

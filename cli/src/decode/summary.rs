@@ -12,7 +12,7 @@ use crate::line::Outcome;
 use crate::log;
 
 /// Counts of a log so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Summary {
     frames: u64,
     recognised: u64,
@@ -26,12 +26,14 @@ pub struct Summary {
 }
 
 /// The first and the last time, as written and as numbers.
+#[derive(Clone)]
 struct Span {
     first: (f64, Box<RawValue>),
     last: (f64, Box<RawValue>),
 }
 
 /// How many frames there were, and the line of the first.
+#[derive(Clone)]
 struct Seen {
     frames: u64,
     line: usize,

@@ -45,17 +45,17 @@ fn head(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
     out.write_all(b"\",\"data\":\"")?;
     out.write_all(log::hexadecimal(&outcome.frame.data).as_bytes())?;
     out.write_all(b"\",\"protocol\":")?;
-    text(out, &outcome.protocol.name)
+    name(out, &outcome.protocol.name)
 }
 
 fn recognised(out: &mut impl Write, protocol: &Protocol, decoded: &Decoded) -> io::Result<()> {
     let message = &protocol.messages[decoded.message];
     out.write_all(b",\"message\":")?;
-    text(out, &message.name)?;
+    name(out, &message.name)?;
     out.write_all(b",\"access\":")?;
-    text(out, &protocol.accesses[decoded.access].name)?;
+    name(out, &protocol.accesses[decoded.access].name)?;
     out.write_all(b",\"kind\":")?;
-    text(out, decoded.kind.name())?;
+    name(out, decoded.kind.name())?;
     out.write_all(b",\"addressing\":")?;
     optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()))?;
     selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
@@ -69,12 +69,12 @@ fn recognised(out: &mut impl Write, protocol: &Protocol, decoded: &Decoded) -> i
     if reserved.iter().any(|byte| *byte != 0) {
         // It has as many digits as the data.
         out.write_all(b",\"reserved\":")?;
-        text(out, &log::hexadecimal(reserved))?;
+        name(out, &log::hexadecimal(reserved))?;
     }
     out.write_all(b",\"notes\":")?;
     list(out, &decoded.notes, |out, note| {
         out.write_all(b"{\"rule\":")?;
-        text(out, note.rule.name())?;
+        name(out, note.rule.name())?;
         out.write_all(b",\"text\":")?;
         text(out, &note.text)?;
         out.write_all(b"}")
@@ -83,7 +83,7 @@ fn recognised(out: &mut impl Write, protocol: &Protocol, decoded: &Decoded) -> i
 
 fn unknown(out: &mut impl Write, protocol: &Protocol, unrecognised: &Unrecognised) -> io::Result<()> {
     out.write_all(b",\"message\":null,\"problem\":{\"kind\":")?;
-    text(out, unrecognised.problem.name())?;
+    name(out, unrecognised.problem.name())?;
     out.write_all(b",\"text\":")?;
     text(out, &unrecognised.text)?;
     out.write_all(b"}")?;
@@ -109,7 +109,7 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
     if let Value::Status { set, unknown } = &reading.value {
         number(out, reading.bits)?;
         out.write_all(b",\"set\":")?;
-        list(out, bit_names(protocol, signal, set), text)?;
+        list(out, bit_names(protocol, signal, set), name)?;
         out.write_all(b",\"unknown\":")?;
         number(out, *unknown)?;
         return out.write_all(b"}");
@@ -124,7 +124,7 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
     }
     if let Some(unit) = signal.unit {
         out.write_all(b",\"unit\":")?;
-        text(out, unit.symbol)?;
+        name(out, unit.symbol)?;
     }
     out.write_all(b"}")
 }
@@ -146,9 +146,9 @@ fn object<'a, W: Write, V>(
     let is_first = |index: usize, name: &str| all.clone().take(index).all(|(other, _)| other != name);
     let firsts = members.enumerate().filter(|(index, (name, _))| is_first(*index, name));
     let mut separator = "{";
-    for (_, (name, value)) in firsts {
+    for (_, (key, value)) in firsts {
         out.write_all(separator.as_bytes())?;
-        text(out, name)?;
+        name(out, key)?;
         out.write_all(b":")?;
         write(out, value)?;
         separator = ",";
@@ -178,8 +178,13 @@ fn text(out: &mut impl Write, value: &str) -> io::Result<()> {
     if value.bytes().any(|byte| matches!(byte, 0..b' ' | b'"' | b'\\')) {
         return Ok(serde_json::to_writer(out, value)?);
     }
+    name(out, value)
+}
+
+/// Writes a name of a spec or of ours, which has nothing to escape by the rules of names.
+fn name(out: &mut impl Write, name: &str) -> io::Result<()> {
     out.write_all(b"\"")?;
-    out.write_all(value.as_bytes())?;
+    out.write_all(name.as_bytes())?;
     out.write_all(b"\"")
 }
 

@@ -15,6 +15,7 @@ const PYTHON_CAN: &str = "timestamp,arbitration_id,extended,remote,error,dlc,dat
 /// The columns of a log, and room for the cells of a line.
 pub struct Columns {
     heading: String,
+    separator: u8,
     kinds: Vec<Column>,
     /// Data in base 64 rather than in hexadecimal digits.
     base64: bool,
@@ -85,6 +86,13 @@ struct Cells<'a> {
     data: Vec<u8>,
 }
 
+impl Clone for Columns {
+    /// Reads the heading again: a clone of a reader of `csv_core` 0.1 takes all letters for the same.
+    fn clone(&self) -> Self {
+        Self::parted(&self.heading, self.separator)
+    }
+}
+
 impl Columns {
     /// Reads a heading, `None` from a line that has none with an identifier and data.
     pub fn of(line: &str) -> Option<Self> {
@@ -112,7 +120,7 @@ impl Columns {
         let reader = ReaderBuilder::new().delimiter(separator).build();
         let base64 = line.trim_ascii() == PYTHON_CAN;
         let (kinds, text, ends) = (Vec::new(), Vec::new(), Vec::new());
-        let mut parted = Self { heading: line.to_owned(), kinds, base64, reader, text, ends };
+        let mut parted = Self { heading: line.to_owned(), separator, kinds, base64, reader, text, ends };
         let count = parted.split(line);
         parted.kinds = (0..count).map(|index| Column::named(parted.cell(index).unwrap_or_default())).collect();
         parted.count_as_savvycan();

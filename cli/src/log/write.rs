@@ -35,12 +35,11 @@ pub fn identifier_digits(id: u32, extended: bool) -> String {
 /// Returns bytes in upper-case hexadecimal digits.
 pub fn hexadecimal(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
-    let mut digits = String::with_capacity(2 * bytes.len());
+    let mut digits = Vec::with_capacity(2 * bytes.len());
     for byte in bytes {
-        let halves = [byte >> 4, byte & 0x0F].map(|half| char::from(DIGITS[usize::from(half)]));
-        digits.extend(halves);
+        digits.extend([byte >> 4, byte & 0x0F].map(|half| DIGITS[usize::from(half)]));
     }
-    digits
+    String::from_utf8(digits).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -1,0 +1,88 @@
+//! Decodes the parts of a file ahead of their turn, on all cores, and writes them in order.
+
+use std::collections::VecDeque;
+use std::io::{self, Write};
+use std::{panic, thread};
+
+use super::{Counts, State};
+use crate::failure::{Failure, Finish};
+use crate::input::{Input, Line, Part, Written};
+
+/// What was made of a part.
+struct Done {
+    written: Written,
+    state: State,
+    counts: Counts,
+}
+
+/// Does `work` on each line of a file.
+///
+/// A part begins with the state that is known when its turn to be read comes. If the parts before it end with another
+/// state, it is decoded again in its turn. Nobody sees the difference. While there is a format that keeps something of
+/// each line, as the heading of a table, there is one part at a time.
+///
+/// # Errors
+///
+/// Where the input cannot be read, or the output cannot be written.
+pub fn decode(
+    mut input: Input,
+    out: &mut impl Write,
+    state: &mut State,
+    counts: &mut Counts,
+    work: impl Fn(&mut State, &mut Counts, &mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String> + Sync,
+) -> Result<Finish, Failure> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let run = |part: Part, mut state: State| {
+        let mut counts = Counts::default();
+        let written = part.work(|out, line| work(&mut state, &mut counts, out, line));
+        Done { written, state, counts }
+    };
+    let run = &run;
+    thread::scope(|scope| {
+        let (mut finish, mut failure, mut is_read) = (Finish::Done, None, false);
+        // Each state that is not like the one before it has a number.
+        let mut version = 0;
+        let mut ahead = VecDeque::new();
+        loop {
+            let most = if state.is_like(state) { cores } else { 1 };
+            while !is_read && ahead.len() < most {
+                match input.next_part() {
+                    Ok(Some(part)) => {
+                        let (again, start) = (part.clone(), state.clone());
+                        ahead.push_back((again, version, scope.spawn(move || run(part, start))));
+                    }
+                    Ok(None) => is_read = true,
+                    Err(error) => (is_read, failure) = (true, Some(error)),
+                }
+            }
+            let Some((part, begun, thread)) = ahead.pop_front() else { break };
+            let done = thread.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked));
+            let length = part.length();
+            let done = if begun == version { done } else { run(part, state.clone()) };
+            if deliver(&mut input, out, &done.written)? == Finish::Errors {
+                finish = Finish::Errors;
+            }
+            input.advance(length);
+            version += u64::from(!state.is_like(&done.state));
+            *state = done.state;
+            counts.frames += done.counts.frames;
+            counts.recognised += done.counts.recognised;
+        }
+        failure.map_or(Ok(finish), Err)
+    })
+}
+
+/// Writes what was written about a part, with each complaint where it came.
+fn deliver(input: &mut Input, out: &mut impl Write, written: &Written) -> io::Result<Finish> {
+    let mut rest = &written.text[..];
+    let mut start = 0;
+    for (place, complaint) in &written.complaints {
+        let (before, after) = rest.split_at(place - start);
+        (rest, start) = (after, *place);
+        out.write_all(before)?;
+        out.flush()?;
+        input.tell(complaint);
+    }
+    out.write_all(rest)?;
+    Ok(if written.complaints.is_empty() { Finish::Done } else { Finish::Errors })
+}
