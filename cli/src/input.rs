@@ -135,13 +135,12 @@ impl Input {
     ///
     /// Where the input cannot be read, or the output cannot be written.
     pub fn each<W: Write>(
-        mut self,
+        self,
         mut out: W,
         work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
     ) -> Result<Finish, Failure> {
         let mut finish = Finish::Done;
-        self.progress = self.length.and_then(|length| Progress::of(length, !self.is_summed_up));
-        self.walk(&mut out, work, |input, out, why| {
+        self.watched().walk(&mut out, work, |input, out, why| {
             finish = Finish::Errors;
             out.flush()?;
             input.tell(&why);
@@ -171,6 +170,12 @@ impl Input {
             }
         }
         Ok(())
+    }
+
+    /// Lets somebody at a terminal see how far it is read.
+    pub fn watched(self) -> Self {
+        let progress = self.length.and_then(|length| Progress::of(length, !self.is_summed_up));
+        Self { progress, ..self }
     }
 
     /// Shows that more bytes are read.

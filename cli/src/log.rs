@@ -67,8 +67,8 @@ impl Reader {
         }
     }
 
-    /// Tests whether both readers surely read the same from each line to come: they have the same format, and it keeps
-    /// nothing of the lines so far.
+    /// Tests whether both readers surely read the same from each line to come. Then they have the same format, and it
+    /// keeps nothing of the lines so far.
     pub fn is_like(&self, other: &Self) -> bool {
         use Format::{Compact, Plain, Slcan};
         matches!(

@@ -29,7 +29,7 @@ fn escaped(text: &mut String, value: &str) -> fmt::Result {
     if value.bytes().all(is_plain) { text.write_str(value) } else { write!(text, "{}", value.escape_debug()) }
 }
 
-/// Writes a number with so many decimals.
+/// Writes a number with a fixed number of decimals.
 ///
 /// Values lie on the grid of their scale. So a value is nearly always next to a whole number of its last decimal, as
 /// an integer, which is cheap to write.

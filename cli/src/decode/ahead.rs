@@ -25,12 +25,13 @@ struct Done {
 ///
 /// Where the input cannot be read, or the output cannot be written.
 pub fn decode(
-    mut input: Input,
+    input: Input,
     out: &mut impl Write,
     state: &mut State,
     counts: &mut Counts,
     work: impl Fn(&mut State, &mut Counts, &mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String> + Sync,
 ) -> Result<Finish, Failure> {
+    let mut input = input.watched();
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let run = |part: Part, mut state: State| {
         let mut counts = Counts::default();
