@@ -4,7 +4,7 @@ mod input;
 mod output;
 
 pub use input::Content;
-pub use output::{Outcome, bit_names, write};
+pub use output::{Outcome, addresses, bit_names, write};
 
 use serde::{Serialize, Serializer};
 

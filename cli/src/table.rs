@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressPattern, Kind, Mode, Protocol};
+use canspec_codegen::model::{Kind, Mode, Protocol};
 
 use crate::columns::{Columns, Lines, wrap};
-use crate::line::Outcome;
+use crate::line::{Outcome, addresses};
 use crate::log;
 use crate::value;
 
@@ -103,7 +103,7 @@ impl Row {
         self.address.clear();
         self.message.clear();
         if let Ok(decoded) = outcome.decoded {
-            address(&mut self.address, protocol, decoded, outcome.frame.id);
+            address(&mut self.address, outcome, decoded);
             message(&mut self.message, named, &protocol.messages[decoded.message].name);
             &protocol.accesses[decoded.access].name
         } else {
@@ -138,31 +138,27 @@ fn widest_address(protocol: &Protocol, mode: &Mode) -> String {
 }
 
 /// Adds an arrow and the addresses of a frame, but for those that everybody uses.
-fn address(text: &mut String, protocol: &Protocol, decoded: &Decoded, id: u32) {
+fn address(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
     text.push_str(match decoded.kind {
         Kind::Request => "→ ",
         Kind::Reply => "← ",
         Kind::Report => "⇐ ",
     });
     let Some(travel) = decoded.addressing else { return text.push('?') };
-    let mode = &protocol[travel.mode];
     let alone = text.len();
-    mode.pattern(decoded.kind, travel.who).iter().for_each(|pattern| addresses(text, protocol, pattern, id));
+    others(text, outcome, decoded);
     if text.len() == alone {
-        text.push_str(&mode.name);
+        text.push_str(&outcome.protocol[travel.mode].name);
     }
 }
 
-fn addresses(text: &mut String, protocol: &Protocol, pattern: &AddressPattern, id: u32) {
+/// Adds the addresses of a frame, but for those that everybody uses.
+pub fn others(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
     let mut separator = "";
-    for address in &pattern.addresses {
-        let address_type = &protocol.address_types[address.address_type];
-        let number = address_type.number(protocol.identifier.fields[address.field].get(id));
-        if address_type.send != Some(number) {
-            text.extend([separator, &address_type.name]);
-            let _ = write!(text, " {number}");
-            separator = ", ";
-        }
+    for (kind, number) in addresses(outcome, decoded).filter(|(kind, number)| kind.send != Some(*number)) {
+        text.extend([separator, &kind.name]);
+        let _ = write!(text, " {number}");
+        separator = ", ";
     }
 }
 

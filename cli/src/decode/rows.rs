@@ -6,8 +6,9 @@ use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
 
 use crate::line::{Outcome, bit_names};
 use crate::log;
+use crate::table::others;
 
-const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,signal,raw,value,unit,notes";
+const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes";
 
 /// Rows that are written as their frames come.
 #[derive(Clone, Default, PartialEq)]
@@ -23,8 +24,12 @@ impl Rows {
     /// Where `out` cannot be written.
     pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
         self.begin(out)?;
+        let mut address = String::new();
         let (names, readings, notes) = match outcome.decoded {
-            Ok(decoded) => (names(outcome, decoded), &decoded.signals[..], notes(&decoded.notes)),
+            Ok(decoded) => {
+                others(&mut address, outcome, decoded);
+                (names(outcome, decoded), &decoded.signals[..], notes(&decoded.notes))
+            }
             Err(Unrecognised { problem, text, .. }) => {
                 (Default::default(), &[][..], format!("{}: {text}", problem.name()))
             }
@@ -32,7 +37,8 @@ impl Rows {
         let line = outcome.line.to_string();
         let (time, channel) = (outcome.time.map_or("", |time| time.get()), outcome.channel.unwrap_or_default());
         let id = log::identifier_text(outcome.frame);
-        let frame = [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names);
+        let frame =
+            [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names).chain([address.as_str()]);
         let signals = readings.iter().map(|reading| cells(outcome, reading));
         let signals: Vec<_> = if readings.is_empty() { vec![Default::default()] } else { signals.collect() };
         for signal in signals {
@@ -62,6 +68,8 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
     let Ok(decoded) = outcome.decoded else { return Default::default() };
     let signal = &outcome.protocol.messages[decoded.message].signals[reading.signal];
     let value = match &reading.value {
+        // It would look like a measurement.
+        _ if decoded.is_error_reply() => String::new(),
         Value::None => String::new(),
         Value::Integer(number) => number.to_string(),
         Value::Number(number) => format!("{number:?}"),

@@ -71,6 +71,8 @@ struct Object {
     _data: Option<IgnoredAny>,
     #[serde(rename = "addressing")]
     _addressing: Option<IgnoredAny>,
+    #[serde(rename = "addresses")]
+    _addresses: Option<IgnoredAny>,
     #[serde(rename = "notes")]
     _notes: Option<IgnoredAny>,
     #[serde(rename = "problem")]

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
-use canspec_codegen::model::{FieldId, Protocol, SelectorId, Signal, Table};
+use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, Table};
 use serde::Serialize;
 use serde_json::value::RawValue;
 
@@ -27,7 +27,7 @@ pub struct Outcome<'a> {
 pub fn write(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
     head(out, outcome)?;
     match outcome.decoded {
-        Ok(decoded) => recognised(out, outcome.protocol, decoded)?,
+        Ok(decoded) => recognised(out, outcome, decoded)?,
         Err(unrecognised) => unknown(out, outcome.protocol, unrecognised)?,
     }
     out.write_all(b"}\n")
@@ -48,7 +48,8 @@ fn head(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
     name(out, &outcome.protocol.name)
 }
 
-fn recognised(out: &mut impl Write, protocol: &Protocol, decoded: &Decoded) -> io::Result<()> {
+fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) -> io::Result<()> {
+    let protocol = outcome.protocol;
     let message = &protocol.messages[decoded.message];
     out.write_all(b",\"message\":")?;
     name(out, &message.name)?;
@@ -58,6 +59,9 @@ fn recognised(out: &mut impl Write, protocol: &Protocol, decoded: &Decoded) -> i
     name(out, decoded.kind.name())?;
     out.write_all(b",\"addressing\":")?;
     optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()))?;
+    out.write_all(b",\"addresses\":")?;
+    let addresses = addresses(outcome, decoded).map(|(kind, number)| (kind.name.as_str(), number));
+    object(out, addresses, number)?;
     selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
     out.write_all(b",\"signals\":")?;
     let signals = decoded.signals.iter().map(|reading| {
@@ -127,6 +131,19 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
         name(out, unit.symbol)?;
     }
     out.write_all(b"}")
+}
+
+/// Returns the addresses that the identifier shows, each with its kind.
+pub fn addresses<'a>(
+    outcome: &Outcome<'a>,
+    decoded: &Decoded,
+) -> impl Iterator<Item = (&'a AddressType, i64)> + Clone + use<'a> {
+    let (protocol, id) = (outcome.protocol, outcome.frame.id);
+    let pattern = decoded.addressing.and_then(|travel| protocol[travel.mode].pattern(decoded.kind, travel.who));
+    pattern.into_iter().flat_map(|pattern| &pattern.addresses).map(move |address| {
+        let kind = &protocol[address.address_type];
+        (kind, kind.number(protocol[address.field].get(id)))
+    })
 }
 
 /// Returns the names of the set bits of a status word.
@@ -263,6 +280,7 @@ messages:
         let expected = concat!(
             r#"{"line":7,"time":1.50,"channel":"can0","id":"11C","data":"FE0FB40141000000","protocol":"acme","#,
             r#""message":"values","access":"read","kind":"reply","addressing":"one","#,
+            r#""addresses":{"controller":3,"module":0},"#,
             r#""identifier":{"device":1,"command":1,"target":3,"source":0},"selectors":{},"#,
             r#""signals":{"temperature":{"raw":-2,"value":-2,"unit":"°C"},"voltage":{"raw":4020,"value":402.0,"unit":"V"},"#,
             r#""power":{"raw":1,"value":"off"},"state":{"raw":65,"set":["fault","full"],"unknown":0}},"notes":[]}"#,
