@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
+use canspec_benches::Codec;
+use canspec_benches::by_hand::Hand;
 use canspec_benches::dbc::Dbc;
 use canspec_benches::frame::Frame;
+use canspec_benches::frames;
 use canspec_benches::generated::Generated;
-use canspec_benches::hand::Hand;
 use canspec_benches::processor_time::ProcessorTime;
-use canspec_benches::{Codec, decode, encode, frames, received, request, requests};
+use canspec_benches::work::{Inputs, Work};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const SECOND: Duration = Duration::from_secs(1);
@@ -21,15 +23,15 @@ fn codecs(criterion: &mut Criterion<ProcessorTime>) {
 }
 
 fn all<C: Codec>(criterion: &mut Criterion<ProcessorTime>, name: &str, frames: &[Frame]) {
-    let (received, requests) = (received::<C>(frames), requests::<C>(frames));
-    one(criterion, &format!("decode {name}"), C::NAME, frames.len(), || decode::<C>(frames));
-    one(criterion, &format!("encode {name}"), C::NAME, received.len(), || encode::<C>(&received));
-    one(criterion, &format!("request {name}"), C::NAME, requests.len(), || request::<C>(&requests));
+    let inputs = Inputs::<C>::new(frames.to_vec());
+    for work in Work::ALL.into_iter().filter(|work| inputs.count(*work) > 0) {
+        one(criterion, &format!("{} {name}", work.name()), C::NAME, inputs.count(work), || inputs.run(work));
+    }
 }
 
-fn one(criterion: &mut Criterion<ProcessorTime>, group: &str, codec: &str, frames: usize, mut work: impl FnMut()) {
+fn one(criterion: &mut Criterion<ProcessorTime>, group: &str, codec: &str, count: usize, mut work: impl FnMut()) {
     let mut group = criterion.benchmark_group(group);
-    group.throughput(Throughput::Elements(frames as u64));
+    group.throughput(Throughput::Elements(count as u64));
     group.bench_function(codec, |bencher| bencher.iter(&mut work));
     group.finish();
 }

@@ -8,8 +8,8 @@ use std::fmt::Debug;
 use embedded_can::{ExtendedId, Frame as _, Id};
 
 use crate::frame::Frame;
-use crate::hand::{Direction, Identifier, Message, Received, Request, Unknown};
-use crate::{Codec, hand};
+use crate::hand::{Asked, Failure, Message, Received, Request, Target, is_controller, to_request};
+use crate::{Codec, each, hand};
 
 #[expect(clippy::pedantic, reason = "it is generated")]
 mod code {
@@ -23,51 +23,139 @@ pub struct Dbc;
 
 impl Codec for Dbc {
     const NAME: &'static str = "dbc-codegen";
-    type Received = Received;
+    type Received = (u32, Messages);
+    type Values = Received;
     type Request = Request;
+    type Asked = Asked;
 
-    fn decode(frame: &Frame) -> Result<Received, impl Debug> {
+    #[inline(always)]
+    fn decode(frame: &Frame) -> Result<(u32, Messages), impl Debug> {
         decode(frame)
     }
 
-    fn encode(received: &Received) -> Option<impl embedded_can::Frame> {
-        encode(received)
+    #[inline(always)]
+    fn take((id, messages): &(u32, Messages)) {
+        let [.., source] = id.to_be_bytes();
+        take!(source);
+        take(messages);
     }
 
-    fn request(request: &Request) -> Option<impl embedded_can::Frame> {
-        encode(&(request.identifier()?, request.message))
+    fn payloads(command: u8, payloads: &[[u8; 8]]) {
+        fn all(payloads: &[[u8; 8]], decode: impl Fn(&[u8]) -> Result<Messages, CanError>) {
+            each(payloads, |payload| {
+                decode(payload).as_ref().map(take).ok();
+            });
+        }
+        match command {
+            0x01 => all(payloads, |data| dbc::SystemOutput::try_from(data).map(Messages::SystemOutput)),
+            0x02 => all(payloads, |data| dbc::ModuleCount::try_from(data).map(Messages::ModuleCount)),
+            0x03 => all(payloads, |data| dbc::ModuleOutput::try_from(data).map(Messages::ModuleOutput)),
+            0x04 => all(payloads, |data| dbc::ModuleStatus::try_from(data).map(Messages::ModuleStatus)),
+            0x06 => all(payloads, |data| dbc::InputVoltage::try_from(data).map(Messages::InputVoltage)),
+            0x08 => all(payloads, |data| dbc::SystemOutputFixed::try_from(data).map(Messages::SystemOutputFixed)),
+            0x09 => all(payloads, |data| dbc::ModuleOutputFixed::try_from(data).map(Messages::ModuleOutputFixed)),
+            0x0A => all(payloads, |data| dbc::ModuleLimits::try_from(data).map(Messages::ModuleLimits)),
+            0x0B => all(payloads, |data| dbc::Barcode::try_from(data).map(Messages::Barcode)),
+            0x0C => all(payloads, |data| dbc::ExternalVoltage::try_from(data).map(Messages::ExternalVoltage)),
+            0x13 => all(payloads, |data| dbc::SetWalkIn::try_from(data).map(Messages::SetWalkIn)),
+            0x14 => all(payloads, |data| dbc::SetLed::try_from(data).map(Messages::SetLed)),
+            0x16 => all(payloads, |data| dbc::SetGroup::try_from(data).map(Messages::SetGroup)),
+            0x19 => all(payloads, |data| dbc::SetSleep::try_from(data).map(Messages::SetSleep)),
+            0x1A => all(payloads, |data| dbc::SetPower::try_from(data).map(Messages::SetPower)),
+            0x1B => all(payloads, |data| dbc::SetTotalOutput::try_from(data).map(Messages::SetTotalOutput)),
+            0x1C => all(payloads, |data| dbc::SetModuleSetpoint::try_from(data).map(Messages::SetModuleSetpoint)),
+            _ => all(payloads, |data| dbc::SetAddressMode::try_from(data).map(Messages::SetAddressMode)),
+        }
     }
 
-    fn to_request(received: &Received) -> Option<Request> {
-        hand::to_request(received)
+    #[inline(always)]
+    fn encode(Received { id, message }: &Received) -> Option<impl embedded_can::Frame> {
+        Some(Frame::of(*id, data(message).ok()?))
     }
 
-    fn to_hand(received: &Received) -> Received {
-        *received
+    #[inline(always)]
+    fn request(Request { message, target, controller }: &Request) -> Option<impl embedded_can::Frame> {
+        let (_, id) = target.shown().filter(|_| is_controller(*controller))?;
+        let (command, data) = (command(message), data(message).ok()?);
+        Some(Frame::of(id | u32::from(command) << 16 | u32::from(*controller), data))
+    }
+
+    /// A DBC does not say who answers.
+    fn ask(_: Target, _: u8) -> Option<Asked> {
+        None
+    }
+
+    fn reply(_: &Asked, _: &Frame) -> Option<Result<(f32, f32), Failure>> {
+        None
+    }
+
+    fn to_values(received: &(u32, Messages)) -> Received {
+        Self::to_hand(received)
+    }
+
+    fn to_request(values: &Received) -> Option<Request> {
+        to_request(values)
+    }
+
+    fn to_hand((id, messages): &(u32, Messages)) -> Received {
+        Received { id: *id, message: values(messages, *id) }
     }
 }
 
-fn decode(frame: &Frame) -> Result<Received, Unknown> {
-    let Id::Extended(id) = frame.id() else { return Err(Unknown) };
-    if frame.is_remote_frame() || id.as_raw() & !0xFF == 0x0757_F800 {
-        return Err(Unknown);
-    }
-    let identifier = Identifier::from(id.as_raw());
-    let known = usual(identifier).and_then(|known| ExtendedId::new(known.raw())).ok_or(Unknown)?;
-    let messages = Messages::from_can_message(known.into(), frame.data()).map_err(|_| Unknown)?;
-    Ok((identifier, values(&messages)))
-}
-
-/// Returns the identifier with the addresses that the DBC knows.
-fn usual(identifier: Identifier) -> Option<Identifier> {
-    let (target, source) = match hand::direction(&identifier)? {
-        Direction::ToModule => (0x00, 0xF0),
-        Direction::ToController => (0xF0, 0x00),
+/// Recognises a frame by the addresses that the DBC knows: request of controller F0 to module 00, and its reply.
+#[inline(always)]
+fn decode(frame: &Frame) -> Result<(u32, Messages), CanError> {
+    const UNKNOWN: CanError = CanError::UnknownMessageId(Id::Extended(ExtendedId::ZERO));
+    let Id::Extended(id) = frame.id() else { return Err(UNKNOWN) };
+    let id = id.as_raw();
+    let [.., target, source] = id.to_be_bytes();
+    let usual = match (is_controller(target), is_controller(source)) {
+        (false, true) => 0x0280_00F0,
+        (true, false) => 0x0280_F000,
+        _ => return Err(UNKNOWN),
     };
-    Some(Identifier { error: 0, device: 0xA, target, source, ..identifier })
+    let known = ExtendedId::new(id & 0x003F_0000 | usual).filter(|_| !frame.is_remote_frame()).ok_or(UNKNOWN)?;
+    Ok((id, Messages::from_can_message(Id::Extended(known), frame.data())?))
 }
 
-fn values(messages: &Messages) -> Message {
+/// Hands over each value, as a program takes it.
+#[inline(always)]
+fn take(messages: &Messages) {
+    match messages {
+        Messages::SystemOutput(m) => take!(f32::from_bits(m.voltage()), f32::from_bits(m.current())),
+        Messages::ModuleCount(m) => take!(m.count()),
+        Messages::ModuleOutput(m) => take!(f32::from_bits(m.voltage()), f32::from_bits(m.current())),
+        Messages::ModuleStatus(m) => take!(m.group(), m.temperature(), m.status_2(), m.status_1(), m.status_0()),
+        Messages::InputVoltage(m) => take!(m.ab(), m.bc(), m.ca()),
+        Messages::SystemOutputFixed(m) => take!(m.voltage(), m.current()),
+        Messages::ModuleOutputFixed(m) => take!(m.voltage(), m.current()),
+        Messages::ModuleLimits(m) => {
+            take!(m.maximum_voltage(), m.minimum_voltage(), m.maximum_current(), m.rated_power());
+        }
+        Messages::Barcode(m) => take!(m.letter(), m.number(), m.suffix()),
+        Messages::ExternalVoltage(m) => take!(m.voltage(), m.allowed_current()),
+        Messages::SetWalkIn(m) => take!(m.walk_in()),
+        Messages::WalkInInEffect(m) => take!(m.walk_in()),
+        Messages::SetLed(m) => take!(m.led()),
+        Messages::LedInEffect(m) => take!(m.led()),
+        Messages::SetGroup(m) => take!(m.group()),
+        Messages::GroupInEffect(m) => take!(m.group()),
+        Messages::SetSleep(m) => take!(m.sleep()),
+        Messages::SleepInEffect(m) => take!(m.sleep()),
+        Messages::SetPower(m) => take!(m.power()),
+        Messages::PowerInEffect(m) => take!(m.power()),
+        Messages::SetTotalOutput(m) => take!(m.voltage(), m.current()),
+        Messages::TotalOutputInEffect(m) => take!(m.voltage(), m.current()),
+        Messages::SetModuleSetpoint(m) => take!(m.voltage(), m.current()),
+        Messages::ModuleSetpointInEffect(m) => take!(m.voltage(), m.current()),
+        Messages::SetAddressMode(m) => take!(m.mode()),
+        Messages::AddressModeInEffect(m) => take!(m.mode()),
+        _ => (),
+    }
+}
+
+/// Returns the values in the types of the codec by hand.
+fn values(messages: &Messages, id: u32) -> Message {
     let double = f64::from;
     match messages {
         Messages::SystemOutput(m) => {
@@ -125,20 +213,17 @@ fn values(messages: &Messages) -> Message {
         }
         Messages::SetAddressMode(m) => Message::AddressMode(m.mode().into()),
         Messages::AddressModeInEffect(m) => Message::AddressMode(m.mode().into()),
-        _ => Message::Read,
+        _ => Message::Read(hand::command(id)),
     }
 }
 
-fn encode((identifier, message): &Received) -> Option<Frame> {
-    Frame::new(ExtendedId::new(identifier.raw())?, &data(message).ok()?)
-}
-
-/// Sends and receives what a module has in effect as one and the same message: they have one layout.
+/// Encodes what a module has in effect as what sets it: they have one layout.
+#[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it wants such types")]
 fn data(message: &Message) -> Result<[u8; 8], CanError> {
     let single = |value: f64| value as f32;
     Ok(match *message {
-        Message::Read => *dbc::ReadModuleOutput::new()?.raw(),
+        Message::Read(_) => *dbc::ReadModuleOutput::new()?.raw(),
         Message::SystemOutput { voltage_v, current_a } => {
             *dbc::SystemOutput::new(voltage_v.to_bits(), current_a.to_bits())?.raw()
         }
@@ -178,4 +263,20 @@ fn data(message: &Message) -> Result<[u8; 8], CanError> {
         }
         Message::AddressMode(value) => *dbc::SetAddressMode::new(value.into())?.raw(),
     })
+}
+
+/// Returns the command of a request.
+#[inline(always)]
+fn command(message: &Message) -> u8 {
+    match message {
+        Message::Read(command) => *command,
+        Message::WalkIn(_) => 0x13,
+        Message::Led(_) => 0x14,
+        Message::Group(_) => 0x16,
+        Message::Sleep(_) => 0x19,
+        Message::Power(_) => 0x1A,
+        Message::TotalOutput { .. } => 0x1B,
+        Message::ModuleSetpoint { .. } => 0x1C,
+        _ => 0x1F,
+    }
 }

@@ -42,7 +42,7 @@ fn frame(rng: &mut Rng, kind: Option<(u32, bool)>) -> Frame {
     let (target, source) = if is_reply { (controller, address) } else { (address, controller) };
     let id = device << 22 | command << 16 | target << 8 | source;
     let is_read = command < 0x13 && !is_reply;
-    Frame::of(id, if is_read { [0; 8] } else { data(rng, command) }).expect("29 bits")
+    Frame::of(id, if is_read { [0; 8] } else { data(rng, command) })
 }
 
 /// Returns the device number and the address of modules, as the command allows.
@@ -65,7 +65,9 @@ fn data(rng: &mut Rng, command: u32) -> [u8; 8] {
         0x02 => [0, 0, rng.u8(1..=60), 0, 0, 0, 0, 0],
         0x04 => [0, 0, rng.u8(..=0x3E), 0, rng.u8(..), rng.u8(..), rng.u8(..), rng.u8(..) & 0x3D],
         0x06 => halves([rng.u16(..5000), rng.u16(..5000), rng.u16(..5000), 0]),
-        0x08 | 0x09 | 0x1B | 0x1C => words([rng.u32(..=750_000), rng.u32(..=900_000)]),
+        0x08 | 0x09 => words([rng.u32(..=750_000), rng.u32(..=900_000)]),
+        0x1B => words([rng.u32(50_000..=750_000), rng.u32(..=900_000)]),
+        0x1C => words([rng.u32(50_000..=750_000), rng.u32(100..=50_000)]),
         0x0A => halves([rng.u16(500..=1000), rng.u16(50..=200), rng.u16(..=1000), rng.u16(..=3000)]),
         0x0B => barcode(rng.u64(..1_000_000_000_000), rng.u8(b'A'..=b'Z'), rng.u16(..10_000)),
         0x0C => halves([rng.u16(..=7500), rng.u16(..=1000), 0, 0]),

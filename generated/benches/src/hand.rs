@@ -1,11 +1,11 @@
-//! A codec of the same frames as firmware has it: written by hand, without anything that a frame does not need.
+//! A codec of the same frames as firmware has it: written by hand, with the checks of the generated one.
+//!
+//! It keeps nothing that a program can work out later, and looks for the reason only once a frame is refused.
+#![expect(clippy::cast_possible_truncation, reason = "parts of a word are taken so")]
 
-use std::fmt::Debug;
+use embedded_can::Id;
 
-use embedded_can::{ExtendedId, Frame as _, Id};
-
-use crate::Codec;
-use crate::frame::Frame;
+use super::frame::Frame;
 
 /// Named values: an enum that keeps what it has no name for.
 macro_rules! named {
@@ -22,6 +22,7 @@ macro_rules! named {
         }
 
         impl From<u8> for $name {
+            #[inline]
             fn from(raw: u8) -> Self {
                 match raw {
                     0 => Self::$zero,
@@ -32,6 +33,7 @@ macro_rules! named {
         }
 
         impl From<$name> for u8 {
+            #[inline]
             fn from(value: $name) -> Self {
                 match value {
                     $name::$zero => 0,
@@ -51,37 +53,11 @@ named! {
     AddressMode { Automatic, DipSwitch }
 }
 
-/// The fields of an identifier.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(missing_docs, reason = "the names say it")]
-pub struct Identifier {
-    pub error: u8,
-    pub device: u8,
-    pub command: u8,
-    pub target: u8,
-    pub source: u8,
-}
-
-impl From<u32> for Identifier {
-    fn from(id: u32) -> Self {
-        let [high, command, target, source] = id.to_be_bytes();
-        Self { error: high >> 2, device: (high & 3) << 2 | command >> 6, command: command & 0x3F, target, source }
-    }
-}
-
-impl Identifier {
-    /// Joins the fields.
-    pub fn raw(self) -> u32 {
-        let high = self.error << 2 | self.device >> 2;
-        u32::from_be_bytes([high, self.device << 6 | self.command, self.target, self.source])
-    }
-}
-
-/// The values of a frame; a request that reads has none.
+/// The values of a frame; a request that reads has its command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Message {
-    Read,
+    Read(u8),
     SystemOutput { voltage_v: f32, current_a: f32 },
     ModuleCount(u8),
     ModuleOutput { voltage_v: f32, current_a: f32 },
@@ -102,161 +78,283 @@ pub enum Message {
     AddressMode(AddressMode),
 }
 
-/// A frame: its identifier and its values.
-pub type Received = (Identifier, Message);
-
-/// A frame is none of the protocol.
+/// A frame of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unknown;
+pub struct Received {
+    /// The identifier.
+    pub id: u32,
+    /// The values.
+    pub message: Message,
+}
+
+/// Why a frame is none of the protocol, in the order of the tests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Problem {
+    /// It is a remote frame.
+    Frame,
+    /// It goes from one module to another.
+    Foreign,
+    /// The identifier has 11 bits, or does not show where the frame goes.
+    Identifier,
+    /// There is no such command.
+    Command,
+    /// It has not eight bytes.
+    Length,
+}
 
 /// Returns what a frame says.
+///
+/// Identifiers between modules need no test: no message has their command.
 ///
 /// # Errors
 ///
 /// Refuses a frame that is none of the protocol.
-#[inline]
-pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Unknown> {
-    let Id::Extended(id) = frame.id() else { return Err(Unknown) };
+#[inline(always)]
+pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
+    let Id::Extended(id) = frame.id() else { return refused(frame) };
+    let Ok(data) = frame.data().try_into() else { return refused(frame) };
     let id = id.as_raw();
-    if frame.is_remote_frame() || id & !0xFF == 0x0757_F800 {
-        return Err(Unknown);
+    if frame.is_remote_frame() || !has_direction(id) {
+        return refused(frame);
     }
-    let data: [u8; 8] = frame.data().try_into().map_err(|_| Unknown)?;
-    let identifier = Identifier::from(id);
-    let message = match direction(&identifier).ok_or(Unknown)? {
-        Direction::ToModule if identifier.command < 0x13 => read(identifier.command)?,
-        _ => values(identifier.command, data)?,
+    let command = command(id);
+    if !is_reply(id) && is_among(READS, command) {
+        return Ok(Received { id, message: Message::Read(command) });
+    }
+    payload(command, u64::from_be_bytes(data), || refused(frame), |message| Ok(Received { id, message }))
+}
+
+#[cold]
+fn refused(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
+    let id = match frame.id() {
+        _ if frame.is_remote_frame() => return Err(Problem::Frame),
+        Id::Standard(_) => return Err(Problem::Identifier),
+        Id::Extended(id) => id.as_raw(),
     };
-    Ok((identifier, message))
-}
-
-/// Where a frame goes.
-pub enum Direction {
-    /// A request.
-    ToModule,
-    /// A reply.
-    ToController,
-}
-
-/// Tells requests from replies by the addresses.
-pub fn direction(identifier: &Identifier) -> Option<Direction> {
-    let is_controller = |address: u8| (0xF0..=0xF8).contains(&address);
-    match (is_controller(identifier.target), is_controller(identifier.source)) {
-        (false, true) => Some(Direction::ToModule),
-        (true, false) => Some(Direction::ToController),
-        _ => None,
-    }
-}
-
-fn read(command: u8) -> Result<Message, Unknown> {
-    matches!(command, 0x01..=0x04 | 0x06 | 0x08..=0x0C).then_some(Message::Read).ok_or(Unknown)
-}
-
-#[inline]
-fn values(command: u8, data: [u8; 8]) -> Result<Message, Unknown> {
-    let [b0, b1, b2, b3, b4, b5, b6, b7] = data;
-    let [first, second] = [[b0, b1, b2, b3], [b4, b5, b6, b7]];
-    let milli = |word: [u8; 4]| f64::from(u32::from_be_bytes(word)) / 1000.0;
-    let tenths = |high: u8, low: u8| f64::from(u16::from_be_bytes([high, low])) / 10.0;
-    Ok(match command {
-        0x01 => Message::SystemOutput { voltage_v: f32::from_be_bytes(first), current_a: f32::from_be_bytes(second) },
-        0x02 => Message::ModuleCount(b2),
-        0x03 => Message::ModuleOutput { voltage_v: f32::from_be_bytes(first), current_a: f32::from_be_bytes(second) },
-        0x04 => Message::ModuleStatus { group: b2, temperature_c: b4.cast_signed(), status: [b5, b6, b7] },
-        0x06 => Message::InputVoltage { ab_v: tenths(b0, b1), bc_v: tenths(b2, b3), ca_v: tenths(b4, b5) },
-        0x08 => Message::SystemOutputFixed { voltage_v: milli(first), current_a: milli(second) },
-        0x09 => Message::ModuleOutputFixed { voltage_v: milli(first), current_a: milli(second) },
-        0x0A => Message::ModuleLimits {
-            maximum_v: u16::from_be_bytes([b0, b1]),
-            minimum_v: u16::from_be_bytes([b2, b3]),
-            maximum_a: tenths(b4, b5),
-            rated_w: f64::from(u16::from_be_bytes([b6, b7])) * 10.0,
-        },
-        0x0B => Message::Barcode {
-            letter: b0,
-            number: u64::from_be_bytes([0, 0, 0, b1, b2, b3, b4, b5]),
-            suffix: u16::from_be_bytes([b6, b7]),
-        },
-        0x0C => Message::ExternalVoltage { voltage_v: tenths(b0, b1), allowed_current_a: tenths(b2, b3) },
-        0x13 => Message::WalkIn(b0.into()),
-        0x14 => Message::Led(b0.into()),
-        0x16 => Message::Group(b0),
-        0x19 => Message::Sleep(b0.into()),
-        0x1A => Message::Power(b0.into()),
-        0x1B => Message::TotalOutput { voltage_v: milli(first), current_a: milli(second) },
-        0x1C => Message::ModuleSetpoint { voltage_v: milli(first), current_a: milli(second) },
-        0x1F => Message::AddressMode(b0.into()),
-        _ => return Err(Unknown),
+    Err(match command(id) {
+        _ if id & !0xFF == 0x0757_F800 => Problem::Foreign,
+        _ if !has_direction(id) => Problem::Identifier,
+        command if !is_reply(id) && is_among(READS, command) => Problem::Length,
+        command => payload(command, 0, || Problem::Command, |_| Problem::Length),
     })
 }
 
-/// Returns the frame, or nothing if a value does not fit.
-pub fn encode((identifier, message): &Received) -> Option<Frame> {
-    let id = ExtendedId::new(identifier.raw())?;
-    Frame::new(id, &data(message)?)
+/// Tests whether exactly one of both addresses is a controller's.
+#[inline(always)]
+fn has_direction(id: u32) -> bool {
+    is_controller(source(id)) != is_reply(id)
 }
 
-fn data(message: &Message) -> Option<[u8; 8]> {
-    let byte = |byte: u8| [byte, 0, 0, 0, 0, 0, 0, 0];
+#[inline(always)]
+fn is_reply(id: u32) -> bool {
+    is_controller((id >> 8) as u8)
+}
+
+#[inline(always)]
+pub(crate) fn is_controller(address: u8) -> bool {
+    (0xF0..=0xF8).contains(&address)
+}
+
+#[inline(always)]
+pub(crate) fn source(id: u32) -> u8 {
+    id as u8
+}
+
+#[inline(always)]
+pub(crate) fn command(id: u32) -> u8 {
+    (id >> 16) as u8 & 0x3F
+}
+
+/// The commands that read, as bits.
+const READS: u64 = TOTALS | 1 << 0x03 | 1 << 0x04 | 1 << 0x06 | 0xF << 0x09;
+/// Those of them that read totals.
+const TOTALS: u64 = 1 << 0x01 | 1 << 0x02 | 1 << 0x08;
+
+#[inline(always)]
+fn is_among(commands: u64, command: u8) -> bool {
+    command < 64 && commands >> command & 1 != 0
+}
+
+/// Hands the values of a payload on. Were they returned first, they would be copied twice.
+#[inline(always)]
+pub(crate) fn payload<T>(command: u8, word: u64, unknown: impl FnOnce() -> T, then: impl Fn(Message) -> T) -> T {
+    let byte = |number: u32| (word >> (56 - 8 * number)) as u8;
+    let half = |number: u32| (word >> (48 - 16 * number)) as u16;
+    let single = |number: u32| f32::from_bits((word >> (32 - 32 * number)) as u32);
+    let milli = |number: u32| f64::from((word >> (32 - 32 * number)) as u32) / 1000.0;
+    let tenths = |number: u32| f64::from(half(number)) / 10.0;
+    match command {
+        0x01 => then(Message::SystemOutput { voltage_v: single(0), current_a: single(1) }),
+        0x02 => then(Message::ModuleCount(byte(2))),
+        0x03 => then(Message::ModuleOutput { voltage_v: single(0), current_a: single(1) }),
+        0x04 => then(Message::ModuleStatus {
+            group: byte(2),
+            temperature_c: byte(4).cast_signed(),
+            status: [byte(5), byte(6), byte(7)],
+        }),
+        0x06 => then(Message::InputVoltage { ab_v: tenths(0), bc_v: tenths(1), ca_v: tenths(2) }),
+        0x08 => then(Message::SystemOutputFixed { voltage_v: milli(0), current_a: milli(1) }),
+        0x09 => then(Message::ModuleOutputFixed { voltage_v: milli(0), current_a: milli(1) }),
+        0x0A => then(Message::ModuleLimits {
+            maximum_v: half(0),
+            minimum_v: half(1),
+            maximum_a: tenths(2),
+            rated_w: f64::from(u32::from(half(3)) * 10),
+        }),
+        0x0B => then(Message::Barcode { letter: byte(0), number: word >> 16 & 0xFF_FFFF_FFFF, suffix: half(3) }),
+        0x0C => then(Message::ExternalVoltage { voltage_v: tenths(0), allowed_current_a: tenths(1) }),
+        0x13 => then(Message::WalkIn(byte(0).into())),
+        0x14 => then(Message::Led(byte(0).into())),
+        0x16 => then(Message::Group(byte(0))),
+        0x19 => then(Message::Sleep(byte(0).into())),
+        0x1A => then(Message::Power(byte(0).into())),
+        0x1B => then(Message::TotalOutput { voltage_v: milli(0), current_a: milli(1) }),
+        0x1C => then(Message::ModuleSetpoint { voltage_v: milli(0), current_a: milli(1) }),
+        0x1F => then(Message::AddressMode(byte(0).into())),
+        _ => unknown(),
+    }
+}
+
+/// Builds the frame of an identifier and values, unless they do not belong together or a value does not fit.
+///
+/// A request must also keep to its limits, and show an addressing mode and addresses that the document names.
+#[inline]
+pub fn encode(Received { id, message }: &Received) -> Option<Frame> {
+    if !has_direction(*id) {
+        return None;
+    }
+    let (known, word) = if is_reply(*id) {
+        reply(message)?
+    } else {
+        let Content { command, modes, word } = content(message)?;
+        (modes & mode(*id) != 0).then_some((command, word))?
+    };
+    (known == command(*id)).then(|| Frame::of(*id, word.to_be_bytes()))
+}
+
+/// Returns command and payload of a reply.
+#[inline(always)]
+fn reply(message: &Message) -> Option<(u8, u64)> {
     Some(match *message {
-        Message::Read => [0; 8],
-        Message::SystemOutput { voltage_v, current_a } | Message::ModuleOutput { voltage_v, current_a } => {
-            words(voltage_v.to_bits(), current_a.to_bits())
-        }
-        Message::ModuleCount(count) => [0, 0, count, 0, 0, 0, 0, 0],
+        Message::Read(_) => return None,
+        Message::SystemOutput { voltage_v, current_a } => (0x01, words(voltage_v.to_bits(), current_a.to_bits())),
+        Message::ModuleCount(count) => (0x02, u64::from(count) << 40),
+        Message::ModuleOutput { voltage_v, current_a } => (0x03, words(voltage_v.to_bits(), current_a.to_bits())),
         Message::ModuleStatus { group, temperature_c, status: [two, one, zero] } => {
-            [0, 0, group, 0, temperature_c.cast_unsigned(), two, one, zero]
+            (0x04, u64::from_be_bytes([0, 0, group, 0, temperature_c.cast_unsigned(), two, one, zero]))
         }
-        Message::InputVoltage { ab_v, bc_v, ca_v } => halves([tenths(ab_v)?, tenths(bc_v)?, tenths(ca_v)?, 0]),
+        Message::InputVoltage { ab_v, bc_v, ca_v } => {
+            (0x06, halves([half(ab_v * 10.0)?, half(bc_v * 10.0)?, half(ca_v * 10.0)?, 0]))
+        }
+        Message::SystemOutputFixed { voltage_v, current_a } => (0x08, words(milli(voltage_v)?, milli(current_a)?)),
+        Message::ModuleOutputFixed { voltage_v, current_a } => (0x09, words(milli(voltage_v)?, milli(current_a)?)),
         Message::ModuleLimits { maximum_v, minimum_v, maximum_a, rated_w } => {
-            halves([maximum_v, minimum_v, tenths(maximum_a)?, half(rated_w / 10.0)?])
+            (0x0A, halves([maximum_v, minimum_v, half(maximum_a * 10.0)?, half(rated_w / 10.0)?]))
         }
+        Message::Barcode { number, .. } if number >> 40 != 0 => return None,
         Message::Barcode { letter, number, suffix } => {
-            if number >> 40 != 0 {
-                return None;
-            }
-            (u64::from(letter) << 56 | number << 16 | u64::from(suffix)).to_be_bytes()
+            (0x0B, u64::from(letter) << 56 | number << 16 | u64::from(suffix))
         }
         Message::ExternalVoltage { voltage_v, allowed_current_a } => {
-            halves([tenths(voltage_v)?, tenths(allowed_current_a)?, 0, 0])
+            (0x0C, halves([half(voltage_v * 10.0)?, half(allowed_current_a * 10.0)?, 0, 0]))
         }
-        Message::SystemOutputFixed { voltage_v, current_a }
-        | Message::ModuleOutputFixed { voltage_v, current_a }
-        | Message::TotalOutput { voltage_v, current_a }
-        | Message::ModuleSetpoint { voltage_v, current_a } => words(milli(voltage_v)?, milli(current_a)?),
-        Message::WalkIn(value) => byte(value.into()),
-        Message::Led(value) => byte(value.into()),
-        Message::Group(group) => byte(group),
-        Message::Sleep(value) => byte(value.into()),
-        Message::Power(value) => byte(value.into()),
-        Message::AddressMode(value) => byte(value.into()),
+        Message::WalkIn(value) => (0x13, first(value)),
+        Message::Led(value) => (0x14, first(value)),
+        Message::Group(group) => (0x16, first(group)),
+        Message::Sleep(value) => (0x19, first(value)),
+        Message::Power(value) => (0x1A, first(value)),
+        Message::TotalOutput { voltage_v, current_a } => (0x1B, words(milli(voltage_v)?, milli(current_a)?)),
+        Message::ModuleSetpoint { voltage_v, current_a } => (0x1C, words(milli(voltage_v)?, milli(current_a)?)),
+        Message::AddressMode(value) => (0x1F, first(value)),
     })
 }
 
-fn words(first: u32, second: u32) -> [u8; 8] {
-    (u64::from(first) << 32 | u64::from(second)).to_be_bytes()
+/// What a request shows beside its addresses.
+struct Content {
+    command: u8,
+    /// The bits of its addressing modes.
+    modes: u8,
+    word: u64,
 }
 
-fn halves([a, b, c, d]: [u16; 4]) -> [u8; 8] {
-    (u64::from(a) << 48 | u64::from(b) << 32 | u64::from(c) << 16 | u64::from(d)).to_be_bytes()
+const MODULE: u8 = 1;
+const GROUP: u8 = 2;
+const BROADCAST: u8 = 4;
+const ALL_GROUPS: u8 = 8;
+/// Modes of what one module answers for all.
+const TOTAL: u8 = GROUP | BROADCAST | ALL_GROUPS;
+
+/// Returns what a request shows, if its values keep to their limits.
+#[inline(always)]
+fn content(message: &Message) -> Option<Content> {
+    const SET: u8 = MODULE | GROUP | BROADCAST;
+    let (command, modes, word) = match *message {
+        Message::Read(command) if is_among(TOTALS, command) => (command, TOTAL, 0),
+        Message::Read(command) if is_among(READS, command) => (command, MODULE | GROUP, 0),
+        Message::WalkIn(value) => (0x13, SET, first(value)),
+        Message::Led(value) => (0x14, SET, first(value)),
+        Message::Group(group @ 1..=0x3E) => (0x16, SET, first(group)),
+        Message::Sleep(value) => (0x19, SET, first(value)),
+        Message::Power(value) => (0x1A, SET | ALL_GROUPS, first(value)),
+        Message::TotalOutput { voltage_v, current_a } if (50.0..=750.0).contains(&voltage_v) => {
+            (0x1B, TOTAL, words(rounded(voltage_v * 1000.0), milli(current_a)?))
+        }
+        Message::ModuleSetpoint { voltage_v, current_a }
+            if (50.0..=750.0).contains(&voltage_v) && (0.1..=50.0).contains(&current_a) =>
+        {
+            (0x1C, SET, words(rounded(voltage_v * 1000.0), rounded(current_a * 1000.0)))
+        }
+        Message::AddressMode(value) => (0x1F, SET, first(value)),
+        _ => return None,
+    };
+    Some(Content { command, modes, word })
 }
 
+/// Returns the bit of the addressing mode that the identifier of a request shows, or none for undocumented addresses.
+#[inline(always)]
+fn mode(id: u32) -> u8 {
+    match (id >> 22 & 0xF, id >> 8 & 0xFF) {
+        (0xA, 0x00..=0x3B) => MODULE,
+        (0xA, 0x3F) => BROADCAST,
+        (0xB, 0x00..=0x3E) => GROUP,
+        (0xB, 0x3F) => ALL_GROUPS,
+        _ => 0,
+    }
+}
+
+#[inline(always)]
+fn first(byte: impl Into<u8>) -> u64 {
+    u64::from(byte.into()) << 56
+}
+
+#[inline(always)]
+fn words(first: u32, second: u32) -> u64 {
+    u64::from(first) << 32 | u64::from(second)
+}
+
+#[inline(always)]
+fn halves([a, b, c, d]: [u16; 4]) -> u64 {
+    u64::from(a) << 48 | u64::from(b) << 32 | u64::from(c) << 16 | u64::from(d)
+}
+
+/// Returns the nearest thousandth that 32 bits hold.
+#[inline(always)]
 fn milli(value: f64) -> Option<u32> {
-    rounded(value * 1000.0, u32::MAX.into())
+    let value = value * 1000.0;
+    (value > -0.5 && value < f64::from(u32::MAX) + 0.5).then(|| rounded(value))
 }
 
-fn tenths(value: f64) -> Option<u16> {
-    half(value * 10.0)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "the limit is that of 16 bits")]
+/// Returns the nearest integer that 16 bits hold.
+#[inline(always)]
 fn half(value: f64) -> Option<u16> {
-    rounded(value, u16::MAX.into()).map(|raw| raw as u16)
+    (value > -0.5 && value < f64::from(u16::MAX) + 0.5).then(|| rounded(value) as u16)
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
-fn rounded(value: f64, maximum: f64) -> Option<u32> {
-    (value >= 0.0 && value <= maximum).then_some((value + 0.5) as u32)
+/// Returns the nearest integer, with ties away from zero. A whole half would carry the largest number below it up.
+#[inline(always)]
+#[expect(clippy::cast_sign_loss, reason = "the limits are tested first")]
+fn rounded(value: f64) -> u32 {
+    (value + 0.5_f64.next_down()) as u32
 }
 
 /// Whom a request addresses.
@@ -273,92 +371,95 @@ pub enum Target {
 }
 
 impl Target {
-    /// Returns device number and address, unless the address is out of range.
-    fn address(self) -> Option<(u8, u8)> {
-        match self {
-            Self::Module(module) => (module <= 0x3B).then_some((0xA, module)),
-            Self::Group(group) => (group <= 0x3E).then_some((0xB, group)),
-            Self::Broadcast => Some((0xA, 0x3F)),
-            Self::AllGroups => Some((0xB, 0x3F)),
-        }
+    /// Returns the bit of the mode and the identifier's part, unless the document does not name the address.
+    #[inline(always)]
+    pub(crate) fn shown(self) -> Option<(u8, u32)> {
+        let id = |device: u32, address: u8| device << 22 | u32::from(address) << 8;
+        Some(match self {
+            Self::Module(module @ ..=0x3B) => (MODULE, id(0xA, module)),
+            Self::Group(group @ ..=0x3E) => (GROUP, id(0xB, group)),
+            Self::Broadcast => (BROADCAST, id(0xA, 0x3F)),
+            Self::AllGroups => (ALL_GROUPS, id(0xB, 0x3F)),
+            _ => return None,
+        })
     }
 }
 
-/// A request, whom it addresses and by whom it is sent.
+/// A request: its values, whom it addresses, and the address of the controller that sends it.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "the names say it")]
 pub struct Request {
-    /// The command.
-    pub command: u8,
-    /// The values.
     pub message: Message,
-    /// Whom it addresses.
     pub target: Target,
-    /// The address of the controller.
     pub controller: u8,
 }
 
-impl Request {
-    /// Returns the identifier, or nothing if the command has no such target or an address is out of range.
-    pub fn identifier(&self) -> Option<Identifier> {
-        let Self { command, target, controller, .. } = *self;
-        let is_allowed = match command {
-            0x01 | 0x02 | 0x08 | 0x1B => !matches!(target, Target::Module(_)),
-            0x1A => true,
-            0x13.. => !matches!(target, Target::AllGroups),
-            _ => matches!(target, Target::Module(_) | Target::Group(_)),
-        };
-        let (device, address) = target.address()?;
-        let identifier = Identifier { error: 0, device, command, target: address, source: controller };
-        (is_allowed && (0xF0..=0xF8).contains(&controller)).then_some(identifier)
-    }
-}
-
-/// Returns the frame of a request, or nothing if it has no such target or a value does not fit.
-pub fn request(request: &Request) -> Option<Frame> {
-    match request.message {
-        Message::Group(group) if !(1..=0x3E).contains(&group) => None,
-        message => encode(&(request.identifier()?, message)),
-    }
+/// Builds the frame of a request, unless it has no such target, an address is none, or a value is outside its limits.
+#[inline]
+pub fn request(Request { message, target, controller }: &Request) -> Option<Frame> {
+    let Content { command, modes, word } = content(message)?;
+    let (mode, id) = target.shown()?;
+    let id = id | u32::from(command) << 16 | u32::from(*controller);
+    (modes & mode != 0 && is_controller(*controller)).then(|| Frame::of(id, word.to_be_bytes()))
 }
 
 /// Returns what a frame asks for, unless it is a reply.
-pub fn to_request((identifier, message): &Received) -> Option<Request> {
-    let Identifier { device, command, target, source: controller, .. } = *identifier;
-    let Direction::ToModule = direction(identifier)? else { return None };
-    let target = match (device, target) {
+pub fn to_request(Received { id, message }: &Received) -> Option<Request> {
+    let [.., target, controller] = id.to_be_bytes();
+    let target = match (id >> 22 & 0xF, target) {
         (0xA, 0x3F) => Target::Broadcast,
         (_, 0x3F) => Target::AllGroups,
         (0xA, module) => Target::Module(module),
         (_, group) => Target::Group(group),
     };
-    Some(Request { command, message: *message, target, controller })
+    (!is_reply(*id)).then_some(Request { message: *message, target, controller })
 }
 
-/// The codec written by hand.
-pub struct Hand;
+/// The read of a module's output, after it was sent: what the identifier of a reply shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    mask: u32,
+    value: u32,
+}
 
-impl Codec for Hand {
-    const NAME: &'static str = "by hand";
-    type Received = Received;
-    type Request = Request;
+/// Why a reply has no values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// The module reports an error.
+    Error,
+    /// It has not eight bytes.
+    Length,
+}
 
-    fn decode(frame: &Frame) -> Result<Received, impl Debug> {
-        decode(frame)
+impl Asked {
+    /// Asks a module, or each module of a group, from this controller.
+    pub fn new(target: Target, controller: u8) -> Option<Self> {
+        let (device, mask, source) = match target {
+            Target::Module(module) => (0xA, 0x03FF_FFFF, module),
+            Target::Group(_) => (0xB, 0x03FF_FF00, 0),
+            _ => return None,
+        };
+        let value = device << 22 | 0x03 << 16 | u32::from(controller) << 8 | u32::from(source);
+        target.shown().filter(|_| is_controller(controller)).map(|_| Self { mask, value })
     }
 
-    fn encode(received: &Received) -> Option<impl embedded_can::Frame> {
-        encode(received)
-    }
-
-    fn request(values: &Request) -> Option<impl embedded_can::Frame> {
-        request(values)
-    }
-
-    fn to_request(received: &Received) -> Option<Request> {
-        to_request(received)
-    }
-
-    fn to_hand(received: &Received) -> Received {
-        *received
+    /// Returns voltage and current if a frame answers, even with an error.
+    #[inline]
+    pub fn reply(&self, frame: &impl embedded_can::Frame) -> Option<Result<(f32, f32), Failure>> {
+        if !frame.is_extended() || frame.is_remote_frame() {
+            return None;
+        }
+        let Id::Extended(id) = frame.id() else { return None };
+        let id = id.as_raw();
+        if (id ^ self.value) & self.mask != 0 || is_controller(source(id)) {
+            return None;
+        }
+        Some(match <[u8; 8]>::try_from(frame.data()) {
+            _ if id >> 26 != 0 => Err(Failure::Error),
+            Ok([v0, v1, v2, v3, a0, a1, a2, a3]) => {
+                Ok((f32::from_be_bytes([v0, v1, v2, v3]), f32::from_be_bytes([a0, a1, a2, a3])))
+            }
+            Err(_) => Err(Failure::Length),
+        })
     }
 }

@@ -1,11 +1,18 @@
 //! Three codecs of the same frames, to be measured beside each other.
 
+/// Hands values over to a program of which the compiler knows nothing.
+macro_rules! take {
+    ($($value:expr),*) => {{ $(::std::hint::black_box($value);)* }};
+}
+
+pub mod by_hand;
 pub mod dbc;
 pub mod frame;
 pub mod frames;
 pub mod generated;
 pub mod hand;
 pub mod processor_time;
+pub mod work;
 
 use std::fmt::Debug;
 use std::hint::black_box;
@@ -16,62 +23,54 @@ use frame::Frame;
 pub trait Codec {
     /// Name in the table.
     const NAME: &'static str;
-    /// A decoded frame.
+    /// A decoded frame, as the codec itself has it.
     type Received;
+    /// What a frame is encoded from.
+    type Values;
     /// The values of a request, and whom it addresses.
     type Request;
+    /// A request that waits for its reply.
+    type Asked;
 
-    /// Decodes a frame into typed physical values.
+    /// Decodes a frame.
     ///
     /// # Errors
     ///
     /// Refuses a frame that is none of the protocol.
     fn decode(frame: &Frame) -> Result<Self::Received, impl Debug>;
 
+    /// Takes the address of the sender and each physical value, one after the other.
+    fn take(received: &Self::Received);
+
+    /// Decodes payloads of one command, and takes their values.
+    fn payloads(command: u8, payloads: &[[u8; 8]]);
+
     /// Builds the frame of values that were decoded, whatever its kind.
-    fn encode(received: &Self::Received) -> Option<impl embedded_can::Frame>;
+    fn encode(values: &Self::Values) -> Option<impl embedded_can::Frame>;
 
     /// Builds the frame of a request from its values and its target.
     fn request(request: &Self::Request) -> Option<impl embedded_can::Frame>;
 
-    /// Returns what a decoded frame asks for, unless it is a reply.
-    fn to_request(received: &Self::Received) -> Option<Self::Request>;
+    /// Asks for a module's output, if the codec knows of replies.
+    fn ask(target: hand::Target, controller: u8) -> Option<Self::Asked>;
+
+    /// Returns voltage and current from a frame that answers.
+    fn reply(asked: &Self::Asked, frame: &Frame) -> Option<Result<(f32, f32), hand::Failure>>;
+
+    /// Returns the values of a decoded frame.
+    fn to_values(received: &Self::Received) -> Self::Values;
+
+    /// Returns what a frame with these values asks for, unless it is a reply.
+    fn to_request(values: &Self::Values) -> Option<Self::Request>;
 
     /// Returns the values in the types of the hand-written codec, so that they can be compared.
     fn to_hand(received: &Self::Received) -> hand::Received;
 }
 
-/// Decodes every frame.
-pub fn decode<C: Codec>(frames: &[Frame]) {
-    for frame in frames {
-        black_box(&C::decode(black_box(frame)));
+/// Runs `work` on inputs of which the compiler knows nothing.
+#[inline(always)]
+fn each<T>(inputs: &[T], work: impl Fn(&T)) {
+    for input in inputs {
+        work(black_box(input));
     }
-}
-
-/// Encodes everything that was decoded.
-pub fn encode<C: Codec>(received: &[C::Received]) {
-    for received in received {
-        black_box(&C::encode(black_box(received)));
-    }
-}
-
-/// Builds every request.
-pub fn request<C: Codec>(requests: &[C::Request]) {
-    for request in requests {
-        black_box(&C::request(black_box(request)));
-    }
-}
-
-/// Returns what the frames are decoded to.
-///
-/// # Panics
-///
-/// If the codec refuses one.
-pub fn received<C: Codec>(frames: &[Frame]) -> Vec<C::Received> {
-    frames.iter().map(|frame| C::decode(frame).expect("a frame of the protocol")).collect()
-}
-
-/// Returns the requests among the frames.
-pub fn requests<C: Codec>(frames: &[Frame]) -> Vec<C::Request> {
-    received::<C>(frames).iter().filter_map(C::to_request).collect()
 }

@@ -1,24 +1,32 @@
-//! Prints what `cargo bench` measured, with the instructions that valgrind counts, as a Markdown table.
+//! Prints the instructions that valgrind counts and the times that `cargo bench` measured, as Markdown tables.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
+use canspec_benches::Codec;
+use canspec_benches::by_hand::Hand;
 use canspec_benches::dbc::Dbc;
 use canspec_benches::frames;
 use canspec_benches::generated::Generated;
-use canspec_benches::hand::Hand;
-use canspec_benches::{Codec, decode, encode, received, request, requests};
+use canspec_benches::work::{Inputs, Work};
 
 /// How many distinct frames valgrind sees.
 const COUNTED: usize = 20_000;
 const CODECS: [&str; 3] = [Generated::NAME, Hand::NAME, Dbc::NAME];
+/// The profiles of cargo, with the names that people know.
+const PROFILES: [(&str, &str); 2] = [("lto", "LTO"), ("release", "release")];
 
 fn main() {
     let arguments: Vec<String> = env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        [] => table(),
+        [] => {
+            instructions();
+            println!();
+            times();
+        }
         [codec, work, passes] => {
+            let work = Work::ALL.into_iter().find(|known| known.name() == work).expect("a work");
             let passes = passes.parse().expect("a number of passes");
             match codec {
                 Generated::NAME => run::<Generated>(work, passes),
@@ -30,46 +38,82 @@ fn main() {
     }
 }
 
-/// Works `passes` times through the frames, so that valgrind can count.
-fn run<C: Codec>(work: &str, passes: usize) {
-    let frames = frames::distinct(COUNTED);
-    let (received, requests) = (received::<C>(&frames), requests::<C>(&frames));
+/// Works `passes` times through the frames, so that valgrind can count, and prints how often a pass does the work.
+fn run<C: Codec>(work: Work, passes: usize) {
+    let inputs = Inputs::<C>::new(frames::distinct(COUNTED));
+    println!("{}", inputs.count(work));
     for _ in 0..passes {
-        match work {
-            "decode" => decode::<C>(&frames),
-            "encode" => encode::<C>(&received),
-            _ => request::<C>(&requests),
-        }
+        inputs.run(work);
     }
 }
 
-fn table() {
-    println!("| time and instructions a frame | {} |", CODECS.join(" | "));
+fn instructions() {
+    let programs = PROFILES.map(|(profile, name)| (name, built(profile)));
+    let columns = CODECS.map(|codec| programs.each_ref().map(|(name, _)| format!("{codec}, {name}")).join(" | "));
+    println!("| instructions | {} |", columns.join(" | "));
+    println!("|---|{}", "--:|".repeat(CODECS.len() * PROFILES.len()));
+    for work in Work::ALL {
+        let cells =
+            CODECS.map(|codec| programs.each_ref().map(|(_, program)| counted(program, codec, work)).join(" | "));
+        println!("| {} | {} |", work.name(), cells.join(" | "));
+    }
+}
+
+/// Builds this program in a profile, and returns its path.
+fn built(profile: &str) -> PathBuf {
+    let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(["build", "--quiet", "--bin", "table", "--profile", profile, "--target-dir"])
+        .arg(target())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .status();
+    assert!(status.is_ok_and(|status| status.success()), "this program is built in the profile `{profile}`");
+    target().join(profile).join("table")
+}
+
+/// Returns the instructions of one work: what three passes take more than one.
+#[expect(clippy::cast_precision_loss, reason = "it is no exact number anyway")]
+fn counted(program: &Path, codec: &str, work: Work) -> String {
+    let passes = [1, 3].map(|passes| valgrind(program, codec, work, passes));
+    match passes {
+        [Some((_, 0)), _] => "-".into(),
+        [Some((one, count)), Some((three, _))] => format!("{:.0}", (three - one) / (2 * count) as f64),
+        _ => "no valgrind".into(),
+    }
+}
+
+/// Returns how many instructions a program takes for its passes, and how often a pass does the work.
+fn valgrind(program: &Path, codec: &str, work: Work, passes: usize) -> Option<(f64, usize)> {
+    let output = Command::new("valgrind")
+        .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
+        .arg(program)
+        .args([codec, work.name(), &passes.to_string()])
+        .output()
+        .ok()?;
+    let [text, count] = [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).into_owned());
+    let line = text.lines().find(|line| line.contains("refs:"))?;
+    Some((line.rsplit(' ').next()?.replace(',', "").parse().ok()?, count.trim().parse().ok()?))
+}
+
+fn times() {
+    let groups =
+        Work::ALL.iter().flat_map(|work| ["distinct", "loop"].map(|frames| format!("{} {frames}", work.name())));
+    let rows: Vec<_> = groups.map(|group| (CODECS.map(|codec| time(&group, codec)), group)).collect();
+    if rows.iter().flat_map(|(times, _)| times).all(Option::is_none) {
+        return println!("Processor time: not measured; `cargo bench` measures it.");
+    }
+    println!("| processor time | {} |", CODECS.join(" | "));
     println!("|---|{}", "--:|".repeat(CODECS.len()));
-    for work in ["decode", "encode", "request"] {
-        row(&format!("{work} distinct"), |codec| {
-            let instructions =
-                instructions(codec, work).map_or_else(|| "no valgrind".into(), |count| format!("{count:.0}"));
-            format!("{}, {instructions}", time(&format!("{work} distinct"), codec))
-        });
-        row(&format!("{work} loop"), |codec| time(&format!("{work} loop"), codec));
+    for (times, group) in rows {
+        println!("| {group} | {} |", times.map(|time| time.unwrap_or_else(|| "-".into())).join(" | "));
     }
-}
-
-fn row(name: &str, cell: impl Fn(&str) -> String) {
-    println!("| {name} | {} |", CODECS.map(cell).join(" | "));
 }
 
 /// Returns what criterion measured.
-fn time(group: &str, codec: &str) -> String {
+fn time(group: &str, codec: &str) -> Option<String> {
     let folder = target().join("criterion").join(group).join(codec).join("new");
-    match (
-        number(&folder, "estimates.json", "/median/point_estimate"),
-        number(&folder, "benchmark.json", "/throughput/Elements"),
-    ) {
-        (Some(nanoseconds), Some(frames)) => format!("{:.1} ns", nanoseconds / frames),
-        _ => "not measured".into(),
-    }
+    let nanoseconds = number(&folder, "estimates.json", "/median/point_estimate")?;
+    let count = number(&folder, "benchmark.json", "/throughput/Elements")?;
+    Some(format!("{:.1} ns", nanoseconds / count))
 }
 
 fn number(folder: &Path, file: &str, pointer: &str) -> Option<f64> {
@@ -80,27 +124,5 @@ fn number(folder: &Path, file: &str, pointer: &str) -> Option<f64> {
 /// Returns the target folder: this program stands in a folder of it.
 fn target() -> PathBuf {
     let program = env::current_exe().expect("a program has a path");
-    program.ancestors().nth(2).expect("it stands in target/release").into()
-}
-
-/// Counts the instructions a frame: what three passes take more than one.
-#[expect(clippy::cast_precision_loss, reason = "it is no exact number anyway")]
-fn instructions(codec: &str, work: &str) -> Option<f64> {
-    let frames = frames::distinct(COUNTED);
-    let frames = if work == "request" { requests::<Hand>(&frames).len() } else { frames.len() };
-    Some((valgrind(codec, work, 3)? - valgrind(codec, work, 1)?) / (2 * frames) as f64)
-}
-
-/// Returns how many instructions this program takes for its passes.
-fn valgrind(codec: &str, work: &str, passes: usize) -> Option<f64> {
-    let program = env::current_exe().ok()?;
-    let output = Command::new("valgrind")
-        .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
-        .arg(program)
-        .args([codec, work, &passes.to_string()])
-        .output()
-        .ok()?;
-    let text = String::from_utf8(output.stderr).ok()?;
-    let line = text.lines().find(|line| line.contains("refs:"))?;
-    line.rsplit(' ').next()?.replace(',', "").parse().ok()
+    program.ancestors().nth(2).expect("it stands in a profile's folder").into()
 }
