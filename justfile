@@ -8,9 +8,9 @@ test:
 ci:
     .ci/run
 
-# A table of how many bytes generated code takes.
-size:
-    cargo run --quiet --bin size
+# A table of how many bytes generated code takes, and the codec by hand; words choose among the rows.
+size *words:
+    cargo run --quiet --bin size -- {{words}}
 
 # Instructions of the generated codecs beside a hand-written one and dbc-codegen, with LTO and without.
 bench:

@@ -1,6 +1,7 @@
 //! Programs without the standard library, which cannot be linked if they can panic.
 
 mod binary;
+mod by_hand;
 mod calls;
 mod others;
 

@@ -1,6 +1,6 @@
 //! Three codecs of the same frames, to be measured beside each other.
 
-/// Hands values over to a program of which the compiler knows nothing.
+/// Hands values over, and the compiler cannot know what happens to them.
 macro_rules! take {
     ($($value:expr),*) => {{ $(::std::hint::black_box($value);)* }};
 }
@@ -67,7 +67,7 @@ pub trait Codec {
     fn to_hand(received: &Self::Received) -> hand::Received;
 }
 
-/// Runs `work` on inputs of which the compiler knows nothing.
+/// Runs `work` on inputs that the compiler cannot foresee.
 #[inline(always)]
 fn each<T>(inputs: &[T], work: impl Fn(&T)) {
     for input in inputs {

@@ -1,4 +1,4 @@
-//! Prints how many bytes generated code takes, as a Markdown table.
+//! Prints how many bytes generated code takes, as a Markdown table. Words choose among its rows.
 #![expect(clippy::print_stdout, reason = "the table is what people call it for")]
 
 use std::env::consts::ARCH;
@@ -31,7 +31,8 @@ fn main() -> io::Result<()> {
         );
     }
     println!("| | {} |\n|---|{}", headings.join(" | "), "---:|".repeat(headings.len()));
-    for (name, program) in programs() {
+    let words: Vec<_> = env::args().skip(1).collect();
+    for (name, program) in programs().into_iter().filter(|(name, _)| words.iter().all(|word| name.contains(word))) {
         let cells: io::Result<Vec<_>> = columns.iter().map(|column| cell(&program, &folder, column)).collect();
         println!("| {name} | {} |", cells?.join(" | "));
     }
@@ -68,7 +69,11 @@ fn programs() -> Vec<(String, Program)> {
             (format!("`{name}`: `{message}` alone"), Program::one_message(codec)),
         ]
     };
-    codecs.iter().flat_map(of_codec).collect()
+    let by_hand = [
+        ("`infy` by hand: decode".to_owned(), Program::decode_by_hand()),
+        ("`infy` by hand: encode".to_owned(), Program::encode_by_hand()),
+    ];
+    codecs.iter().flat_map(of_codec).chain(by_hand).collect()
 }
 
 fn is_installed(target: &str) -> bool {
