@@ -12,7 +12,7 @@ ci:
 size *words:
     cargo run --quiet --bin size -- {{words}}
 
-# Instructions of the generated codecs beside a hand-written one and dbc-codegen, with LTO and without.
+# Instructions of the generated codecs beside a hand-written one, dbc-codegen and cantools, with LTO and without.
 bench:
     cd generated/benches && cargo test --release --quiet && cargo run --release --quiet
 

@@ -1,5 +1,7 @@
 //! Prints the instructions that valgrind counts and the times that `cargo bench` measured, as Markdown tables.
 
+mod cantools;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
@@ -48,14 +50,19 @@ fn run<C: Codec>(work: Work, passes: usize) {
 }
 
 fn instructions() {
-    let programs = PROFILES.map(|(profile, name)| (name, built(profile)));
-    let columns = CODECS.map(|codec| programs.each_ref().map(|(name, _)| format!("{codec}, {name}")).join(" | "));
-    println!("| instructions | {} |", columns.join(" | "));
-    println!("|---|{}", "--:|".repeat(CODECS.len() * PROFILES.len()));
+    let programs = PROFILES.map(|(profile, _)| built(profile));
+    let codecs = CODECS.map(|codec| (codec, programs.each_ref().map(|program| vec![program.clone(), codec.into()])));
+    let mut columns = codecs.to_vec();
+    match cantools::programs(&target().join("cantools"), &frames::distinct(COUNTED)) {
+        Ok(programs) => columns.push(("cantools' C", programs)),
+        Err(missing) => println!("SKIPPED: cantools' C, which needs {missing}\n"),
+    }
+    let headings = columns.iter().flat_map(|(codec, _)| PROFILES.map(|(_, name)| format!("{codec}, {name}")));
+    println!("| instructions | {} |", headings.collect::<Vec<_>>().join(" | "));
+    println!("|---|{}", "--:|".repeat(columns.len() * PROFILES.len()));
     for work in Work::ALL {
-        let cells =
-            CODECS.map(|codec| programs.each_ref().map(|(_, program)| counted(program, codec, work)).join(" | "));
-        println!("| {} | {} |", work.name(), cells.join(" | "));
+        let cells = columns.iter().flat_map(|(_, commands)| commands).map(|command| counted(command, work));
+        println!("| {} | {} |", work.name(), cells.collect::<Vec<_>>().join(" | "));
     }
 }
 
@@ -72,21 +79,21 @@ fn built(profile: &str) -> PathBuf {
 
 /// Returns the instructions of one work: what three passes take more than one.
 #[expect(clippy::cast_precision_loss, reason = "it is no exact number anyway")]
-fn counted(program: &Path, codec: &str, work: Work) -> String {
-    let passes = [1, 3].map(|passes| valgrind(program, codec, work, passes));
+fn counted(command: &[PathBuf], work: Work) -> String {
+    let passes = [1, 3].map(|passes| valgrind(command, work, passes));
     match passes {
         [Some((_, 0)), _] => "-".into(),
         [Some((one, count)), Some((three, _))] => format!("{:.0}", (three - one) / (2 * count) as f64),
-        _ => "no valgrind".into(),
+        _ => "not counted".into(),
     }
 }
 
-/// Returns how many instructions a program takes for its passes, and how often a pass does the work.
-fn valgrind(program: &Path, codec: &str, work: Work, passes: usize) -> Option<(f64, usize)> {
+/// Returns how many instructions a command takes for its passes, and how often a pass does the work.
+fn valgrind(command: &[PathBuf], work: Work, passes: usize) -> Option<(f64, usize)> {
     let output = Command::new("valgrind")
         .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
-        .arg(program)
-        .args([codec, work.name(), &passes.to_string()])
+        .args(command)
+        .args([work.name(), &passes.to_string()])
         .output()
         .ok()?;
     let [text, count] = [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).into_owned());
