@@ -107,14 +107,14 @@ int main(int argc, char **argv) {
         if (!keep(&frames[count], &values[count])) return 3;
     }
 #ifdef CHECK
-    // It cuts off where the others round, so a few frames come back with another last digit.
+    // It cuts off where the others round, so one frame in a hundred comes back changed.
     size_t cut_off = 0;
     for (size_t i = 0; i < count; i++) {
         struct frame again;
         if (!encode(&values[i], &again)) return 4;
         cut_off += memcmp(again.data, frames[i].data, 8) != 0;
     }
-    return cut_off * 20 > count ? 5 : 0;
+    return cut_off * 50 > count ? 5 : 0;
 #endif
     int passes = atoi(argv[3]);
     if (!strcmp(argv[2], "payload alone")) {
