@@ -146,6 +146,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn bytes_are_filled_up_with_zeros() {
+        let bytes = [0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88, 0x99];
+        for length in 0..=bytes.len() {
+            let mut filled = [0; 8];
+            filled.iter_mut().zip(&bytes[..length]).for_each(|(place, byte)| *place = *byte);
+            assert_eq!(padded(&bytes[..length]), filled);
+        }
+    }
+
+    #[test]
     fn a_frame_is_written_as_in_a_log() {
         let frame = Frame::new_raw(0x029C_03F0, true, [0x00, 0x0B, 0x71, 0xB0, 0x00, 0x00, 0x3A, 0x98], 8);
         assert_eq!(frame.to_string(), "029C03F0#000B71B000003A98");
