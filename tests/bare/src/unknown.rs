@@ -1,6 +1,6 @@
 //! Values that the compiler cannot foresee.
 
-use canspec_runtime::plumbing::Raw;
+use canspec_runtime::plumbing::{Raw, Who};
 use canspec_runtime::{Bcd, Destination, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
@@ -47,6 +47,17 @@ integers!(u8 u16 u32 usize i8 i16 i32 i64);
 impl Unknown for bool {
     fn unknown() -> Self {
         unknown::<u8>() & 1 != 0
+    }
+}
+
+impl Unknown for Who {
+    fn unknown() -> Self {
+        match unknown::<u8>() {
+            0 => Self::One,
+            1 => Self::Each,
+            2 => Self::Coordinator,
+            _ => Self::Nobody,
+        }
     }
 }
 
