@@ -8,8 +8,9 @@ use serde_json::Value;
 
 use crate::{protocol, specs};
 
-/// Longest complaint about a line, and longest table of a frame of it, which may be as long as its protocol's names.
-const COMPLAINT: usize = 400;
+/// Longest complaint about a line, which shows 40 characters of it, and escapes each.
+const COMPLAINT: usize = 700;
+/// Longest table of a frame of it, which may be as long as its protocol's names.
 const TABLE: usize = 10_000;
 
 static PROTOCOLS: LazyLock<Vec<Protocol>> = LazyLock::new(|| specs("specs").into_iter().map(protocol).collect());
