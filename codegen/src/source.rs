@@ -114,8 +114,6 @@ fn not_utf8(name: &str, error: &FromUtf8Error) -> Diagnostics {
 }
 
 fn forbidden_character(span: Range<usize>, character: char, what: &str) -> Diagnostic {
-    // One that ends a line is no mistake.
-    let what = if character == '\r' { "carriage return without a line feed" } else { what };
     let message = format!("the {what} U+{:04X} may not stand in a spec", u32::from(character));
     Diagnostic::error(&rules::ENCODING, span, message).help("remove it")
 }

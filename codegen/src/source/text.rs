@@ -76,7 +76,7 @@ impl Source {
 pub fn forbidden(character: char) -> Option<&'static str> {
     match character {
         ' '..='~' | '\t' | '\n' => None,
-        '\r' => Some("carriage return"),
+        '\r' => Some("carriage return that ends no line"),
         BYTE_ORDER_MARK => Some("byte order mark"),
         '\u{85}' | '\u{2028}' | '\u{2029}' => Some("line separator that not every reader takes for one"),
         '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => Some("mark that reverses the direction of text"),

@@ -63,7 +63,7 @@ fn characters_that_nobody_sees_are_refused() {
 #[test]
 fn a_carriage_return_by_itself_is_refused() {
     let expected =
-        "mini.yaml:2:5: error[encoding]: the carriage return without a line feed U+000D may not stand in a spec";
+        "mini.yaml:2:5: error[encoding]: the carriage return that ends no line U+000D may not stand in a spec";
     assert_eq!(refusal(b"a: b\r\nc: d\re: f\r\n"), expected);
 }
 
