@@ -151,6 +151,12 @@ impl Filter {
         self.id_bits(other.mask, other.value)
     }
 
+    /// Tests whether an identifier of the right width shows this and `other`. If both require a bit, `other` counts.
+    #[inline(always)]
+    pub(crate) const fn matches_id_narrowed(&self, other: IdFilter, id: u32) -> bool {
+        (id ^ self.id_value) & self.id_mask & !other.mask == 0 && (id ^ other.value) & other.mask == 0
+    }
+
     /// Also requires what `other` requires. If both require a bit, `other` counts.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {

@@ -53,6 +53,21 @@ impl Frame {
         Self::new_raw(self.id, self.extended, data, self.length)
     }
 
+    /// Copies the data of a classic data frame, which must have `length` bytes if that is known.
+    #[inline(always)]
+    pub(crate) fn copied(
+        id: u32,
+        extended: bool,
+        length: Option<u8>,
+        frame: &impl embedded_can::Frame,
+    ) -> Option<Self> {
+        let bytes = frame.data();
+        let is_right = length.is_none_or(|length| usize::from(length) == bytes.len());
+        let actual =
+            u8::try_from(bytes.len()).ok().filter(|actual| is_right && *actual <= 8 && frame.is_data_frame())?;
+        Some(Self { id, extended, length: length.unwrap_or(actual), data: padded(bytes) })
+    }
+
     #[inline]
     pub(crate) fn length(&self) -> usize {
         self.length.into()
@@ -119,11 +134,9 @@ pub fn raw_id(id: Id) -> (u32, bool) {
 }
 
 /// Copies a classic data frame.
-#[inline]
 pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
-    let (bytes, (id, extended)) = (frame.data(), raw_id(frame.id()));
-    let length = u8::try_from(bytes.len()).ok().filter(|length| *length <= 8 && frame.is_data_frame())?;
-    Some(Frame { id, extended, length, data: padded(bytes) })
+    let (id, extended) = raw_id(frame.id());
+    Frame::copied(id, extended, None, frame)
 }
 
 /// Returns the first eight of `bytes`, filled up with zeros.

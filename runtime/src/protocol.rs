@@ -2,9 +2,8 @@
 
 use core::fmt::{self, Debug};
 
-use embedded_can::Frame as _;
-
 use crate::address::Rank;
+use crate::frame::raw_id;
 use crate::layout::Task;
 use crate::{Entry, Exchange, Filter, Frame, Kind, Mode};
 
@@ -18,6 +17,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const NORMAL: Filter;
     /// All addressing modes.
     const MODES: &'static [Mode];
+    /// The number of data bytes that every frame has, if all have as many.
+    const LENGTH: Option<u8> = None;
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 
@@ -65,6 +66,12 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
 
     /// Tests whether an identifier goes to the controller.
     fn is_to_controller(id: u32) -> bool;
+
+    /// Tells for each of [`Protocol::MODES`] whether an identifier is one of its requests, and the
+    /// document names all addresses in it.
+    fn documented_modes(_: u32) -> impl Iterator<Item = bool> {
+        core::iter::empty()
+    }
 }
 
 /// A message from a frame, and the kind of that frame.
@@ -144,18 +151,23 @@ impl fmt::Display for Problem {
 
 impl core::error::Error for Problem {}
 
-/// Tests the identifier, and tells whether it goes to a module.
-#[inline]
-pub fn is_to_module<P: Protocol>(frame: &Frame) -> Result<bool, Problem> {
-    let id = frame.raw_id();
-    let has_width = frame.is_extended() == P::FRAME.is_extended();
-    if has_width && P::Identifier::is_foreign(id) {
-        return Err(Problem::Foreign);
+/// Returns the identifier of a frame if it has the right width.
+#[inline(always)]
+pub fn own_id<P: Protocol>(frame: &impl embedded_can::Frame) -> Option<u32> {
+    let (id, extended) = raw_id(frame.id());
+    (extended == P::FRAME.is_extended()).then_some(id)
+}
+
+/// Tells whether an identifier goes to a module or to the controller. `None` means that it does not belong to the
+/// protocol.
+#[inline(always)]
+pub fn is_to_module<P: Protocol>(id: u32) -> Option<bool> {
+    if !P::FRAME.matches_id(id) || P::Identifier::is_foreign(id) {
+        return None;
     }
-    match (P::Identifier::is_to_module(id), P::Identifier::is_to_controller(id)) {
-        (to_module, to_controller) if has_width && P::FRAME.matches_id(id) && to_module != to_controller => {
-            Ok(to_module)
-        }
-        _ => Err(Problem::Identifier),
+    if P::Identifier::is_to_module(id) {
+        (!P::Identifier::is_to_controller(id)).then_some(true)
+    } else {
+        P::Identifier::is_to_controller(id).then_some(false)
     }
 }

@@ -4,7 +4,7 @@ use core::mem::discriminant;
 
 use crate::frame::classic;
 use crate::layout::Signals;
-use crate::protocol::{Recognised, is_to_module};
+use crate::protocol::{Recognised, is_to_module, own_id};
 use crate::reply::{has_error, selected};
 use crate::{
     Addressing, AnySignal, Data, Error, Exchange, Failure, Frame, IdentifierFields, Kind, Payload, Place, Problem,
@@ -16,11 +16,13 @@ use crate::{
 pub struct Received<P: Protocol> {
     content: P,
     exchange: &'static Exchange,
-    kind: Kind,
-    model: Option<u8>,
-    /// Another identifier than the frame's.
-    identifier: Option<P::Identifier>,
     frame: Frame,
+    /// The identifier to encode.
+    id: u32,
+    model: Option<u8>,
+    kind: Kind,
+    /// Whether the content belongs to another message than the frame.
+    is_other: bool,
 }
 
 impl<P: Protocol> Received<P> {
@@ -48,15 +50,20 @@ impl<P: Protocol> Received<P> {
 
     #[inline]
     fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        let frame = classic(frame).ok_or(Problem::Frame)?;
-        let is_request = is_to_module::<P>(&frame)?;
-        match if is_request { P::request(&frame, model) } else { P::reply(&frame, model) } {
-            Some(recognised) if recognised.has_length_of(&frame) => {
-                let Recognised { exchange, kind, message: content } = recognised;
-                Ok(Self { content, exchange, kind, model, identifier: None, frame })
-            }
-            _ => Err(problem::<P>(is_request, &frame)),
+        Self::recognised(model, frame).ok_or_else(|| problem::<P>(frame))
+    }
+
+    #[inline(always)]
+    fn recognised(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<Self> {
+        let id = own_id::<P>(frame)?;
+        let is_request = is_to_module::<P>(id)?;
+        let frame = Frame::copied(id, P::FRAME.is_extended(), P::LENGTH, frame)?;
+        let recognised = if is_request { P::request(&frame, model) } else { P::reply(&frame, model) };
+        let Recognised { exchange, kind, message: content } = recognised?;
+        if P::LENGTH.is_none() && usize::from(exchange.data_length()) != frame.length() {
+            return None;
         }
+        Some(Self { content, exchange, frame, id, model, kind, is_other: false })
     }
 
     /// Returns what a request asks for.
@@ -88,19 +95,20 @@ impl<P: Protocol> Received<P> {
     /// Returns the identifier.
     #[inline]
     pub fn identifier(&self) -> P::Identifier {
-        self.identifier.unwrap_or_else(|| P::Identifier::FROM_RAW(self.frame.raw_id()))
+        P::Identifier::FROM_RAW(self.id)
     }
 
     /// Returns the same message under another identifier. [`encode`](Self::encode) makes its frame.
     #[must_use]
-    pub const fn with_identifier(self, identifier: P::Identifier) -> Self {
-        Self { identifier: Some(identifier), ..self }
+    pub fn with_identifier(self, identifier: P::Identifier) -> Self {
+        Self { id: P::Identifier::TO_RAW(identifier), ..self }
     }
 
     /// Returns other values under the same identifier. [`encode`](Self::encode) makes their frame.
     #[must_use]
-    pub const fn with_content(self, content: P) -> Self {
-        Self { content, ..self }
+    pub fn with_content(self, content: P) -> Self {
+        let is_other = self.is_other || discriminant(&self.content) != discriminant(&content);
+        Self { content, is_other, ..self }
     }
 
     /// Returns the frame as it was received.
@@ -120,7 +128,7 @@ impl<P: Protocol> Received<P> {
 
     /// Returns the addressing mode that the identifier shows.
     pub fn addressing(&self) -> Option<Addressing> {
-        self.exchange.addressing(P::MODES, self.kind, P::Identifier::TO_RAW(self.identifier()))
+        self.exchange.addressing(P::MODES, self.kind, self.id)
     }
 
     /// Tests whether the frame goes to the controller and shows an error code.
@@ -170,11 +178,22 @@ impl<P: Protocol> Received<P> {
     /// - addressing modes that the message does not have,
     /// - addresses that the document does not name.
     pub fn encode(&self) -> Result<Frame, Error> {
-        let id = P::Identifier::TO_RAW(self.identifier());
-        let frame = Frame::new_raw(id, P::FRAME.is_extended(), self.data()?, self.exchange().data_length());
-        match Self::decode_by(self.model, &frame) {
-            Ok(again) if again.is_like(self) => again.check_request(id).map(|()| frame),
-            _ => Err(Error::Identifier { message: self.exchange().message(), id }),
+        let frame = Frame::new_raw(self.id, P::FRAME.is_extended(), self.data()?, self.exchange.data_length());
+        if self.is_other || self.id != self.frame.raw_id() {
+            self.check_recognised(&frame)?;
+        }
+        self.check_request().map(|()| frame)
+    }
+
+    /// Refuses a frame that would not be recognised as what it was made from.
+    ///
+    /// A frame of the received message under the received identifier always is. For no signal shares a bit with what
+    /// selects a message.
+    #[cold]
+    fn check_recognised(&self, frame: &Frame) -> Result<(), Error> {
+        match Self::decode_by(self.model, frame) {
+            Ok(again) if again.is_like(self) => Ok(()),
+            _ => Err(Error::Identifier { message: self.exchange.message(), id: self.id }),
         }
     }
 
@@ -195,19 +214,22 @@ impl<P: Protocol> Received<P> {
 
     /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message
     /// that the device model does not have.
-    fn check_request(&self, id: u32) -> Result<(), Error> {
+    fn check_request(&self) -> Result<(), Error> {
         if !self.kind.is_to_module() {
             return Ok(());
         }
-        self.check_addressing(id)?;
+        if !self.exchange.is_offered(P::Identifier::documented_modes(self.id)) {
+            self.check_addressing()?;
+        }
         let is_of_model = self.exchange.is_of(self.model);
         if is_of_model { Ok(()) } else { Err(Error::Model { message: self.exchange.message() }) }
     }
 
-    fn check_addressing(&self, id: u32) -> Result<(), Error> {
+    #[cold]
+    fn check_addressing(&self) -> Result<(), Error> {
         match self.addressing() {
-            Some(addressing) if addressing.is_offered() => addressing.documented(id),
-            other => Err(self.exchange().no_mode(other.map(|addressing| addressing.mode()))),
+            Some(addressing) if addressing.is_offered() => addressing.documented(self.id),
+            other => Err(self.exchange.no_mode(other.map(|addressing| addressing.mode()))),
         }
     }
 }
@@ -217,10 +239,16 @@ fn cleared(mut data: Data, place: Place) -> Data {
     data
 }
 
-/// Says whether the length or the selectors are wrong.
+/// Says why a frame is not recognised, by the same tests.
 #[cold]
-fn problem<P: Protocol>(is_request: bool, frame: &Frame) -> Problem {
-    let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(frame.raw_id());
-    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());
+fn problem<P: Protocol>(frame: &impl embedded_can::Frame) -> Problem {
+    let Some(copy) = classic(frame) else { return Problem::Frame };
+    let Some(id) = own_id::<P>(frame) else { return Problem::Identifier };
+    if P::Identifier::is_foreign(id) {
+        return Problem::Foreign;
+    }
+    let Some(is_request) = is_to_module::<P>(id) else { return Problem::Identifier };
+    let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(id);
+    let is_right = lengths.iter().any(|length| usize::from(*length) == copy.length());
     if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
 }

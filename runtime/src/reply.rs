@@ -1,24 +1,28 @@
 //! Replies: who sent them, and their values.
 
 use core::fmt;
+use core::marker::PhantomData;
 
-use crate::frame::classic;
-use crate::protocol::is_to_module;
-use crate::{Filter, Frame, IdentifierFields, Layout, Protocol, Selector};
+use crate::{Frame, IdentifierFields, Layout, Protocol, Selector};
 
 /// A frame that answers a request.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[must_use = "a reply can be an error; look at its `values`"]
 pub struct Reply<P: Protocol, R> {
-    /// The identifier. It shows who answers, and in some protocols the error code.
-    pub identifier: P::Identifier,
     /// The values, or why there are none.
     pub values: Result<R, Failure>,
     selectors: &'static [Selector],
     frame: Frame,
+    protocol: PhantomData<P>,
 }
 
 impl<P: Protocol, R> Reply<P, R> {
+    /// Returns the identifier. It shows who answers, and in some protocols the error code.
+    #[inline]
+    pub fn identifier(&self) -> P::Identifier {
+        P::Identifier::FROM_RAW(self.frame.raw_id())
+    }
+
     /// Returns the selectors in the data, each with its raw value. In some protocols one of them is
     /// the error code.
     pub fn selectors(&self) -> impl Iterator<Item = (&'static Selector, u64)> {
@@ -27,17 +31,31 @@ impl<P: Protocol, R> Reply<P, R> {
 }
 
 impl<P: Protocol, R: Layout> Reply<P, R> {
-    /// Decodes an [`answer`], which should have `length` data bytes.
+    /// Decodes a reply, which should have `length` data bytes.
+    #[inline(always)]
     pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
-        let identifier = P::Identifier::FROM_RAW(frame.raw_id());
-        let failure = failure::<P>(selectors, length, &frame);
-        let values = failure.map_or_else(|| Ok(R::decode(&frame.bytes())), Err);
-        Self { identifier, values, selectors, frame }
+        let values = match failure::<P>(selectors, length, &frame) {
+            Some(failure) => Err(failure),
+            None => Ok(R::decode(&frame.bytes())),
+        };
+        Self { values, selectors, frame, protocol: PhantomData }
     }
 
     /// Returns the reply of a request that another message refuses.
     pub(crate) fn refused(selectors: &'static [Selector], frame: Frame) -> Self {
-        Self { identifier: P::Identifier::FROM_RAW(frame.raw_id()), values: Err(Failure::Error), selectors, frame }
+        Self { values: Err(Failure::Error), selectors, frame, protocol: PhantomData }
+    }
+}
+
+impl<P: Protocol, R: fmt::Debug> fmt::Debug for Reply<P, R> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Reply")
+            .field("identifier", &self.identifier())
+            .field("values", &self.values)
+            .field("selectors", &self.selectors)
+            .field("frame", &self.frame)
+            .finish()
     }
 }
 
@@ -64,12 +82,8 @@ impl fmt::Display for Failure {
 
 impl core::error::Error for Failure {}
 
-/// Copies a frame that matches the replies, unless it goes to a module.
-pub fn answer<P: Protocol>(replies: &Filter, frame: &impl embedded_can::Frame) -> Option<Frame> {
-    classic(frame).filter(|frame| replies.matches(frame) && is_to_module::<P>(frame) == Ok(false))
-}
-
 /// Says why a reply of `length` bytes has no values.
+#[inline(always)]
 fn failure<P: Protocol>(selectors: &'static [Selector], length: usize, frame: &Frame) -> Option<Failure> {
     if has_error::<P>(selectors, frame) {
         Some(Failure::Error)
@@ -79,6 +93,7 @@ fn failure<P: Protocol>(selectors: &'static [Selector], length: usize, frame: &F
 }
 
 /// Tests whether identifier or selectors show an error code.
+#[inline(always)]
 pub fn has_error<P: Protocol>(selectors: &'static [Selector], frame: &Frame) -> bool {
     !P::NORMAL.matches_id(frame.raw_id()) || selected(selectors, *frame).any(|(selector, raw)| !selector.is_normal(raw))
 }

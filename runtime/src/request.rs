@@ -7,7 +7,7 @@ use core::ptr;
 use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::IdFilter;
 use crate::plumbing::Continuation;
-use crate::reply::answer;
+use crate::protocol::{is_to_module, own_id};
 use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
 /// A target that a request of a protocol can address. Generated code implements it.
@@ -207,6 +207,12 @@ impl Exchange {
         message.encode(&mut Payload::within_limits(self.message, [0; 8]).for_model(model))
     }
 
+    /// Tests whether the message travels by this access in one of these modes.
+    #[inline(always)]
+    pub(crate) fn is_offered(&self, modes: impl Iterator<Item = bool>) -> bool {
+        modes.zip(self.answers).any(|(is_meant, answer)| is_meant && answer.is_some())
+    }
+
     /// Tests whether this is the same access to the same message.
     pub(crate) fn is(&self, other: &Self) -> bool {
         ptr::eq(self, other) || (self.message, self.access) == (other.message, other.access)
@@ -360,20 +366,40 @@ impl<P: Protocol, R> Request<P, R> {
     where
         R: Layout,
     {
-        let filter = self.reply_filter()?;
-        let refused = self.refusal().and_then(|refusal| Some((refusal, answer::<P>(&refusal, frame)?)));
-        if let Some((refusal, frame)) = refused {
-            return Some(Reply::refused(refusal.data_selectors(), frame));
-        }
-        let frame = answer::<P>(&filter, frame)?;
-        Some(Reply::decode(filter.data_selectors(), self.frame.length(), frame))
+        Some(match self.answer(frame)? {
+            (Answer::Values(reply), frame) => Reply::decode(reply.data_selectors(), self.frame.length(), frame),
+            (Answer::Refusal(refusal), frame) => Reply::refused(refusal.data_selectors(), frame),
+        })
     }
 
     /// Tests whether a frame answers this request, even with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
-        let mut filters = self.reply_filter().into_iter().chain(self.refusal());
-        filters.any(|filter| answer::<P>(&filter, frame).is_some())
+        self.answer(frame).is_some()
     }
+
+    /// Copies a frame that answers this request, and says which filter it passes. Most frames on a bus fail at the
+    /// identifier, which is tested first.
+    #[inline(always)]
+    fn answer(&self, frame: &impl embedded_can::Frame) -> Option<(Answer, Frame)> {
+        let (who, id) = (self.replies?, own_id::<P>(frame)?);
+        let shows = |filter: &&Filter| filter.matches_id_narrowed(who, id);
+        let (reply, refusal) = (self.exchange.reply.as_ref().filter(shows), self.exchange.refusal.filter(shows));
+        if (reply.is_none() && refusal.is_none()) || is_to_module::<P>(id) != Some(false) {
+            return None;
+        }
+        let frame = Frame::copied(id, P::FRAME.is_extended(), None, frame)?;
+        let has_data = |filter: &&Filter| filter.matches_data(&frame.bytes());
+        let refusal = refusal.filter(has_data).map(Answer::Refusal);
+        Some((refusal.or(reply.filter(has_data).map(Answer::Values))?, frame))
+    }
+}
+
+/// How a frame answers a request.
+enum Answer {
+    /// As the reply, which the filter describes.
+    Values(&'static Filter),
+    /// As another message, which refuses the request.
+    Refusal(&'static Filter),
 }
 
 impl<P, R> fmt::Debug for Request<P, R> {

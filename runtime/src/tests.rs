@@ -61,7 +61,7 @@ fn replies_come_from_whom_the_request_addressed() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
     assert!(matches!(request.replies(), Replies::One(filter) if filter.id_mask() == 0x03FF_FFFF));
     let reply = request.reply(&frame(0x0107_F003, [2, 0xF0, 0, 0x64])).expect("the reply of heater 3");
-    assert_eq!((reply.identifier, reply.values), (Identifier(0x0107_F003), Ok(Heat { power_w: 1000.0 })));
+    assert_eq!((reply.identifier(), reply.values), (Identifier(0x0107_F003), Ok(Heat { power_w: 1000.0 })));
     for other in [0x0107_F004, 0x0107_F103, 0x0108_F003, 0x0107_03F0] {
         assert!(!request.is_reply(&frame(other, [2, 0xF0, 0, 0x64])), "{other:X}");
     }
@@ -83,7 +83,7 @@ fn an_error_reply_is_a_reply_without_values() {
     let request = HEAT.set(To::Heater(3)).expect("a legal request");
     for error in [frame(0x0907_F003, [2, 0xF0, 0, 0]), frame(0x0107_F003, [2, 0xF2, 0, 0])] {
         let reply = request.reply(&error).expect("the reply of heater 3");
-        assert_eq!((reply.identifier.0, reply.values), (error.raw_id(), Err(Failure::Error)));
+        assert_eq!((reply.identifier().0, reply.values), (error.raw_id(), Err(Failure::Error)));
         let received = decode(&error).expect("a known frame");
         assert!(received.is_error_reply() && received.reply() == Some(Err(Failure::Error)));
         assert_eq!(received.content(), &Message::Heat(Heat { power_w: 0.0 }));
@@ -99,7 +99,7 @@ fn a_refusal_is_a_reply_without_values_whatever_its_length() {
     for length in [1, 4, 8] {
         let refused = Frame::new_raw(0x0109_F003, true, [1, 0, 0, 5, 0, 0, 0, 0], length);
         let reply = request.reply(&refused).expect("the refusal of heater 3");
-        assert_eq!((reply.identifier, reply.values), (Identifier(0x0109_F003), Err(Failure::Error)));
+        assert_eq!((reply.identifier(), reply.values), (Identifier(0x0109_F003), Err(Failure::Error)));
         assert!(reply.selectors().map(|(selector, raw)| (selector.name, raw)).eq([("function", 1)]));
         assert!(request.is_reply(&refused));
     }

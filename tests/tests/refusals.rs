@@ -14,7 +14,7 @@ fn a_refusal_answers_the_request_and_has_no_values() {
     let request = Speed { value_rpm: 3000 }.write(Target::Pump(1)).expect("the limit");
     let refused = frame(0x451, [0x80, 7, 0, 3]);
     let reply = request.reply(&refused).expect("the refusal of pump 1");
-    assert_eq!((reply.values, reply.identifier.node), (Err(Failure::Error), 1));
+    assert_eq!((reply.values, reply.identifier().node), (Err(Failure::Error), 1));
     let selectors: Vec<_> = reply.selectors().map(|(selector, raw)| (selector.name, raw)).collect();
     assert_eq!(selectors, [("operation", 0x80), ("index", 7)]);
     assert!(request.is_reply(&refused));

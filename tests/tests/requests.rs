@@ -40,7 +40,7 @@ fn each_module_of_a_group_answers() {
     assert!(request.is_reply(&frame(0x02DC_F000, 0)) && request.is_reply(&frame(0x02DC_F03B, 0)));
     assert!(!request.is_reply(&frame(0x029C_F000, 0)), "that answers a request to one module");
     assert!(!request.is_reply(&frame(0x02DC_F0F1, 0)), "that is another controller");
-    let source = |id| request.reply(&frame(id, 0)).map(|reply| reply.identifier.source);
+    let source = |id| request.reply(&frame(id, 0)).map(|reply| reply.identifier().source);
     assert_eq!([source(0x02DC_F000), source(0x02DC_F03B)], [Some(0x00), Some(0x3B)]);
 }
 
@@ -96,7 +96,7 @@ fn an_error_reply_answers_the_request_but_carries_no_values() {
     for length in [8, 0] {
         let refused = Frame::new_raw(0x0E9C_F000, true, 0x000B_71B0_0000_3A98_u64.to_be_bytes(), length);
         let reply: Reply<SetModuleOutput> = request.reply(&refused).expect("the refusal of module 0");
-        assert_eq!((reply.identifier.error, reply.values), (ErrorCode::DataInvalid, Err(Failure::Error)));
+        assert_eq!((reply.identifier().error, reply.values), (ErrorCode::DataInvalid, Err(Failure::Error)));
     }
     let short = Frame::new_raw(0x029C_F000, true, [0; 8], 7);
     assert_eq!(request.reply(&short).map(|reply| reply.values), Some(Err(Failure::Length)));

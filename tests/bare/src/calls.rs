@@ -105,7 +105,7 @@ pub fn request<P: Protocol, R: Layout>(request: Result<Request<P, R>, Error>) {
             sink((request.frame(), request.replies(), request.is_reply(&unknown_frame())));
             if let Some(reply) = request.reply(&unknown_frame()) {
                 reply.selectors().for_each(sink);
-                sink((reply.identifier, reply.values));
+                sink((reply.identifier(), reply.values));
             }
         }
         Err(error) => sink(error),

@@ -73,6 +73,20 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         (0xF0..=0xF8).contains(&Self::TARGET.of(id)) && !(0xF0..=0xF8).contains(&Self::SOURCE.of(id))
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [
+            Self::DEVICE.of(id) == 0x1
+                && (0x00..=0x3B).contains(&Self::TARGET.of(id))
+                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+            Self::DEVICE.of(id) == 0x2
+                && (0x00..=0x07).contains(&Self::TARGET.of(id))
+                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+            Self::DEVICE.of(id) == 0x1 && Self::TARGET.of(id) == 0x3F && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+        ]
+        .into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -285,10 +299,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[SINGLE_MODE, GROUP_MODE, ALL_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -296,7 +312,8 @@ impl Protocol for Message {
             .then(|| Recognised::request(&Level::SET, Self::Level(Layout::decode(data))))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -51,6 +51,11 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         Self::SENDER.of(id) == 0x1
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [Self::SENDER.of(id) == 0x0].into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -219,10 +224,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(2);
     const MODES: &'static [Mode] = &[PUMP_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -57,6 +57,11 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         Self::DIRECTION.of(id) == 0x1
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [Self::DIRECTION.of(id) == 0x0].into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -206,17 +211,20 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[DEVICE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         (OPERATION_SELECTOR.place.get(data) == 0x03 && INDEX_SELECTOR.place.get(data) == 0x07)
             .then(|| Recognised::request(&Speed::WRITE, Self::Speed(Layout::decode(data))))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (OPERATION_SELECTOR.place.get(data), INDEX_SELECTOR.place.get(data)) {

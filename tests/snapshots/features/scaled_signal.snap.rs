@@ -55,6 +55,11 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [(0x00..=0x3F).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0xF0].into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -226,10 +231,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[MODULE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -237,7 +244,8 @@ impl Protocol for Message {
             .then(|| Recognised::request(&SetOutput::WRITE, Self::SetOutput(Layout::decode(data))))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -80,6 +80,21 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         (0xF0..=0xF8).contains(&Self::TARGET.of(id)) && !(0xF0..=0xF8).contains(&Self::SOURCE.of(id))
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [
+            Self::DEVICE.of(id) == 0xA
+                && (0x00..=0x3B).contains(&Self::TARGET.of(id))
+                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+            Self::DEVICE.of(id) == 0xB
+                && (0x00..=0x3E).contains(&Self::TARGET.of(id))
+                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+            Self::DEVICE.of(id) == 0xA && Self::TARGET.of(id) == 0x3F && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+            Self::DEVICE.of(id) == 0xB && Self::TARGET.of(id) == 0x3F && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
+        ]
+        .into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -2017,10 +2032,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -2048,7 +2065,8 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

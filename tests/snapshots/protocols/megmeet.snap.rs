@@ -107,6 +107,15 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         Self::SENDER.of(id) == 0x0
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [
+            Self::SENDER.of(id) == 0x1 && (0x01..=0x7F).contains(&Self::NODE.of(id)),
+            Self::NODE.of(id) == 0x00 && Self::SENDER.of(id) == 0x1,
+        ]
+        .into_iter()
+    }
 }
 
 /// The field that says whether more frames of a set follow.
@@ -5677,10 +5686,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -5761,7 +5772,8 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -112,6 +112,24 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [
+            Self::POINT_TO_POINT.of(id) == 0x1
+                && (0x00..=0x3F).contains(&Self::TARGET.of(id))
+                && Self::SOURCE.of(id) == 0xF0,
+            Self::POINT_TO_POINT.of(id) == 0x0
+                && Self::TARGET.of(id) == 0xFE
+                && Self::SOURCE.of(id) == 0xF0
+                && (0x0..=0x7).contains(&Self::GROUP.of(id)),
+            Self::POINT_TO_POINT.of(id) == 0x0
+                && (0xC1..=0xFD).contains(&Self::TARGET.of(id))
+                && Self::SOURCE.of(id) == 0xF0,
+            Self::POINT_TO_POINT.of(id) == 0x0 && Self::TARGET.of(id) == 0xFF && Self::SOURCE.of(id) == 0xF0,
+        ]
+        .into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -2380,10 +2398,12 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, EXTENDED_GROUP_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
@@ -2434,7 +2454,8 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let data = &frame.bytes();
         let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {

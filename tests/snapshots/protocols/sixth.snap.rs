@@ -68,6 +68,18 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         (Self::FUNCTION.of(id) == 0x5) || (Self::FUNCTION.of(id) == 0x1) || (Self::FUNCTION.of(id) == 0x2)
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [
+            Self::FUNCTION.of(id) == 0x6 && (0x01..=0x64).contains(&Self::NODE.of(id)),
+            Self::FUNCTION.of(id) == 0x6 && Self::NODE.of(id) == 0x00,
+            Self::FUNCTION.of(id) == 0xF && Self::NODE.of(id) == 0x00,
+            false,
+            false,
+        ]
+        .into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -1583,7 +1595,8 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[RECTIFIER_MODE, ALL_MODE, KEEP_ALIVE_MODE, MEASUREMENT_A_MODE, MEASUREMENT_B_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
@@ -1623,7 +1636,8 @@ impl Protocol for Message {
         Some(recognised)
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

@@ -21,9 +21,18 @@ pub fn recognising(name: &str, Cases { arms, rest }: &Cases<Outcome>, selectors:
         let reads = outcomes.fold(Reads::default(), |reads, outcome| reads.or(outcome.reads));
         let found = found(selectors, arms, rest, next.as_ref());
         let function = function(&part_name(name, index), reads, next.is_some(), &found);
-        if index == 0 { quote!(#[inline] #function) } else { function }
+        if index == 0 { inlined(&function) } else { function }
     });
     functions.collect()
+}
+
+/// Says that a function becomes part of its caller. Otherwise the message would be copied once more.
+fn inlined(function: &TokenStream) -> TokenStream {
+    quote! {
+        #[expect(clippy::inline_always, reason = "only decoding calls it")]
+        #[inline(always)]
+        #function
+    }
 }
 
 /// Emits a function that finds the message of a frame, and may call the next one.

@@ -47,9 +47,10 @@ fn splitting(Identifier { fields, ones, .. }: &Identifier) -> TokenStream {
 }
 
 /// Emits the tests of an identifier that every protocol needs.
-fn directions(Identifier { foreign, to_module, to_controller, .. }: &Identifier) -> TokenStream {
+fn directions(Identifier { foreign, to_module, to_controller, documented, .. }: &Identifier) -> TokenStream {
     let foreign = foreign.as_ref().map(|known| test("is_foreign", known));
     let (to_module, to_controller) = (test("is_to_module", to_module), test("is_to_controller", to_controller));
+    let documented = documented_modes(documented);
     quote! {
         impl IdentifierFields for Identifier {
             const FROM_RAW: fn(u32) -> Self = Self::from_raw;
@@ -58,21 +59,41 @@ fn directions(Identifier { foreign, to_module, to_controller, .. }: &Identifier)
             #foreign
             #to_module
             #to_controller
+            #documented
         }
     }
+}
+
+/// Emits the test of each mode whether an identifier is one of its requests with documented addresses, if any mode has
+/// requests.
+fn documented_modes(modes: &[Test]) -> Option<TokenStream> {
+    let id = if modes.iter().any(Test::reads) { quote!(id) } else { quote!(_) };
+    let modes = modes.iter().map(condition);
+    (modes.len() > 0).then(|| {
+        quote! {
+            #[inline]
+            fn documented_modes(#id: u32) -> impl Iterator<Item = bool> {
+                [#(#modes),*].into_iter()
+            }
+        }
+    })
 }
 
 /// Emits a test of an identifier. It takes none if the result is always the same.
 fn test(name: &str, test: &Test) -> TokenStream {
     let name = format_ident!("{name}");
     let id = if test.reads() { quote!(id) } else { quote!(_) };
+    let condition = condition(test);
+    quote!(#[inline] fn #name(#id: u32) -> bool { #condition })
+}
+
+fn condition(test: &Test) -> TokenStream {
     let mut conditions: Vec<_> = test.any.iter().map(|tests| all(tests)).collect();
-    let condition = match conditions.len() {
+    match conditions.len() {
         0 => quote!(false),
         1 => conditions.remove(0),
         _ => quote!(#((#conditions))||*),
-    };
-    quote!(#[inline] fn #name(#id: u32) -> bool { #condition })
+    }
 }
 
 fn all(tests: &[Comparison]) -> TokenStream {

@@ -1,6 +1,6 @@
 //! All messages together: the enum that a received frame decodes to.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
@@ -9,6 +9,7 @@ use super::entries::entries;
 use super::filter::normal;
 use super::parts::{part_name, parts};
 use super::plan::Plan;
+use super::plan::recognition::Direction;
 use super::plan::variant::Variant;
 
 /// Emits `Message`, last in the file.
@@ -133,15 +134,24 @@ fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
 fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
     let normal = normal(&plan.base);
     let modes = plan.modes.iter().map(|mode| &mode.constant);
+    let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
     quote! {
         impl Protocol for Message {
             type Identifier = Identifier;
             const FRAME: Filter = FRAME;
             const NORMAL: Filter = #normal;
+            #(const LENGTH: Option<u8> = Some(#length);)*
             const MODES: &'static [Mode] = &[#(#modes),*];
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
             #(#functions)*
         }
     }
+}
+
+/// Returns the number of data bytes that every frame has, if all have as many.
+fn common_length(Plan { requests, replies, .. }: &Plan) -> Option<u8> {
+    let mut lengths = requests.iter().chain(replies).flat_map(Direction::lengths);
+    let first = lengths.next()?;
+    lengths.all(|length| length == first).then_some(first)
 }

@@ -70,6 +70,11 @@ impl IdentifierFields for Identifier {
     fn is_to_controller(id: u32) -> bool {
         Self::DIRECTION.of(id) == 0x1
     }
+
+    #[inline]
+    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
+        [Self::DIRECTION.of(id) == 0x0 && (0x1..=0x9).contains(&Self::NODE.of(id))].into_iter()
+    }
 }
 
 /// Whom a request addresses.
@@ -312,16 +317,19 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         (Identifier::COMMAND.of(id) == 0x04).then(|| Recognised::request(&Status::READ, Self::ReadStatus))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "only decoding calls it")]
+    #[inline(always)]
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();

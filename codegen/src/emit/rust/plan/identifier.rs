@@ -7,7 +7,7 @@ use super::encoding::integer;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming};
 use super::types::Types;
-use crate::model::{self, Direction, FieldId, FieldTest, Foreign, Numeral, Protocol};
+use crate::model::{self, AddressPattern, Direction, FieldId, FieldTest, Foreign, Numeral, Protocol};
 
 /// The identifier.
 pub struct Identifier {
@@ -23,6 +23,8 @@ pub struct Identifier {
     pub to_module: Test,
     /// How it shows that a frame goes to the controller.
     pub to_controller: Test,
+    /// How the requests of each addressing mode show documented addresses only; empty if no mode has requests.
+    pub documented: Vec<Test>,
 }
 
 /// A field of the identifier.
@@ -100,6 +102,7 @@ impl Identifier {
             foreign: (!foreign.is_empty()).then_some(Test { any: foreign }),
             to_module: direction(protocol, &protocol.recognition.to_module),
             to_controller: direction(protocol, &protocol.recognition.to_controller),
+            documented: documented(protocol),
         }
     }
 }
@@ -162,6 +165,24 @@ fn foreign(protocol: &Protocol, foreign: &Foreign) -> Vec<Comparison> {
 fn direction(protocol: &Protocol, direction: &Direction) -> Test {
     let lists = direction.any.iter().map(|tests| tests.iter().map(|test| field_test(protocol, test)).collect());
     Test { any: lists.collect() }
+}
+
+/// Plans how the requests of each mode show documented addresses only.
+fn documented(protocol: &Protocol) -> Vec<Test> {
+    let requests = || protocol.modes.iter().map(|mode| mode.request.as_ref());
+    let tests =
+        requests().map(|request| Test { any: request.map(|request| shown(protocol, request)).into_iter().collect() });
+    if requests().any(|request| request.is_some()) { tests.collect() } else { Vec::new() }
+}
+
+/// Returns the tests of a pattern whose addresses the document names.
+fn shown(protocol: &Protocol, pattern: &AddressPattern) -> Vec<Comparison> {
+    let inside = |field, ends| field_test(protocol, &FieldTest { field, inside: true, ranges: vec![ends] });
+    let fields = protocol.identifier.fields.entries().filter(|(_, field)| pattern.mask & field.mask() != 0);
+    let constants =
+        fields.map(|(id, field)| (id, field.get(pattern.value))).map(|(id, value)| inside(id, (value, value)));
+    let addresses = pattern.addresses.iter().map(|known| inside(known.field, protocol[known.address_type].raw_range()));
+    constants.chain(addresses).collect()
 }
 
 fn field_test(protocol: &Protocol, test: &FieldTest) -> Comparison {

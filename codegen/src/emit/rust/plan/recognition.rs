@@ -17,6 +17,13 @@ pub struct Direction {
     pub lengths: Cases<Vec<u8>>,
 }
 
+impl Direction {
+    /// Returns how long frames should be.
+    pub fn lengths(&self) -> impl Iterator<Item = u8> {
+        self.lengths.arms.iter().map(|arm| &arm.outcome).chain(&self.lengths.rest).flatten().copied()
+    }
+}
+
 /// A choice by the constants of selectors.
 pub struct Cases<T> {
     /// The outcomes of constants that hold. The first one that fits counts.
