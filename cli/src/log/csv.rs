@@ -4,7 +4,8 @@ use canspec_codegen::interpret::{Form, Frame};
 use csv_core::{ReadRecordResult, ReaderBuilder};
 
 use super::Entry;
-use super::part::{CLASSIC, FLEXIBLE, Stamp, as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds};
+use super::part::{CLASSIC, FLEXIBLE, LARGEST_EXTENDED, LARGEST_STANDARD, Stamp};
+use super::part::{as_many, bytes, channel, date, fewer, fitting, moved, quoted, seconds};
 
 /// What stands between two cells.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
@@ -30,7 +31,7 @@ enum Column {
     /// A time, and how many decimal places of a second its unit has.
     Time(usize),
     Channel,
-    Identifier,
+    Identifier(Base),
     Extended,
     Remote,
     Error,
@@ -41,29 +42,57 @@ enum Column {
     Other,
 }
 
+/// How a column writes its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Base {
+    /// Hexadecimal, though the heading does not say so.
+    Usual,
+    Hexadecimal,
+    Decimal,
+}
+
 impl Column {
     /// Knows a column by its name, whose letters and digits alone count.
     fn named(heading: &str) -> Self {
-        let plain = heading.chars().filter(char::is_ascii_alphanumeric);
-        let name: String = plain.map(|letter| letter.to_ascii_lowercase()).collect();
+        let name = heading.to_lowercase().replace(['\u{B5}', '\u{3BC}'], "u");
+        let name: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
         match name.as_str() {
-            "time" | "times" | "timesec" | "timeseconds" | "seconds" | "timestamp" | "timestamps" | "timestampsec" => {
-                Self::Time(0)
-            }
-            "timems" | "timestampms" | "milliseconds" => Self::Time(3),
-            "timeus" | "timestampus" | "microseconds" => Self::Time(6),
-            "timens" | "timestampns" | "nanoseconds" => Self::Time(9),
             "channel" | "bus" | "interface" | "chn" => Self::Channel,
-            "id" | "idhex" | "canid" | "canidhex" | "identifier" | "arbitrationid" | "arbid" | "messageid"
-            | "msgid" | "frameid" => Self::Identifier,
             "extended" | "ext" | "ide" | "isextended" | "isextendedid" => Self::Extended,
             "remote" | "rtr" | "isremote" | "isremoteframe" => Self::Remote,
             "error" | "iserror" | "iserrorframe" => Self::Error,
             "dlc" | "length" | "len" | "datalength" => Self::Length,
             "data" | "datahex" | "databytes" | "payload" => Self::Data,
             _ if is_byte(&name) => Self::Byte,
-            _ => Self::Other,
+            _ => time_unit(&name).map(Self::Time).or_else(|| base(&name).map(Self::Identifier)).unwrap_or(Self::Other),
         }
+    }
+}
+
+/// Returns the decimal places of a second that the unit of a time has.
+fn time_unit(name: &str) -> Option<usize> {
+    let unit = ["timestamp", "time", "ts"].into_iter().find_map(|start| name.strip_prefix(start));
+    match unit.unwrap_or(name) {
+        "" | "s" | "sec" if unit.is_some() => Some(0),
+        "ms" if unit.is_some() => Some(3),
+        "us" if unit.is_some() => Some(6),
+        "ns" if unit.is_some() => Some(9),
+        "seconds" => Some(0),
+        "milliseconds" => Some(3),
+        "microseconds" => Some(6),
+        "nanoseconds" => Some(9),
+        _ => None,
+    }
+}
+
+/// Returns how the identifiers of a column are written, `None` of a column of something else.
+fn base(name: &str) -> Option<Base> {
+    let names = ["id", "canid", "identifier", "arbitrationid", "arbid", "messageid", "msgid", "frameid"];
+    match names.into_iter().find_map(|start| name.strip_prefix(start))? {
+        "" => Some(Base::Usual),
+        "hex" => Some(Base::Hexadecimal),
+        "dec" | "decimal" => Some(Base::Decimal),
+        _ => None,
     }
 }
 
@@ -78,7 +107,7 @@ fn is_byte(name: &str) -> bool {
 struct Cells<'a> {
     time: Option<Stamp<'a>>,
     channel: Option<&'a str>,
-    identifier: &'a str,
+    identifier: Option<(&'a str, Base)>,
     extended: Option<bool>,
     remote: bool,
     error: bool,
@@ -136,8 +165,11 @@ impl Columns {
 
     /// Tests for an identifier and for data.
     fn has(&self) -> (bool, bool) {
-        let has = |column| self.kinds.contains(&column);
-        (has(Column::Identifier), has(Column::Data) || has(Column::Byte))
+        let has = |is_it: fn(&Column) -> bool| self.kinds.iter().any(is_it);
+        (
+            has(|column| matches!(column, Column::Identifier(_))),
+            has(|column| matches!(column, Column::Data | Column::Byte)),
+        )
     }
 
     /// Splits a line into cells, and returns how many there are.
@@ -186,7 +218,7 @@ impl<'a> Cells<'a> {
             Column::Extended => self.extended = answer(text)?,
             Column::Remote => self.remote = answer(text)?.unwrap_or_default(),
             Column::Error => self.error = answer(text)?.unwrap_or_default(),
-            Column::Identifier => self.identifier = text,
+            Column::Identifier(base) => self.identifier = Some((text, base)),
             _ if text.is_empty() => {}
             Column::Time(places) => self.time = Some(time(text, places)?),
             Column::Channel => self.channel = Some(channel(text)?),
@@ -201,7 +233,8 @@ impl<'a> Cells<'a> {
 
     fn entry(self) -> Result<Entry<'a>, String> {
         let Self { time, channel, identifier, extended, remote, error, length, data } = self;
-        let (id, extended) = id(identifier, extended)?;
+        let (text, base) = identifier.unwrap_or(("", Base::Usual));
+        let (id, extended) = if base == Base::Decimal { decimal(text, extended) } else { id(text, base, extended) }?;
         fewer(data.len(), FLEXIBLE)?;
         let form = match (error, remote) {
             (true, _) => Form::Error,
@@ -221,24 +254,40 @@ impl<'a> Cells<'a> {
 /// Reads seconds, or smaller units, or a date with a time of day.
 fn time(text: &str, places: usize) -> Result<Stamp<'_>, String> {
     match text.split_once([' ', 'T']) {
-        Some((day, time)) => date(day, time.trim_end_matches('Z')),
+        Some((day, time)) => date(day, time),
         None if places > 0 => moved(text, places),
         None => seconds(text),
     }
 }
 
 /// Reads an identifier; one of more than 11 bits or with eight digits has 29.
-fn id(text: &str, extended: Option<bool>) -> Result<(u32, bool), String> {
+fn id(text: &str, base: Base, extended: Option<bool>) -> Result<(u32, bool), String> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     let marked = digits.strip_suffix(['x', 'X']);
     let digits = marked.unwrap_or(digits);
     let append = |number: u32, digit: char| Some(number.saturating_mul(16).saturating_add(digit.to_digit(16)?));
     let number = digits.chars().try_fold(0, append).filter(|_| !digits.is_empty());
     let number = number.ok_or_else(|| format!("the identifier {} is not hexadecimal", quoted(text)))?;
-    let extended = extended.unwrap_or(marked.is_some() || digits.len() > 7 || number > super::part::LARGEST_STANDARD);
-    let looks_decimal = text.bytes().all(|byte| byte.is_ascii_digit());
-    let help = if looks_decimal { "; identifiers are read as hexadecimal" } else { "" };
+    let looks_decimal = base == Base::Usual && text.bytes().all(|byte| byte.is_ascii_digit());
+    // Who writes hexadecimal digits alone writes three or eight of them.
+    if looks_decimal && matches!(digits.len(), 4..=7) && !digits.starts_with('0') {
+        let help = "name the column `id_dec` or `id_hex`";
+        return Err(format!("the identifier {digits} may be decimal or hexadecimal; {help}"));
+    }
+    let extended = extended.unwrap_or(marked.is_some() || digits.len() > 7 || number > LARGEST_STANDARD);
+    let help = "; identifiers are read as hexadecimal; if they are decimal, name the column `id_dec`";
+    let help = if looks_decimal { help } else { "" };
     fitting(number, extended, digits).map(|number| (number, extended)).map_err(|why| why + help)
+}
+
+/// Reads a decimal identifier; one of more than 11 bits has 29.
+fn decimal(text: &str, extended: Option<bool>) -> Result<(u32, bool), String> {
+    let is_number = text.bytes().all(|byte| byte.is_ascii_digit());
+    let number = text.parse().ok().filter(|number| is_number && *number <= LARGEST_EXTENDED);
+    let refusal = || format!("the identifier {} is no decimal number up to {LARGEST_EXTENDED}", quoted(text));
+    let number = number.ok_or_else(refusal)?;
+    let extended = extended.unwrap_or(number > LARGEST_STANDARD);
+    fitting(number, extended, &format!("{text} (0x{number:X})")).map(|number| (number, extended))
 }
 
 /// Reads whether something is so; an empty cell does not say.
@@ -251,10 +300,13 @@ fn answer(text: &str) -> Result<Option<bool>, String> {
     }
 }
 
-/// Reads bytes in hexadecimal digits, together or with something between them.
+/// Reads bytes in hexadecimal digits, together or with something between them. A digit alone is a byte.
 fn parted_bytes(text: &str) -> Result<Vec<u8>, String> {
     let pieces = text.split([' ', '.', ':', '-']).filter(|piece| !piece.is_empty());
-    let pieces = pieces.map(|piece| bytes(piece.strip_prefix("0x").unwrap_or(piece), FLEXIBLE));
+    let pieces = pieces.map(|piece| match piece.strip_prefix("0x").unwrap_or(piece) {
+        digit if digit.len() == 1 => bytes(&format!("0{digit}"), FLEXIBLE),
+        digits => bytes(digits, FLEXIBLE),
+    });
     Ok(pieces.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
@@ -296,6 +348,12 @@ mod tests {
                 "1122",
             ),
             ("\"ID\",\"Data\"", "\"00000123\",\"11-22\"", "", "", "00000123", "1122"),
+            ("ts_ns,id,data", "1500000000,123,1 2 0xA", "1.500000000", "", "123", "01020A"),
+            ("Time [µs];ID;D0;D1", "1500000;123;0;f", "1.500000", "", "123", "000F"),
+            ("Timestamp (ms),CAN ID (dec),Data", "12,419385573,11", "0.012", "", "18FF50E5", "11"),
+            ("ts,id_dec,data", "2023-11-14T23:13:20.5+01:00,2047,11", "1700000000.5", "", "7FF", "11"),
+            ("id_dec,ext,data", "2047,1,11", "", "", "000007FF", "11"),
+            ("id_hex,data", "1025,11", "", "", "00001025", "11"),
         ];
         for (heading, line, time, channel, id, data) in logs {
             let expected = (format!("{time} {channel}"), Form::Data, id.to_owned(), data.to_owned(), 0);
@@ -342,21 +400,34 @@ mod tests {
             ("0.5,0x800,0,2,1122", "the identifier 800 is above 7FF, the largest of 11 bits"),
             (
                 "0.5,2047,0,2,1122",
-                "the identifier 2047 is above 7FF, the largest of 11 bits; identifiers are read as hexadecimal",
+                "the identifier 2047 may be decimal or hexadecimal; name the column `id_dec` or `id_hex`",
+            ),
+            (
+                "0.5,801,0,2,1122",
+                "the identifier 801 is above 7FF, the largest of 11 bits; identifiers are read as hexadecimal; \
+                 if they are decimal, name the column `id_dec`",
             ),
             (
                 "0.5,419385573,,2,1122",
-                "the identifier 419385573 is above 1FFFFFFF, the largest of 29 bits; identifiers are read as hexadecimal",
+                "the identifier 419385573 is above 1FFFFFFF, the largest of 29 bits; identifiers are read as hexadecimal; \
+                 if they are decimal, name the column `id_dec`",
             ),
             ("0.5,18FF50E5A,,2,1122", "the identifier 18FF50E5A is above 1FFFFFFF, the largest of 29 bits"),
             ("0.5,123,maybe,2,1122", "`maybe` is neither 1 nor 0"),
             ("0.5,123,0,two,1122", "the length `two` is no number"),
             ("0.5,123,0,3,1122", "the line says that there are 3 data bytes, and has 2"),
-            ("0.5,123,0,2,11 2", "the data have an odd number of digits, 1"),
+            ("0.5,123,0,2,11 223", "the data have an odd number of digits, 3"),
         ];
         for (line, reason) in reasons {
             assert_eq!(read(heading, line), Err(reason.to_owned()), "{line}");
         }
+        let decimal = |line: &str| read("id_dec,ext,data", line).map(|_| ());
+        for line in ["", "12G", "0x123", "+5", "536870912"] {
+            let why = format!("the identifier `{line}` is no decimal number up to 536870911");
+            assert_eq!(decimal(&format!("{line},,11")), Err(why));
+        }
+        let why = "the identifier 2048 (0x800) is above 7FF, the largest of 11 bits";
+        assert_eq!(decimal("2048,0,11"), Err(why.to_owned()));
         assert_eq!(read(PYTHON_CAN, "0,0x1,0,0,0,1,%"), Err("the data `%` are not base 64".to_owned()));
     }
 }

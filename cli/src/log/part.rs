@@ -63,16 +63,39 @@ pub fn moved(word: &str, places: usize) -> Result<Stamp<'_>, String> {
     seconds(&format!("{sign}{whole}.{moved}{fraction}")).map(owned)
 }
 
-/// Reads a date and a time of day as seconds since 1970, as if they were those of UTC.
+/// Reads a date and a time of day as seconds since 1970. Without an offset at its end the time is that of UTC.
 pub fn date(date: &str, time: &str) -> Result<Stamp<'static>, String> {
     let refusal = || format!("the stamp {} is no date with a time", quoted(&format!("{date} {time}")));
     let [year, month, day] = numbers(date, '-').filter(is_day).ok_or_else(refusal)?;
+    let (time, offset) = without_offset(time).ok_or_else(refusal)?;
     let (time, fraction) = time.split_once('.').unwrap_or((time, ""));
     let [hour, minute, second] = numbers(time, ':').filter(is_time).ok_or_else(refusal)?;
     let is_fraction = fraction.bytes().all(|digit| digit.is_ascii_digit());
-    let total = ((days(year, month, day) * 24 + hour) * 60 + minute) * 60 + second;
+    let total = ((days(year, month, day) * 24 + hour) * 60 + minute - offset) * 60 + second;
     let point = if fraction.is_empty() { "" } else { "." };
-    if is_fraction { seconds(&format!("{total}{point}{fraction}")).map(owned) } else { Err(refusal()) }
+    let is_since_1970 = total >= 0;
+    if is_fraction && is_since_1970 { seconds(&format!("{total}{point}{fraction}")).map(owned) } else { Err(refusal()) }
+}
+
+/// Splits `Z`, `+HH:MM`, `+HHMM` or `+HH` from a time of day, and returns the minutes that it is ahead of UTC.
+fn without_offset(time: &str) -> Option<(&str, i64)> {
+    if let Some(time) = time.strip_suffix('Z') {
+        return Some((time, 0));
+    }
+    let Some(start) = time.find(['+', '-']) else { return Some((time, 0)) };
+    let (time, offset) = time.split_at(start);
+    let (sign, digits) = offset.split_at(1);
+    let (hours, minutes) = match digits.len() {
+        5 => digits.split_once(':')?,
+        4 => digits.split_at_checked(2)?,
+        _ => (digits, "00"),
+    };
+    let number = |digits: &str, end: i64| -> Option<i64> {
+        let is_number = digits.len() == 2 && digits.bytes().all(|digit| digit.is_ascii_digit());
+        digits.parse().ok().filter(|number| is_number && *number < end)
+    };
+    let ahead = number(hours, 24)? * 60 + number(minutes, 60)?;
+    Some((time.trim_ascii_end(), if sign == "-" { -ahead } else { ahead }))
 }
 
 fn is_day([year, month, day]: &[i64; 3]) -> bool {
@@ -219,13 +242,28 @@ mod tests {
             ("2000-02-29", "23:59:59.25", "951868799.25"),
             ("2023-11-14", "22:13:20.000000", "1700000000.000000"),
             ("2100-03-01", "00:00:00", "4107542400"),
+            ("2023-11-14", "22:13:20.5Z", "1700000000.5"),
+            ("2023-11-14", "23:13:20.5+01:00", "1700000000.5"),
+            ("2023-11-14", "16:43:20-0530", "1700000000"),
+            ("2023-11-15", "08:13:20 +10", "1700000000"),
+            ("1970-01-01", "01:00:00+01:00", "0"),
         ];
         for (day, time, seconds) in dates {
             assert_eq!(text(date(day, time)), Ok(seconds.to_owned()), "{day} {time}");
         }
-        for (day, time) in
-            [("2023-13-01", "0:0:0"), ("2023-11", "0:0:0"), ("2023-11-14", "24:00:00"), ("2023-11-14", "1:2:3.x")]
-        {
+        let refused = [
+            ("2023-13-01", "0:0:0"),
+            ("2023-11", "0:0:0"),
+            ("2023-11-14", "24:00:00"),
+            ("2023-11-14", "1:2:3.x"),
+            ("2023-11-14", "1:2:3ZZ"),
+            ("2023-11-14", "1:2:3+1"),
+            ("2023-11-14", "1:2:3+24:00"),
+            ("2023-11-14", "1:2:3+01:60"),
+            ("2023-11-14", "1:2:3+0°0"),
+            ("1970-01-01", "0:59:59.5+01:00"),
+        ];
+        for (day, time) in refused {
             assert_eq!(text(date(day, time)), Err(format!("the stamp `{day} {time}` is no date with a time")));
         }
     }
