@@ -55,7 +55,12 @@ const EXAMPLES: &str = "Examples:
   candump -L can0 | canspec decode --protocol NAME
   canspec decode --protocol NAME --summary bus.asc
   canspec decode --protocol NAME --message output --signal voltage --format csv bus.log
-  canspec decode --to pcapng bus.pcapng bus.log";
+  canspec decode --to pcapng bus.pcapng bus.log
+
+A capture is read as the table that tshark makes of it:
+  (echo time,channel,id_dec,ext,remote,error,data
+   tshark -r bus.pcapng -T fields -E separator=, -e frame.time_epoch -e frame.interface_name \\
+     -e can.id -e can.flags.xtd -e can.flags.rtr -e can.flags.err -e data.data) | canspec decode --protocol NAME";
 
 /// Bytes that are written at once, if the input does not pause.
 const BUFFER: usize = 1 << 16;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::failure::{Failure, Finish, escaped, shown, tell};
 use crate::progress::Progress;
+use crate::signature;
 
 /// Longer lines are unreadable.
 const LONGEST: usize = 1 << 16;
@@ -102,6 +103,7 @@ impl Input {
     ///
     /// Where the input cannot be read any further.
     fn next_line(&mut self) -> Result<Option<Line<'_>>, Failure> {
+        self.refuse_foreign()?;
         self.line.clear();
         let more = self.fill().map_err(|error| Failure::input(&self.name, &error))?;
         self.number += 1;
@@ -109,6 +111,15 @@ impl Input {
             self.line.drain(..BYTE_ORDER_MARK.len());
         }
         Ok(more.then(|| Line { number: self.number, text: self.text() }))
+    }
+
+    /// Refuses a file that has no lines, before the first one is read.
+    fn refuse_foreign(&mut self) -> Result<(), Failure> {
+        if self.number > 0 {
+            return Ok(());
+        }
+        let start = self.reader.fill_buf().map_err(|error| Failure::input(&self.name, &error))?;
+        signature::foreign(start).map_or(Ok(()), |why| Err(Failure::input(&self.name, &why)))
     }
 
     /// Reads up to the end of a line, and drops what is too much of it.
@@ -205,6 +216,7 @@ impl Input {
     ///
     /// Where the input cannot be read any further.
     pub fn next_part(&mut self) -> Result<Option<Part>, Failure> {
+        self.refuse_foreign()?;
         self.line.clear();
         let read = self.reader.by_ref().take(PART).read_to_end(&mut self.line);
         let ends_line = self.line.last().is_none_or(|byte| *byte == b'\n');

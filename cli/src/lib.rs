@@ -30,6 +30,7 @@ mod protocols;
 mod rules;
 mod schema;
 mod settings;
+mod signature;
 mod table;
 mod value;
 

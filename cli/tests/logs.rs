@@ -130,3 +130,44 @@ fn a_log_of_no_known_format_is_answered_with_the_known_ones() {
         assert!(first.contains(name), "{name} in {first}");
     }
 }
+
+#[test]
+fn a_file_without_lines_is_refused_once_with_what_makes_lines_of_it() {
+    // From RFC 1952, RFC 8878, the format of xz, APPNOTE 6.3, python-can, ASAM MDF, draft-ietf-opsawg-pcap and -pcapng.
+    let kinds: [(&[u8], &str, &str); 12] = [
+        (b"\x1f\x8b\x08", "gzip", "zcat"),
+        (b"\x28\xb5\x2f\xfd", "zstd", "zstdcat"),
+        (b"\xfd7zXZ\x00", "xz", "xzcat"),
+        (b"BZh9", "bzip2", "bzcat"),
+        (b"PK\x03\x04", "ZIP", "unzip"),
+        (b"LOGG", "BLF", "can_logconvert"),
+        (b"MDF     4.10", "MDF", "can_logconvert"),
+        (b";$FILEVERSION=2.1\r\n", "TRC", "can_logconvert"),
+        (b"\x0a\x0d\x0d\x0a", "pcapng", "tshark"),
+        (b"\xd4\xc3\xb2\xa1", "pcap", "tshark"),
+        (b"\xa1\xb2\x3c\x4d", "pcap", "tshark"),
+        (b"\xff\xfe(\x001\x00", "UTF-16", "iconv"),
+    ];
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let path = folder.path().join("bus");
+    let file = path.to_string_lossy();
+    let calls: [&[&str]; 4] = [
+        &["decode", "--protocol", "infy", &file],
+        &["decode", "--to", "pcapng", "/dev/null", &file],
+        &["identify", &file],
+        &["encode", "--protocol", "infy", "--from", "jsonl", &file],
+    ];
+    for (start, name, program) in kinds {
+        // The second file is one of several parts.
+        for length in [9, 300_000] {
+            fs::write(&path, [start, &b"\n\x80\x00"[..].repeat(length)].concat()).expect("the folder can be written");
+            for call in calls {
+                let output = canspec(call);
+                let said = String::from_utf8_lossy(&output.stderr);
+                assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{name}: {said}");
+                assert!(said.contains("bus: the file is ") && said.contains(name) && said.contains(program), "{said}");
+                assert!(output.stdout.is_empty(), "{name}");
+            }
+        }
+    }
+}
