@@ -13,6 +13,7 @@ use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
 use crate::capture::{self, Capture};
+use crate::channels::{Channels, Others};
 use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::{Input, Line};
 use crate::line::{self, Outcome};
@@ -36,6 +37,8 @@ pub struct Decode {
     protocols: Several,
     #[command(flatten)]
     model: Model,
+    #[command(flatten)]
+    channels: Channels,
     #[command(flatten)]
     choice: Choice,
     /// A table, a JSON object for each frame, or a row of CSV for each signal.
@@ -87,10 +90,20 @@ impl State {
 }
 
 /// What is counted of a log.
-#[derive(Clone, Copy, Default)]
+#[derive(Default)]
 struct Counts {
     frames: u64,
     recognised: u64,
+    others: Others,
+}
+
+impl Counts {
+    /// Adds the counts of another part of the log.
+    fn join(&mut self, part: Self) {
+        self.frames += part.frames;
+        self.recognised += part.recognised;
+        self.others.join(part.others);
+    }
 }
 
 #[derive(Clone)]
@@ -120,11 +133,13 @@ impl Decode {
         }
         let mut out = BufWriter::new(capture::create(path).map_err(failure)?);
         let mut capture = Capture::begin(&mut out).map_err(failure)?;
-        let mut reader = Reader::default();
+        let (mut reader, mut counts) = (Reader::default(), Counts::default());
         let finish = log.each(out, |out, line| {
-            let entry = reader.read(line.text?)?;
+            let entry = reader.read(line.text?)?.filter(|entry| self.channels.keep(entry.channel, &mut counts.others));
+            counts.frames += u64::from(entry.is_some());
             entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))
         });
+        self.suggest(&counts);
         finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })
     }
 
@@ -148,6 +163,7 @@ impl Decode {
         };
         state.printer.end(&mut out)?;
         out.flush()?;
+        self.suggest(&counts);
         if counts.frames > 0 && counts.recognised == 0 {
             self.suggest_identify();
         }
@@ -163,11 +179,20 @@ impl Decode {
         out: &mut impl Write,
         line: Line<'_>,
     ) -> Result<io::Result<()>, String> {
-        let Some(entry) = state.reader.read(line.text?)? else { return Ok(Ok(())) };
+        let entry = state.reader.read(line.text?)?;
+        let entry = entry.filter(|entry| self.channels.keep(entry.channel, &mut counts.others));
+        let Some(entry) = entry else { return Ok(Ok(())) };
         let decoded = decode(devices, &entry.frame);
         counts.frames += 1;
         counts.recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
         Ok(decoded.map_or(Ok(()), |decoded| self.show(&mut state.printer, out, line.number, &entry, decoded)))
+    }
+
+    /// Says which channels there are, if no frame is of a chosen one.
+    fn suggest(&self, counts: &Counts) {
+        if let Some(hint) = self.channels.hint(counts.frames, &counts.others) {
+            tell(format_args!("canspec: {hint}"));
+        }
     }
 
     /// Says how to find the protocol of a log in which nothing was recognised.

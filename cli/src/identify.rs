@@ -10,6 +10,7 @@ use canspec_specs::SPECS;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use crate::channels::{Channels, Others};
 use crate::columns::{self, Row};
 use crate::failure::{Failure, Finish};
 use crate::input::Input;
@@ -24,11 +25,13 @@ use crate::settings::Settings;
 /// contradiction stands first. Protocols with the same numbers fit equally well. A contradiction is a note, such as
 /// a value outside its range or a reserved bit.
 #[derive(Args)]
-#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec identify --spec my.yaml bus.log")]
+#[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec identify --spec my.yaml --channel can1 bus.log")]
 pub struct Identify {
     /// A spec file to try beside the built-in protocols; repeatable.
     #[arg(long, value_name = "FILE")]
     spec: Vec<PathBuf>,
+    #[command(flatten)]
+    channels: Channels,
     /// A table, or a JSON object for each protocol.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -58,9 +61,10 @@ impl Identify {
     /// Writes the protocols that recognise frames.
     pub fn run(&self) -> Result<Finish, Failure> {
         let mut candidates = self.candidates()?;
-        let (mut reader, mut frames) = (Reader::default(), 0);
+        let (mut reader, mut frames, mut others) = (Reader::default(), 0, Others::default());
         let finish = Input::open(self.file.as_deref())?.summed_up().each(io::sink(), |_, line| {
-            if let Some(entry) = reader.read(line.text?)? {
+            let entry = reader.read(line.text?)?;
+            if let Some(entry) = entry.filter(|entry| self.channels.keep(entry.channel, &mut others)) {
                 frames += 1;
                 for candidate in &mut candidates {
                     candidate.try_on(&entry.frame);
@@ -70,7 +74,8 @@ impl Identify {
         })?;
         candidates.retain(|candidate| candidate.recognised > 0);
         if candidates.is_empty() {
-            return Err(Failure::Input(format!("no protocol recognises a frame of this log, which has {frames}")));
+            let why = format!("no protocol recognises a frame of this log, which has {frames}");
+            return Err(Failure::Input(self.channels.hint(frames, &others).unwrap_or(why)));
         }
         for candidate in &mut candidates {
             candidate.share = share(candidate.recognised, frames);

@@ -6,6 +6,7 @@
 #![warn(clippy::wildcard_enum_match_arm)]
 
 mod capture;
+mod channels;
 mod check;
 mod columns;
 mod compile;

@@ -66,8 +66,7 @@ pub fn decode(
             input.advance(length);
             version += u64::from(!state.is_like(&done.state));
             *state = done.state;
-            counts.frames += done.counts.frames;
-            counts.recognised += done.counts.recognised;
+            counts.join(done.counts);
         }
         failure.map_or(Ok(finish), Err)
     })
