@@ -47,7 +47,7 @@ pub struct Decode {
     /// Counts and rates in place of the frames.
     #[arg(long, conflicts_with = "to")]
     summary: bool,
-    /// Write the frames, as they are, to a capture for Wireshark; FORMAT is `pcapng`.
+    /// Write the frames, as they are, to a capture for Wireshark; FORMAT is `pcapng`, OUT a file or `-`.
     #[arg(long, num_args = 2, value_names = ["FORMAT", "OUT"], conflicts_with_all = ["protocol", "spec", "name", "format"])]
     to: Vec<String>,
     /// The log; standard input without one, or for `-`.
@@ -59,6 +59,7 @@ const EXAMPLES: &str = "Examples:
   canspec decode --protocol NAME --summary bus.asc
   canspec decode --protocol NAME --message output --signal voltage --format csv bus.log
   canspec decode --to pcapng bus.pcapng bus.log
+  candump -L can0 | canspec decode --to pcapng - | wireshark -k -i -
 
 A capture is read as the table that tshark makes of it:
   (echo time,channel,id_dec,ext,remote,error,data
@@ -125,14 +126,21 @@ impl Decode {
     }
 
     fn capture(&self, path: &Path) -> Result<Finish, Failure> {
-        let failure = |error: io::Error| Failure::input(path, &error);
         let log = Input::open(self.file.as_deref())?.summed_up();
+        if path == Path::new("-") {
+            return self.write_capture(log, BufWriter::new(output()?));
+        }
+        let failure = |error: io::Error| Failure::input(path, &error);
         if log.is_at(path) {
             let why = format!("{} is the log itself; name another file for the capture", shown(path));
             return Err(Failure::Call(why));
         }
-        let mut out = BufWriter::new(capture::create(path).map_err(failure)?);
-        let mut capture = Capture::begin(&mut out).map_err(failure)?;
+        let finish = self.write_capture(log, BufWriter::new(capture::create(path).map_err(failure)?));
+        finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })
+    }
+
+    fn write_capture(&self, log: Input, mut out: impl Write) -> Result<Finish, Failure> {
+        let mut capture = Capture::begin(&mut out)?;
         let (mut reader, mut counts) = (Reader::default(), Counts::default());
         let finish = log.each(out, |out, line| {
             let entry = reader.read(line.text?)?.filter(|entry| self.channels.keep(entry.channel, &mut counts.others));
@@ -140,7 +148,7 @@ impl Decode {
             entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))
         });
         self.suggest(&counts);
-        finish.map_err(|why| if let Failure::Output(error) = why { failure(error) } else { why })
+        finish
     }
 
     fn print(&self) -> Result<Finish, Failure> {

@@ -152,6 +152,16 @@ fn a_capture_of_a_closed_pipe_has_every_frame_that_arrived() {
 }
 
 #[test]
+fn a_dash_is_standard_output() {
+    let folder = folder_with_log();
+    assert!(convert(&folder, &["out", "bus.log"]).status.success());
+    let output = convert(&folder, &["-", "bus.log"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.stdout, fs::read(folder.path().join("out")).expect("the capture is there"));
+    assert!(!folder.path().join("-").exists());
+}
+
+#[test]
 fn a_long_log_is_captured_whole() {
     let folder = folder_with_log();
     let line = |number: usize| format!("({number}.000001) can{} 123#0011223344556677\n", number % 3);
