@@ -9,19 +9,22 @@ use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Finish};
 use crate::input::Input;
-use crate::line::Content;
+use crate::line::{Content, Line, Message};
 use crate::log;
 use crate::model::Model;
 use crate::output::output;
-use crate::protocols::{self, One};
+use crate::protocols::{self, Several};
 
 /// Make a request, or turn decoded lines back into frames.
 ///
 /// Name the message of the request, after its access if the message has several. Set signals as NAME=VALUE, with a
-/// unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become a log again.
+/// unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become a log again. Frames
+/// that were not recognised come back unchanged.
 #[derive(Args)]
 #[command(
     verbatim_doc_comment,
+    mut_arg("protocol", |protocol| protocol.help("A built-in protocol; with --from, several as `A,B`")),
+    mut_arg("spec", |spec| spec.help("A spec file; with --from, repeatable")),
     after_long_help = "\
 Examples:
   canspec encode --protocol NAME set_output --to module:3 voltage=750V current=15A
@@ -29,7 +32,7 @@ Examples:
 )]
 pub struct Encode {
     #[command(flatten)]
-    protocol: One,
+    protocols: Several,
     #[command(flatten)]
     model: Model,
     /// Read decoded lines from the file, or from standard input.
@@ -63,12 +66,19 @@ fn address(text: &str) -> Result<i64, String> {
 impl Encode {
     /// Prints the frames asked for.
     pub fn run(&self) -> Result<Finish, Failure> {
-        let settings = self.protocol.choice()?;
-        let protocol = protocols::load_one(&settings)?;
-        let model = self.model.find_in(&protocol, &settings)?;
+        let settings = self.protocols.choice()?;
         match self.from {
-            None => self.request(&protocol, model),
-            Some(Format::Jsonl) => lines(&protocol, model, self.file()?),
+            None => {
+                let protocol = protocols::load_one(&settings)?;
+                let model = self.model.find_in(&protocol, &settings)?;
+                self.request(&protocol, model)
+            }
+            Some(Format::Jsonl) => {
+                let protocols = protocols::load_all(&settings)?;
+                let models = self.model.find(&protocols, &settings)?;
+                let devices: Vec<_> = protocols.iter().zip(models).collect();
+                lines(&devices, self.file()?)
+            }
         }
     }
 
@@ -129,53 +139,62 @@ fn pairs(words: &[String]) -> Result<Vec<(String, String)>, Failure> {
     Ok(words.iter().filter_map(pair).collect())
 }
 
+/// A protocol, and the device model if one of its models is chosen.
+type Device<'a> = (&'a Protocol, Option<ModelId>);
+
 /// Turns a decoded line into one of a log.
-pub fn line(protocol: &Protocol, model: Option<ModelId>, text: &str) -> Result<Option<String>, String> {
-    let Some((content, frame)) = read(protocol, model, text)? else { return Ok(None) };
+pub fn line(devices: &[Device<'_>], text: &str) -> Result<Option<String>, String> {
+    let Some(Line { time, channel, content }) = Line::read(text)? else { return Ok(None) };
+    let frame = match content {
+        Content::Message(message) => encoded(devices, &message)?,
+        Content::Frame(frame) => frame,
+    };
     let mut out = Vec::new();
-    let time = content.time.as_ref().map(|time| time.get());
-    log::write(&mut out, time, content.channel.as_deref(), &frame).map_err(|error| error.to_string())?;
+    let time = time.as_ref().map(|time| time.get());
+    log::write(&mut out, time, channel.as_deref(), &frame).map_err(|error| error.to_string())?;
     String::from_utf8(out).map(Some).map_err(|error| error.to_string())
 }
 
 /// Turns decoded lines into a log.
-fn lines(protocol: &Protocol, model: Option<ModelId>, file: Option<&Path>) -> Result<Finish, Failure> {
+fn lines(devices: &[Device<'_>], file: Option<&Path>) -> Result<Finish, Failure> {
     let out = BufWriter::new(output()?);
     Input::open(file)?.each(out, |out, line| {
-        let made = line.text.and_then(|text| self::line(protocol, model, text))?;
+        let made = line.text.and_then(|text| self::line(devices, text))?;
         Ok(made.map_or(Ok(()), |made| out.write_all(made.as_bytes())))
     })
 }
 
-fn read(protocol: &Protocol, model: Option<ModelId>, line: &str) -> Result<Option<(Content, Frame)>, String> {
-    let Some(content) = Content::read(line)? else { return Ok(None) };
-    check_protocol(protocol, &content)?;
-    check_units(protocol, &content)?;
-    let frame = interpret::encode(protocol, model, &content.frame).map_err(|refusal| refusal.to_string())?;
-    Ok(Some((content, frame)))
+fn encoded(devices: &[Device<'_>], message: &Message) -> Result<Frame, String> {
+    let (protocol, model) = device(devices, message.protocol.as_deref())?;
+    check_units(protocol, message)?;
+    interpret::encode(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())
 }
 
-fn check_protocol(protocol: &Protocol, content: &Content) -> Result<(), String> {
-    match &content.protocol {
-        Some(name) if *name != protocol.name => {
-            Err(format!("the line is of protocol {name:?}, not `{}`", protocol.name))
+/// Returns the protocol that a line names. A line without a name is of the only protocol.
+fn device<'a>(devices: &[Device<'a>], name: Option<&str>) -> Result<Device<'a>, String> {
+    let known: Vec<_> = devices.iter().map(|(protocol, _)| format!("`{}`", protocol.name)).collect();
+    match (name, devices) {
+        (None, [device]) => Ok(*device),
+        (None, _) => Err(format!("missing field `protocol`; it is one of {}", known.join(", "))),
+        (Some(name), _) => {
+            let named = devices.iter().find(|(protocol, _)| protocol.name == name);
+            named.copied().ok_or_else(|| format!("the line is of protocol {name:?}, not {}", known.join(" or ")))
         }
-        _ => Ok(()),
     }
 }
 
 /// Refuses a value whose stated unit is not that of its signal.
-fn check_units(protocol: &Protocol, content: &Content) -> Result<(), String> {
-    let message = protocol.messages.iter().find(|message| message.name == content.frame.message);
+fn check_units(protocol: &Protocol, line: &Message) -> Result<(), String> {
+    let message = protocol.messages.iter().find(|message| message.name == line.frame.message);
     let signals = message.map_or(&[][..], |message| &message.signals);
-    for (name, stated) in &content.units {
+    for (name, stated) in &line.units {
         let Some(signal) = signals.iter().find(|signal| signal.name == *name) else { continue };
         let wanted = match signal.unit {
             Some(unit) if unit.symbol == stated => continue,
             Some(unit) => format!("the unit is {}", unit.symbol),
             None => "there is no unit".to_owned(),
         };
-        return Err(format!("{}.{name}: {wanted}, not {stated:?}", content.frame.message));
+        return Err(format!("{}.{name}: {wanted}, not {stated:?}", line.frame.message));
     }
     Ok(())
 }

@@ -51,7 +51,7 @@ impl Log {
 ///
 /// Says why there is no such frame.
 pub fn encoded(protocol: &Protocol, json: &str) -> Result<Option<String>, String> {
-    encode::line(protocol, None, json)
+    encode::line(&[(protocol, None)], json)
 }
 
 /// Makes a spec of a DBC.

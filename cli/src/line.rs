@@ -3,7 +3,7 @@
 mod input;
 mod output;
 
-pub use input::Content;
+pub use input::{Content, Line, Message};
 pub use output::{Outcome, addresses, bit_names, write};
 
 use serde::{Serialize, Serializer};

@@ -10,7 +10,7 @@ mod write;
 
 use canspec_codegen::interpret::Frame;
 
-pub use part::{channel, is_finite, is_number};
+pub use part::{channel, data_frame, is_finite, is_number};
 pub use write::{hexadecimal, identifier_digits, identifier_text, write};
 
 /// A readable line of a log.

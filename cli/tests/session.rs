@@ -235,16 +235,38 @@ fn each_session_uses_every_command() {
 fn each_session_encodes_back_to_the_same_frames() {
     for session in sessions() {
         let log = fs::read_to_string(session.file("log")).expect("the file ships");
-        let accepted = |line: &Value| !line["message"].is_null() && !session.refuses(line);
-        let recognised: Vec<_> = session.decoded().into_iter().filter(accepted).collect();
-        let output = session.encode(&recognised);
+        let accepted = |line: &Value| line["problem"]["kind"] != "frame" && !session.refuses(line);
+        let accepted: Vec<_> = session.decoded().into_iter().filter(accepted).collect();
+        let output = session.encode(&accepted);
         let frame = |line: &str| line.rsplit(' ').next().unwrap_or_default().to_owned();
         let encoded: Vec<_> = String::from_utf8_lossy(&output.stdout).lines().map(frame).collect();
-        let numbers = recognised.iter().filter_map(|line| line["line"].as_u64()).collect::<BTreeSet<_>>();
+        let numbers = accepted.iter().filter_map(|line| line["line"].as_u64()).collect::<BTreeSet<_>>();
         let printed = log.lines().zip(1..).filter(|(_, number)| numbers.contains(number)).map(|(line, _)| frame(line));
         assert_eq!(encoded, printed.collect::<Vec<_>>(), "{}", String::from_utf8_lossy(&output.stderr));
         assert!(output.status.success(), "{}", session.name);
     }
+}
+
+#[test]
+fn a_log_of_several_protocols_encodes_back_whole() {
+    // The third frame is of a battery, and the fourth of nobody.
+    let log = "(1.5) can0 0283F000#43FA000040600000\n(1.6) can1 060F8008#42F0004300000001\n\
+               (1.7) can1 18FF50E5#0102\n123#\n(1.8) can0 029C03F0#000B71B000003A98\n";
+    let protocols = ["--protocol", "infy,mxr"];
+    let lines = canspec(&[&["decode", "--format", "jsonl"], &protocols[..]].concat(), log.as_bytes()).stdout;
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the output is UTF-8");
+    let encode = |protocols: &[&str], lines: &str| {
+        let output = canspec(&[&["encode", "--from", "jsonl"], protocols].concat(), lines.as_bytes());
+        (output.status.code(), text(output.stdout), text(output.stderr))
+    };
+    let lines = text(lines);
+    assert!(lines.contains(r#""protocol":"infy""#) && lines.contains(r#""protocol":"mxr""#), "{lines}");
+    assert_eq!(encode(&protocols, &lines), (Some(0), log.to_owned(), String::new()));
+    let (status, _, said) = encode(&["--protocol", "trio,mxr"], &lines);
+    assert_eq!((status, said.lines().count()), (Some(1), 2), "{said}");
+    assert!(said.starts_with("<stdin>:1: the line is of protocol \"infy\", not `trio` or `mxr`\n"), "{said}");
+    let (_, _, said) = encode(&protocols, &lines.replace(r#""protocol":"infy","#, ""));
+    assert!(said.starts_with("<stdin>:1: missing field `protocol`; it is one of `infy`, `mxr`\n"), "{said}");
 }
 
 fn is_noted(line: &Value) -> bool {

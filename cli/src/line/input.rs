@@ -3,7 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use canspec_codegen::interpret::{self, Input};
+use canspec_codegen::interpret::{self, Frame, Input, Problem};
 use canspec_codegen::model::Kind;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, Visitor};
@@ -14,19 +14,33 @@ use serde_json::{Number, Value};
 use super::Members;
 use crate::log;
 
-/// What a line says about a frame, and about the log that it came from.
+/// A line: what it says of the log that it came from, and of the frame.
 #[derive(Debug)]
-pub struct Content {
+pub struct Line {
     /// A JSON number.
     pub time: Option<Box<RawValue>>,
     pub channel: Option<String>,
+    pub content: Content,
+}
+
+/// What a line says about a frame.
+#[derive(Debug)]
+pub enum Content {
+    Message(Message),
+    /// The frame itself, which no protocol recognised.
+    Frame(Frame),
+}
+
+/// A message with its values.
+#[derive(Debug)]
+pub struct Message {
     pub protocol: Option<String>,
     pub frame: interpret::Content,
     /// The units that the line states, by signal.
     pub units: Vec<(String, String)>,
 }
 
-impl Content {
+impl Line {
     /// Reads a line. A blank line gives `None`.
     ///
     /// # Errors
@@ -37,7 +51,7 @@ impl Content {
             return Ok(None);
         }
         let ByName(object) = serde_json::from_str::<ByName<Object>>(line).map_err(|error| without_line(&error))?;
-        object.content().map(Some)
+        object.line().map(Some)
     }
 }
 
@@ -65,23 +79,35 @@ struct Object {
     reserved: Option<String>,
     #[serde(rename = "line")]
     _line: Option<IgnoredAny>,
-    #[serde(rename = "id")]
-    _id: Option<IgnoredAny>,
-    #[serde(rename = "data")]
-    _data: Option<IgnoredAny>,
+    id: Option<Box<RawValue>>,
+    data: Option<Box<RawValue>>,
     #[serde(rename = "addressing")]
     _addressing: Option<IgnoredAny>,
     #[serde(rename = "addresses")]
     _addresses: Option<IgnoredAny>,
     #[serde(rename = "notes")]
     _notes: Option<IgnoredAny>,
-    #[serde(rename = "problem")]
-    _problem: Option<IgnoredAny>,
+    problem: Option<ByName<ProblemObject>>,
+}
+
+/// Why a frame was not recognised.
+#[derive(Deserialize)]
+struct ProblemObject {
+    kind: String,
 }
 
 impl Object {
-    fn content(self) -> Result<Content, String> {
-        let message = self.message.ok_or("`message` is null: a frame that was not recognised cannot be made again")?;
+    fn line(mut self) -> Result<Line, String> {
+        let time = self.time.take().map(stamp).transpose()?;
+        let channel = self.channel.take().as_deref().map(channel).transpose()?;
+        let content = match self.message.take() {
+            Some(message) => Content::Message(self.message(message)?),
+            None => Content::Frame(self.frame()?),
+        };
+        Ok(Line { time, channel, content })
+    }
+
+    fn message(self, message: String) -> Result<Message, String> {
         let (signals, units) = split(self.signals.ok_or_else(|| missing("signals"))?)?;
         let frame = interpret::Content {
             message,
@@ -92,8 +118,20 @@ impl Object {
             signals,
             reserved: self.reserved.as_deref().map(reserved).transpose()?.unwrap_or_default(),
         };
-        let (time, channel) = (self.time.map(stamp).transpose()?, self.channel.as_deref().map(channel).transpose()?);
-        Ok(Content { time, channel, protocol: self.protocol, frame, units })
+        Ok(Message { protocol: self.protocol, frame, units })
+    }
+
+    /// Returns a frame that was not recognised. The line does not say which form it has, if it is no data frame.
+    fn frame(self) -> Result<Frame, String> {
+        let ByName(problem) = self.problem.ok_or_else(|| missing("problem"))?;
+        if problem.kind == Problem::Frame.name() {
+            return Err("a remote, error or FD frame is not made again".to_owned());
+        }
+        let digits = |name, member: Option<Box<RawValue>>| {
+            let member = member.ok_or_else(|| missing(name))?;
+            serde_json::from_str::<String>(member.get()).map_err(|_| format!("`{name}` is a text, not {member}"))
+        };
+        log::data_frame(&digits("id", self.id)?, &digits("data", self.data)?)
     }
 }
 
@@ -240,23 +278,30 @@ mod tests {
         format!(r#"{{"message":"m","identifier":{{"source":3}},"selectors":{{}}{members}}}"#)
     }
 
-    fn content(line: &str) -> Content {
-        Content::read(line).expect("the line is readable").expect("the line is not blank")
+    fn read(text: &str) -> Line {
+        Line::read(text).expect("the line is readable").expect("the line is not blank")
+    }
+
+    fn message(line: Line) -> Message {
+        match line.content {
+            Content::Message(message) => message,
+            Content::Frame(frame) => panic!("{frame:?} is no message"),
+        }
     }
 
     fn why(line: &str) -> String {
-        Content::read(line).expect_err("the line is refused")
+        Line::read(line).expect_err("the line is refused")
     }
 
     fn input(signal: &str) -> Result<Input, String> {
-        let content = Content::read(&line(&format!(r#","signals":{{"s":{signal}}}"#)))?;
-        let signal = content.and_then(|content| content.frame.signals.into_iter().next());
+        let line = Line::read(&line(&format!(r#","signals":{{"s":{signal}}}"#)))?;
+        let signal = line.and_then(|line| message(line).frame.signals.into_iter().next());
         signal.map(|(_, input)| input).ok_or_else(|| "no signal".to_owned())
     }
 
     #[test]
     fn a_line_of_decode_is_read_whole() {
-        let content = content(concat!(
+        let line = read(concat!(
             r#"{"line":1,"time":1700000000.0,"channel":"can0","id":"0283F000","data":"43FA000040600000","protocol":"p","#,
             r#""message":"m","access":"read","kind":"reply","addressing":"point_to_point","#,
             r#""identifier":{"error":0,"device":10},"selectors":{"function":3},"#,
@@ -276,21 +321,38 @@ mod tests {
             ],
             reserved: vec![0x00, 0xFF],
         };
-        assert_eq!(content.frame, expected);
-        assert_eq!(content.time.map(|time| time.get().to_owned()).as_deref(), Some("1700000000.0"));
-        assert_eq!((content.channel.as_deref(), content.protocol.as_deref()), (Some("can0"), Some("p")));
-        assert_eq!(content.units, [("voltage".to_owned(), "V".to_owned())]);
+        assert_eq!(line.time.as_ref().map(|time| time.get()), Some("1700000000.0"));
+        assert_eq!(line.channel.as_deref(), Some("can0"));
+        let message = message(line);
+        assert_eq!(message.frame, expected);
+        assert_eq!(message.protocol.as_deref(), Some("p"));
+        assert_eq!(message.units, [("voltage".to_owned(), "V".to_owned())]);
+    }
+
+    /// A line about a frame that no protocol knows.
+    fn unrecognised(kind: &str, id: &str, data: &str) -> String {
+        format!(r#"{{"id":{id},"data":{data},"message":null,"problem":{{"kind":"{kind}","text":"t"}}}}"#)
+    }
+
+    #[test]
+    fn a_frame_that_was_not_recognised_is_read_as_it_was() {
+        let frames = [("123", "00", 0x123, false, vec![0]), ("00000123", "", 0x123, true, Vec::new())];
+        for (id, data, number, extended, bytes) in frames {
+            let line = read(&unrecognised("foreign", &format!("{id:?}"), &format!("{data:?}")));
+            let Content::Frame(frame) = line.content else { panic!("{line:?} is no frame") };
+            assert_eq!((frame.id, frame.extended, frame.data), (number, extended, bytes));
+        }
     }
 
     #[test]
     fn blank_lines_are_no_frames() {
-        assert!(Content::read(" \r").expect("a blank line is readable").is_none());
+        assert!(Line::read(" \r").expect("a blank line is readable").is_none());
     }
 
     #[test]
     fn a_stamp_is_kept_as_it_is_written() {
-        let content = content(&line(r#","time":1700000000.123456789012345678,"signals":{}"#));
-        assert_eq!(content.time.map(|time| time.get().to_owned()).as_deref(), Some("1700000000.123456789012345678"));
+        let line = read(&line(r#","time":1700000000.123456789012345678,"signals":{}"#));
+        assert_eq!(line.time.as_ref().map(|time| time.get()), Some("1700000000.123456789012345678"));
     }
 
     #[test]
@@ -348,10 +410,14 @@ mod tests {
                 line(r#","signals":{},"reserved":"0G""#),
                 r#"`reserved` is an even number of hexadecimal digits, at most 16, not "0G""#,
             ),
-            (
-                r#"{"message":null,"problem":{"kind":"foreign","text":"t"},"identifier":{},"selectors":{}}"#.to_owned(),
-                "`message` is null: a frame that was not recognised cannot be made again",
-            ),
+            (unrecognised("foreign", r#""123""#, "null"), "missing field `data`"),
+            (unrecognised("foreign", "291", r#""00""#), "`id` is a text, not 291"),
+            (unrecognised("foreign", r#""1234""#, r#""00""#), "the identifier 1234 has 4 digits instead of 3 or 8"),
+            (unrecognised("foreign", r#""123""#, r#""0""#), "the data have an odd number of digits, 1"),
+            (unrecognised("foreign", r#""123""#, r#""001122334455667788""#), "the data have 9 bytes, more than 8"),
+            (unrecognised("foreign", r#""20000004""#, r#""""#), "an error frame has no data to send"),
+            (unrecognised("frame", r#""123""#, r#""""#), "a remote, error or FD frame is not made again"),
+            (r#"{"message":null,"id":"123","data":""}"#.to_owned(), "missing field `problem`"),
         ];
         for (line, reason) in reasons {
             assert_eq!(why(&line), reason, "{line}");

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use canspec_codegen::interpret::{Form, Frame};
 use canspec_codegen::source::forbidden;
 use serde_json::value::RawValue;
 
@@ -176,6 +177,15 @@ pub fn identifier(digits: &str) -> Result<(u32, bool, bool), String> {
         3 => fitting(number, false, digits).map(|number| (number, false, false)),
         count => Err(format!("the identifier {digits} has {count} digits instead of 3 or 8")),
     }
+}
+
+/// Makes a data frame of the digits of its identifier and of its data.
+pub fn data_frame(id: &str, data: &str) -> Result<Frame, String> {
+    let (id, extended, error) = identifier(id)?;
+    if error {
+        return Err("an error frame has no data to send".to_owned());
+    }
+    Ok(Frame { id, extended, data: bytes(data, CLASSIC)?, form: Form::Data })
 }
 
 /// Refuses an identifier that its bits have no room for.
