@@ -159,8 +159,8 @@ impl Decode {
         let devices: Vec<_> = protocols.iter().zip(models).collect();
         let mut state = State { reader: Reader::default(), printer: self.printer(&protocols)? };
         let mut out = BufWriter::with_capacity(BUFFER, output()?);
-        let input = Input::open(self.file.as_deref())?;
-        let input = if self.summary { input.summed_up() } else { input };
+        let open = if self.summary { Input::open_whole } else { Input::open };
+        let input = open(self.file.as_deref())?;
         let mut counts = Counts::default();
         let finish = if input.has_parts() && !self.summary {
             ahead::decode(input, &mut out, &mut state, &mut counts, |state, counts, out, line| {

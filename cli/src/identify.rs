@@ -62,7 +62,7 @@ impl Identify {
     pub fn run(&self) -> Result<Finish, Failure> {
         let mut candidates = self.candidates()?;
         let (mut reader, mut frames, mut others) = (Reader::default(), 0, Others::default());
-        let finish = Input::open(self.file.as_deref())?.summed_up().each(io::sink(), |_, line| {
+        let finish = Input::open_whole(self.file.as_deref())?.each(io::sink(), |_, line| {
             let entry = reader.read(line.text?)?;
             if let Some(entry) = entry.filter(|entry| self.channels.keep(entry.channel, &mut others)) {
                 frames += 1;

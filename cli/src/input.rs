@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::failure::{Failure, Finish, escaped, shown, tell};
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::signature;
 
 /// Longer lines are unreadable.
-const LONGEST: usize = 1 << 16;
+pub const LONGEST: usize = 1 << 16;
 
 /// Bytes of a file that are decoded at once, beside what completes their last line.
 const PART: u64 = 1 << 18;
@@ -79,6 +80,20 @@ impl Input {
                 Ok(Self { file: identity(path), length, ..Self::new(path, Box::new(file)) })
             }
         }
+    }
+
+    /// Opens a log that is shown when all is read. Ctrl-C ends standard input, as its end does.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be opened.
+    pub fn open_whole(path: Option<&Path>) -> Result<Self, Failure> {
+        let input = Self::open(path)?.summed_up();
+        if path.is_some_and(|path| path != Path::new("-")) {
+            return Ok(input);
+        }
+        let stdin = interrupt::stdin().map_err(|error| Failure::input(&input.name, &error))?;
+        Ok(Self { reader: BufReader::with_capacity(LONGEST, Box::new(stdin)), ..input })
     }
 
     /// Tests whether a path leads to the file that is read, so that writing there would destroy it.

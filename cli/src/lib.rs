@@ -20,6 +20,7 @@ pub mod files;
 mod identify;
 mod import;
 mod input;
+mod interrupt;
 mod line;
 mod list;
 mod log;
