@@ -17,7 +17,6 @@ use crate::input::Input;
 use crate::log::Reader;
 use crate::output::output;
 use crate::protocols;
-use crate::settings::Settings;
 
 /// Find out which protocols a log holds.
 ///
@@ -86,8 +85,8 @@ impl Identify {
     }
 
     fn candidates(&self) -> Result<Vec<Candidate>, Failure> {
-        let specs = if self.spec.is_empty() { Settings::find()?.specs } else { self.spec.clone() };
-        let files = specs.iter().map(|path| protocols::load(protocols::file(path)?));
+        let choice = protocols::chosen(&[], &self.spec)?;
+        let files = choice.specs.iter().map(|path| protocols::load(protocols::chosen_file(&choice, path)?));
         let protocols = files.chain(SPECS.iter().map(protocols::load_built_in));
         protocols.map(|protocol| protocol.map(Candidate::new)).collect()
     }

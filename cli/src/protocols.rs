@@ -8,7 +8,7 @@ use canspec_codegen::{Outcome, compile, compile_proven, nearest};
 use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, shown};
 use crate::settings::Settings;
 
 /// Chooses one protocol.
@@ -55,7 +55,7 @@ impl Several {
 }
 
 /// Returns what the call chooses, or else what the settings do.
-fn chosen(protocols: &[String], specs: &[PathBuf]) -> Result<Settings, Failure> {
+pub fn chosen(protocols: &[String], specs: &[PathBuf]) -> Result<Settings, Failure> {
     if protocols.is_empty() && specs.is_empty() {
         return Settings::find();
     }
@@ -75,7 +75,7 @@ pub fn load_one(choice: &Settings) -> Result<Protocol, Failure> {
 
 /// Compiles all specs of a choice, which has at least one.
 pub fn load_all(choice: &Settings) -> Result<Vec<Protocol>, Failure> {
-    let files = choice.specs.iter().map(|path| load(file(path)?));
+    let files = choice.specs.iter().map(|path| load(chosen_file(choice, path)?));
     let named = choice.protocols.iter().map(|name| load_built_in(built_in(name).map_err(|why| choice.refuse(&why))?));
     let protocols: Vec<Protocol> = files.chain(named).collect::<Result<_, _>>()?;
     if protocols.is_empty() { Err(nothing_chosen()) } else { Ok(protocols) }
@@ -84,6 +84,15 @@ pub fn load_all(choice: &Settings) -> Result<Vec<Protocol>, Failure> {
 fn nothing_chosen() -> Failure {
     let call = "name a protocol with --protocol NAME or a file with --spec FILE";
     Failure::Call(format!("{call}; CANSPEC_PROTOCOL or a file canspec.toml can name it too"))
+}
+
+/// Returns the text of a spec file. Settings that name no file are wrong.
+pub fn chosen_file(choice: &Settings, path: &Path) -> Result<Source, Failure> {
+    if choice.origin.is_some() && !path.exists() {
+        let why = format!("there is no spec file `{}`", shown(path));
+        return Err(choice.refuse(&format!("{why}; a path in this file starts at its folder")));
+    }
+    file(path)
 }
 
 /// Returns the text of a spec file.

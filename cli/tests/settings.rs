@@ -151,7 +151,11 @@ fn a_file_that_says_something_else_is_refused_in_its_place() {
         (2, "model = 75\n", "canspec.toml:1: text needs quotes"),
         (2, "[protocol]\n", "canspec.toml:1: expected a text or a list of texts"),
         (2, "protocol = \"ifny\"\n", "canspec: canspec.toml: unknown protocol `ifny`; built in: "),
-        (1, "spec = \"nosuch.yaml\"\n", "there is no such file"),
+        (
+            2,
+            "spec = \"nosuch.yaml\"\n",
+            "canspec: canspec.toml: there is no spec file `nosuch.yaml`; a path in this file",
+        ),
         (
             2,
             "",
@@ -161,5 +165,18 @@ fn a_file_that_says_something_else_is_refused_in_its_place() {
     for (status, settings, why) in cases {
         let folder = folder(Some(settings));
         assert_refused(&canspec(folder.path(), None, &["decode", "bus.log"]), status, why);
+    }
+}
+
+#[test]
+fn a_spec_that_is_missing_is_blamed_on_the_file_that_names_it() {
+    let folder = folder(Some("spec = \"nosuch.yaml\"\n"));
+    let below = folder.path().join("logs/today");
+    let why = "canspec: ../../canspec.toml: there is no spec file `../../nosuch.yaml`";
+    for call in [&["list", "--spec", "nosuch.yaml"][..], &["decode", "--spec", "nosuch.yaml"]] {
+        assert_refused(&canspec(&below, None, call), 1, "error[file]: there is no such file");
+    }
+    for call in [&["decode"][..], &["identify", "../../bus.log"], &["encode", "x"], &["export", "dbc"]] {
+        assert_refused(&canspec(&below, None, call), 2, why);
     }
 }
