@@ -42,7 +42,7 @@ impl Examples {
         match self.format {
             Format::Text => {
                 let rows: Vec<Row> = documented.map(|example| row(&protocol, example)).collect();
-                columns::write(&mut out, &["FRAME", "KIND", "MESSAGE", "SECTION", "EXPECT"], "ERRATA", &rows)?;
+                columns::write(&mut out, &["FRAME", "KIND", "MESSAGE", "SECTION", "EXPECT", "ERRATA"], "NOTE", &rows)?;
             }
             Format::Jsonl => documented.map(Object::new).try_for_each(|object| object.write(&mut out))?,
         }
@@ -52,20 +52,17 @@ impl Examples {
 }
 
 fn row(protocol: &Protocol, example: &Example) -> Row {
-    let Object { id, data, section, expect, .. } = Object::new(example);
+    let Object { id, data, section, expect, erratum, note } = Object::new(example);
     let cells = vec![
         data.map_or(id.clone(), |data| format!("{id}#{data}")),
         example.kind.name().to_owned(),
         example.message.map_or(String::new(), |message| protocol.messages[message].name.clone()),
         section.map_or("", Text::for_people).to_owned(),
         expect.to_owned(),
+        erratum.unwrap_or_default(),
     ];
-    Row { cells, last: errata(example).map(str::to_owned).collect(), separator: ", " }
-}
-
-/// Returns the errata of an example by name.
-fn errata(example: &Example) -> impl Iterator<Item = &str> {
-    example.doc.errata.iter().map(Text::for_people)
+    let words = note.map_or("", Text::for_people).split(' ');
+    Row { cells, last: words.map(str::to_owned).collect(), separator: " " }
 }
 
 #[derive(Serialize)]
@@ -77,16 +74,19 @@ struct Object<'a> {
     expect: &'static str,
     /// Names of errata, one after another.
     erratum: Option<String>,
+    note: Option<&'a Text>,
 }
 
 impl<'a> Object<'a> {
     fn new(example: &'a Example) -> Self {
+        let errata: Vec<_> = example.doc.errata.iter().map(Text::for_people).collect();
         Self {
             id: log::identifier_digits(example.id, example.extended),
             data: example.data.as_deref().map(log::hexadecimal),
             section: example.doc.section.as_ref(),
             expect: example.fails.map_or("ok", canspec_codegen::model::Failure::name),
-            erratum: (!example.doc.errata.is_empty()).then(|| errata(example).collect::<Vec<_>>().join(", ")),
+            erratum: (!errata.is_empty()).then(|| errata.join(", ")),
+            note: example.doc.note.as_ref(),
         }
     }
 
