@@ -34,17 +34,16 @@ mod schema;
 mod settings;
 mod signature;
 mod table;
+mod tips;
 mod value;
 
-use std::env;
-use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 
 use failure::{Failure, Finish, tell};
 use output::output;
+use tips::with_tip;
 
 /// CAN protocols described once in YAML: check them, compile them to Rust, decode and encode logs by them.
 #[derive(Parser)]
@@ -97,23 +96,8 @@ impl Command {
 pub fn main() -> ExitCode {
     match Canspec::try_parse() {
         Ok(call) => call.command.run().map_or_else(|failure| failure.report(), ExitCode::from),
-        Err(refusal) => refuse(&with_format(refusal)),
+        Err(refusal) => refuse(&with_tip(refusal)),
     }
-}
-
-/// Suggests `--format csv` in place of an unknown `--csv`, if the call is right with it.
-fn with_format(mut refusal: clap::Error) -> clap::Error {
-    let Some(ContextValue::String(unknown)) = refusal.get(ContextKind::InvalidArg) else { return refusal };
-    let Some(format) = unknown.strip_prefix("--") else { return refusal };
-    let meant = format!("--format={format}");
-    let is_unknown = |word: &OsString| word.to_str() == Some(unknown);
-    let call = env::args_os().map(|word| if is_unknown(&word) { OsString::from(&meant) } else { word });
-    if refusal.kind() == ErrorKind::UnknownArgument && Canspec::try_parse_from(call).is_ok() {
-        let tip = format!("a similar argument exists: '--format {format}'");
-        refusal.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-        refusal.remove(ContextKind::SuggestedArg);
-    }
-    refusal
 }
 
 /// Shows what is wrong with the call, or the requested help.
