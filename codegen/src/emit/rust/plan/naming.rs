@@ -238,6 +238,19 @@ mod tests {
 
     use super::*;
 
+    #[test]
+    fn the_reference_lists_every_name_that_is_taken() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/language.md");
+        let reference = fs::read_to_string(path).expect("the reference is there");
+        let (_, part) = reference.split_once("**Names that are taken.**").expect("the reference has the part");
+        let (part, _) = part.split_once("\n## ").expect("another part follows");
+        let types = part.split("```").nth(1).expect("the types stand in a block").split_whitespace().skip(1);
+        assert_eq!(types.collect::<Vec<_>>(), TAKEN);
+        for name in CONSTANTS.iter().chain(&OF_MESSAGES) {
+            assert!(part.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+
     /// Returns the names that the prelude in a file of the runtime exports by `pub use`.
     fn exported(file: &str) -> io::Result<Vec<String>> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../runtime/src").join(file);
