@@ -140,7 +140,7 @@ fn an_empty_request_never_wins_over_a_message_with_signals() {
     let dropped: Vec<_> =
         exported.dropped.iter().map(|dropped| (dropped.text.as_str(), dropped.has_own_identifier)).collect();
     let request = "`pressure` (request to read) is missing in `pressure_reply`, where nothing tells it from `pressure` (reply to read)";
-    let restart = "`restart` is missing in `temperature_report`, which has 8 data bytes";
+    let restart = "`restart` is missing in `temperature_report`, whose length is 8 bytes";
     assert_eq!(dropped, [(request, true), (restart, true)]);
     assert!(exported.losses.iter().any(|loss| loss == request) && exported.losses.iter().any(|loss| loss == restart));
 

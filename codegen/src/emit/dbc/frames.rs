@@ -103,7 +103,7 @@ pub fn frames(protocol: &Protocol, sent: &[Sent], mask: u32) -> (Vec<DbcMessage>
     }
     let groups: Vec<Group> = groups.into_values().map(|sent| group(protocol, sent)).collect();
     let names = names(protocol, &groups);
-    let lost = groups.iter().zip(&names).flat_map(|(group, name)| lost(protocol, group, name)).collect();
+    let lost = dropped(protocol, &groups, &names);
     let frames = groups.into_iter().zip(names).map(|(group, name)| frame(protocol, group, name)).collect();
     (frames, lost)
 }
@@ -124,27 +124,52 @@ fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
     Group { sent, lost, others, tree }
 }
 
-/// Says which messages a frame lacks.
-fn lost(protocol: &Protocol, group: &Group, name: &str) -> Vec<Dropped> {
+/// A message that a frame lacks.
+struct Lost {
+    /// What is missing, and why.
+    missing: String,
+    why: String,
+    has_own_identifier: bool,
+}
+
+/// Returns what a frame lacks.
+fn lost(protocol: &Protocol, group: &Group) -> Vec<Lost> {
     let length = group.sent[0].message.length;
-    let dropped = |candidate: &Candidate, text: String| {
+    let dropped = |candidate: &Candidate, missing: String, why: String| {
         let mut lost = group.lost.iter().filter(|sent| sent.id_of_layout == candidate.id);
         let has_own_identifier = lost.all(|lost| group.sent.iter().all(|sent| sent.id != lost.id));
-        Dropped { text, has_own_identifier }
+        Lost { missing, why, has_own_identifier }
     };
-    let other = |lost: &Candidate| {
-        let text = format!("`{}` is missing in `{name}`, which has {length} data bytes", lost.message.name);
-        dropped(lost, text)
-    };
+    let other =
+        |lost: &Candidate| dropped(lost, format!("`{}`", lost.message.name), format!("whose length is {length} bytes"));
     let same = |(lost, kept): &(Candidate, Candidate)| {
         let is_one = lost.layout.message == kept.layout.message;
         let [missing, found] = [lost, kept].map(|candidate| {
             let how = if is_one { format!(" ({})", how(protocol, candidate.layout)) } else { String::new() };
             format!("`{}`{how}", candidate.message.name)
         });
-        dropped(lost, format!("{missing} is missing in `{name}`, where nothing tells it from {found}"))
+        dropped(lost, missing, format!("where nothing tells it from {found}"))
     };
     group.others.iter().map(other).chain(group.tree.lost.iter().map(same)).collect()
+}
+
+/// Says once what several frames lack for the same reason, such as those of several nodes.
+fn dropped(protocol: &Protocol, groups: &[Group], names: &[String]) -> Vec<Dropped> {
+    let mut frames: IndexMap<(String, String, bool), Vec<&str>> = IndexMap::new();
+    for (group, name) in groups.iter().zip(names) {
+        for Lost { missing, why, has_own_identifier } in lost(protocol, group) {
+            frames.entry((missing, why, has_own_identifier)).or_default().push(name);
+        }
+    }
+    let said = frames.into_iter().map(|((missing, why, has_own_identifier), names)| {
+        let more = match names.len() - 1 {
+            0 => String::new(),
+            1 => " and 1 more frame".to_owned(),
+            count => format!(" and {count} more frames"),
+        };
+        Dropped { text: format!("{missing} is missing in `{}`{more}, {why}", names[0]), has_own_identifier }
+    });
+    said.collect()
 }
 
 /// Says what a frame is for, and by which access.
