@@ -21,6 +21,16 @@ include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 #[doc = include_str!("../../README.md")]
 struct Readme;
 
+/// The Rust of the page on status words compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/errors.md")]
+struct Errors;
+
+/// The Rust of the page on several controllers compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/controllers.md")]
+struct Controllers;
+
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
