@@ -1,7 +1,8 @@
 //! The checked, target-neutral description of a protocol that both engines and every emitter read.
 //!
 //! Only the compiler makes these values. A [`Protocol`] that exists has passed every check, unless
-//! [`compile_proven`](crate::compile_proven) made it, whose caller vouches for the spec.
+//! [`compile_proven`](crate::compile_proven) made it, whose caller vouches for the spec. A stored
+//! one is what was stored.
 
 mod address;
 mod data;
@@ -12,6 +13,7 @@ mod identifier;
 mod message;
 mod note;
 mod numeral;
+mod place;
 mod recognition;
 mod set;
 mod signal;
@@ -32,10 +34,12 @@ pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit};
 
+use serde::{Deserialize, Serialize};
+
 use crate::text::Text;
 
 /// A whole protocol.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Protocol {
     /// Module name of the generated code.

@@ -1,10 +1,12 @@
 //! Exact numbers, from the text of a spec to the constants of a codec.
 
+use serde::{Deserialize, Serialize};
+
 use std::cmp::Ordering;
 use std::fmt;
 
 /// A rational number in lowest terms with a positive denominator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Rational {
     numerator: i128,
     denominator: i128,

@@ -6,7 +6,7 @@ mod dbc;
 mod lua;
 mod rust_doc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub(crate) use lua::quoted as quoted_in_lua;
 pub(crate) use rust_doc::code;
@@ -21,14 +21,31 @@ use crate::source::visible;
 /// let text = canspec_codegen::text::Text::new("A charger");
 /// println!("{text}");
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
 pub struct Text(String);
+
+impl From<String> for Text {
+    fn from(text: String) -> Self {
+        Self::new(&text)
+    }
+}
+
+impl From<Text> for String {
+    fn from(text: Text) -> Self {
+        text.0
+    }
+}
 
 impl Text {
     /// Cleans a text: line ends and tabs become spaces, and other forbidden characters U+FFFD.
     pub fn new(text: &str) -> Self {
-        Self(visible(&text.trim().replace("\r\n", " ").replace(['\n', '\t'], " ")))
+        let is_clean = text.bytes().all(|byte| matches!(byte, b' '..=b'~'));
+        if is_clean {
+            Self(text.trim().to_owned())
+        } else {
+            Self(visible(&text.trim().replace("\r\n", " ").replace(['\n', '\t'], " ")))
+        }
     }
 
     /// Returns the text for a terminal, or for a file that people read.

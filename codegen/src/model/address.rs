@@ -1,9 +1,11 @@
 //! Addresses, addressing modes, and how an identifier shows its direction.
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::{AddressTypeId, Doc, FieldId, Kind, Who};
 
 /// A kind of address: a range of numbers in a field of the identifier.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct AddressType {
     /// Name in the spec, in `snake_case`.
@@ -48,7 +50,7 @@ impl AddressType {
 }
 
 /// An addressing mode.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Mode {
     /// Name in the spec, in `snake_case`.
@@ -88,7 +90,7 @@ impl Mode {
 }
 
 /// Constants and addresses that an identifier must show.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct AddressPattern {
     /// Bits of the identifier that are constant.
@@ -102,7 +104,7 @@ pub struct AddressPattern {
 }
 
 /// A field of the identifier that holds an address.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Address {
     /// The field.
@@ -115,7 +117,7 @@ pub struct Address {
 }
 
 /// How an identifier shows its direction.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Direction {
     /// Lists of tests. The identifier shows the direction if all tests of one list hold.
@@ -123,7 +125,7 @@ pub struct Direction {
 }
 
 /// A test of one identifier field.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct FieldTest {
     /// The field.

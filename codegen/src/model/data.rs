@@ -1,12 +1,14 @@
 //! What a spec says beside the codec.
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::{Quantity, Range, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
 
 /// The vendor document.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Document {
     /// Title as printed.
@@ -20,7 +22,7 @@ pub struct Document {
 }
 
 /// What a spec says about an item beside its meaning for the codec.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Doc {
     /// What the item is, in a few words without a full stop.
@@ -36,7 +38,7 @@ pub struct Doc {
 }
 
 /// A device model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct DeviceModel {
     /// Name in the spec, as the vendor spells it.
@@ -56,7 +58,7 @@ pub struct DeviceModel {
 }
 
 /// What a device model changes of a type.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct TypeOfModel {
     /// Name of the type.
@@ -70,7 +72,7 @@ pub struct TypeOfModel {
 }
 
 /// A time that the document states. Both ends are equal if it names one value.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Timing {
     /// Name in the spec, in `snake_case`.
@@ -86,7 +88,7 @@ pub struct Timing {
 }
 
 /// Steps in order.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Procedure {
     /// Name in the spec, in `snake_case`.
@@ -98,7 +100,7 @@ pub struct Procedure {
 }
 
 /// A departure from the document.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Erratum {
     /// Name in the spec.

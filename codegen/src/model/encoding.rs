@@ -2,11 +2,13 @@
 //!
 //! `crate::encoding` turns bits into values and back.
 
+use serde::{Deserialize, Serialize};
+
 use super::{EnumerationId, Numeral, PartId, Signal, StatusWordId, Table};
 use crate::number::Rational;
 
 /// What a signal's bits mean.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Encoding {
     /// physical = integer * scale + offset.
     Number {
@@ -126,7 +128,7 @@ impl Encoding {
 }
 
 /// A piece of a packed value's text.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Piece {
     /// A text that never changes.
     Literal(String),

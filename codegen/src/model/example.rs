@@ -1,10 +1,12 @@
 //! The document's frames and what they mean.
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::{Doc, Kind, MessageId, ModelId, NoteRule, Signal, SignalId};
 use crate::syntax::tree::Path;
 
 /// A frame of the document and what it means.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Example {
     /// What the spec says beside it.
@@ -34,7 +36,7 @@ pub struct Example {
 }
 
 /// What an example says about one signal.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Meaning {
     /// The signal.
@@ -48,7 +50,7 @@ pub struct Meaning {
 }
 
 /// Why a text is no value of a signal.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Misfit {
     /// What is wrong, in one sentence.
@@ -70,7 +72,7 @@ impl Misfit {
 }
 
 /// How a printed frame fails.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
     /// Its identifier has the wrong width or a wrong fixed bit, or does not show its direction.
     Identifier,
@@ -107,7 +109,7 @@ impl Failure {
 }
 
 /// Bytes of a type, and their value.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ValueExample {
     /// What the spec says beside it.

@@ -1,5 +1,7 @@
 //! Ids of the model's tables. The id of one table cannot find a row of another.
 
+use serde::{Deserialize, Serialize};
+
 use std::fmt::Debug;
 use std::hash::Hash;
 use std::iter::{Enumerate, FusedIterator};
@@ -24,7 +26,7 @@ pub trait Id: Copy + Debug + Ord + Hash {
 macro_rules! define_ids {
     ($($(#[$doc:meta])* $name:ident;)*) => {$(
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         pub struct $name(u32);
 
         impl Id for $name {
@@ -99,7 +101,8 @@ impl_index! {
 }
 
 /// Rows with an id type of their own.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent, bound(serialize = "T: Serialize", deserialize = "T: Deserialize<'de>"))]
 pub struct Table<I, T> {
     rows: Vec<T>,
     ids: PhantomData<fn() -> I>,

@@ -1,11 +1,13 @@
 //! The identifier's fields, the fields that choose messages, and identifiers of other devices.
 
+use serde::{Deserialize, Serialize};
+
 use canspec_runtime::Place;
 
-use crate::model::{Doc, EnumerationId, FieldId, Table};
+use crate::model::{Doc, EnumerationId, FieldId, Table, place};
 
 /// The identifier's layout.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Identifier {
     /// 29 bits rather than 11.
@@ -19,7 +21,7 @@ pub struct Identifier {
 }
 
 /// A named bit field of the identifier.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct IdentifierField {
     /// Name in the spec, in `snake_case`.
@@ -66,7 +68,7 @@ impl IdentifierField {
 }
 
 /// A field whose constants choose a message, or which says whether a request was accepted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Selector {
     /// Name in the spec, in `snake_case`.
@@ -84,16 +86,16 @@ pub struct Selector {
 }
 
 /// Where a selector stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SelectorPlace {
     /// In a field of the identifier.
     Identifier(FieldId),
     /// In the data bytes.
-    Payload(Place),
+    Payload(#[serde(with = "place")] Place),
 }
 
 /// Identifiers of other devices on the bus.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Foreign {
     /// Name in the spec, in `snake_case`.

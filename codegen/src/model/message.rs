@@ -1,5 +1,7 @@
 //! Messages, how they travel, and their frames.
 
+use serde::{Deserialize, Serialize};
+
 use canspec_runtime::Place;
 
 use crate::model::{
@@ -8,7 +10,7 @@ use crate::model::{
 };
 
 /// What a frame is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
     /// Goes to a module, to read or to set.
     Request,
@@ -42,7 +44,7 @@ impl Kind {
 }
 
 /// Who answers a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Who {
     /// The module addressed.
     One,
@@ -58,7 +60,7 @@ pub enum Who {
 pub type Answers = Table<ModeId, Option<Who>>;
 
 /// How a message travels.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Access {
     /// Name in the spec, in `snake_case`.
@@ -76,7 +78,7 @@ pub struct Access {
 }
 
 /// A message.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Message {
     /// Name in the spec, in `snake_case`.
@@ -117,7 +119,7 @@ impl Message {
 }
 
 /// How a message travels by one of its accesses.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Exchange {
     /// The access.
@@ -129,7 +131,7 @@ pub struct Exchange {
 }
 
 /// A value that a selector must have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Constant {
     /// The selector.
     pub selector: SelectorId,
@@ -158,7 +160,7 @@ impl Constant {
 }
 
 /// One kind of frame of one message: all that an engine or an emitter needs of it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct FrameLayout {
     /// The message that it carries.
@@ -203,7 +205,7 @@ impl FrameLayout {
 }
 
 /// A way in which a frame is sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Travel {
     /// The addressing mode.

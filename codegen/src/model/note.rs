@@ -1,9 +1,11 @@
 //! Notes on recognised frames.
 
+use serde::{Deserialize, Serialize};
+
 use std::fmt;
 
 /// Something that a document does not foresee in a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum NoteRule {
     /// A reply does not have the `normal` value: it reports an error.
     ErrorCode,

@@ -1,9 +1,11 @@
 //! Numerals: which integer the bits of a number are.
 
+use serde::{Deserialize, Serialize};
+
 /// How bits write an integer.
 ///
 /// A raw value is what a frame holds: its bits, in two's complement with their sign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Numeral {
     /// Binary, from 0 on.
     Unsigned,

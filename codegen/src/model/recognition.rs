@@ -1,6 +1,8 @@
 //! The plan to recognise frames: which bits tell them apart, and in which order. Every engine runs
 //! or prints it.
 
+use serde::{Deserialize, Serialize};
+
 use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
@@ -8,7 +10,7 @@ use indexmap::IndexMap;
 use crate::model::{Constant, Direction, FrameId, FrameLayout, Id, Kind, Selector, SelectorId, SelectorPlace, Table};
 
 /// How frames are recognised, in this order: direction, constants of the identifier, length, constants of the payload.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Recognition {
     /// How an identifier shows that a frame goes to a module.
@@ -24,7 +26,7 @@ pub struct Recognition {
 }
 
 /// The frames of one direction.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Course {
     /// All these frames.
@@ -34,7 +36,7 @@ pub struct Course {
 }
 
 /// Frames with the same constants in the identifier.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Group {
     /// All these frames.
@@ -53,7 +55,7 @@ impl Group {
 }
 
 /// What a group of frames has in all.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Scope {
     /// Their kinds.
@@ -65,7 +67,7 @@ pub struct Scope {
 }
 
 /// A choice by one selector after another.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Choice<T> {
     /// There is one outcome.

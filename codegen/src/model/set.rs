@@ -1,9 +1,11 @@
 //! Sets: messages that travel as several frames.
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::{AddressTypeId, Constant, Exchange, Kind, MessageId, Mode, Protocol, SelectorPlace, Who};
 
 /// What a message that travels as several frames consists of.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Set {
     /// The messages that travel in the frames, in order, one in each.

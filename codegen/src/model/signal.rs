@@ -1,14 +1,17 @@
 //! Signals and what their bits mean.
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use canspec_runtime::Place;
 
-use crate::model::{Doc, Encoding, Kind, ModelId};
+use crate::model::{Doc, Encoding, Kind, ModelId, place};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
 
 /// Named values of a signal.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Enumeration {
     /// Name of the type, in `snake_case`.
@@ -29,7 +32,7 @@ impl Enumeration {
 }
 
 /// A raw value with a name.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct NamedValue {
     /// Raw value, sign-extended if the signal is signed.
@@ -39,7 +42,7 @@ pub struct NamedValue {
 }
 
 /// A word whose named bits are conditions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct StatusWord {
     /// Name of the type, in `snake_case`.
@@ -60,7 +63,7 @@ impl StatusWord {
 }
 
 /// One bit of a status word.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct StatusBit {
     /// Name in the spec, in `snake_case`.
@@ -82,7 +85,7 @@ pub struct StatusBit {
 }
 
 /// The severity of a status bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Severity {
     /// Describes a condition.
     State,
@@ -93,7 +96,7 @@ pub enum Severity {
 }
 
 /// A named value in the data bytes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Signal {
     /// Name in the spec, in `snake_case`.
@@ -103,6 +106,7 @@ pub struct Signal {
     /// The entries of `types` that it takes keys from, the last first.
     pub types: Vec<String>,
     /// Bits of the data bytes.
+    #[serde(with = "place")]
     pub place: Place,
     /// What these bits mean.
     pub encoding: Encoding,
@@ -127,7 +131,7 @@ pub struct Signal {
 }
 
 /// A value that a device model has of its own.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct OfModel<T> {
     /// The model.
@@ -220,7 +224,7 @@ fn own<T: Copy>(known: &[OfModel<T>], model: Option<ModelId>) -> Option<T> {
 }
 
 /// Physical limits, both legal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Range {
     /// Lowest value.
@@ -274,8 +278,22 @@ impl Unit {
     }
 }
 
+/// It is stored as its symbol.
+impl Serialize for Unit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.symbol.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Unit {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let symbol = String::deserialize(deserializer)?;
+        Self::find(&symbol).ok_or_else(|| D::Error::custom(format!("`{symbol}` is no unit")))
+    }
+}
+
 /// A number with a unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Quantity {
     /// The number.

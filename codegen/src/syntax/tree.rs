@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
 
 /// A value in the file and where it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -160,7 +161,8 @@ impl From<Range<usize>> for At {
 }
 
 /// Keys and list positions from the root of a spec to a value. The default is the root.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(from = "Vec<Step>", into = "Vec<Step>")]
 pub struct Path(Option<Arc<Link>>);
 
 #[derive(Debug, PartialEq, Eq, Hash)]
@@ -170,7 +172,7 @@ struct Link {
 }
 
 /// One step of a path.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Step {
     /// To the value of a key.
     Key(String),
@@ -213,6 +215,20 @@ impl Path {
 
     pub(crate) fn step(&self, step: Step) -> Self {
         Self(Some(Arc::new(Link { parent: self.clone(), step })))
+    }
+}
+
+impl From<Vec<Step>> for Path {
+    fn from(steps: Vec<Step>) -> Self {
+        steps.into_iter().fold(Self::default(), |path, step| path.step(step))
+    }
+}
+
+impl From<Path> for Vec<Step> {
+    fn from(path: Path) -> Self {
+        let mut steps: Self = path.ancestors().filter_map(|path| Some(path.split()?.1.clone())).collect();
+        steps.reverse();
+        steps
     }
 }
 

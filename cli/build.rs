@@ -1,0 +1,34 @@
+//! Compiles the built-in specs, so that the command need not read their YAML at each start.
+//!
+//! A spec with mistakes is left out. The command compiles it at the start then, and shows the mistakes.
+
+use std::env;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
+
+use canspec_codegen::compile_proven;
+use canspec_codegen::source::Source;
+use canspec_specs::{SPECS, Spec};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-changed=build.rs");
+    let folder = PathBuf::from(env::var("OUT_DIR")?);
+    let mut table = String::from("&[\n");
+    for spec in SPECS {
+        if let Some(model) = compiled(spec)? {
+            fs::write(folder.join(spec.name), model)?;
+            writeln!(table, "    ({0:?}, include_bytes!(concat!(env!(\"OUT_DIR\"), \"/\", {0:?}))),", spec.name)?;
+        }
+    }
+    table.push_str("]\n");
+    Ok(fs::write(folder.join("models.rs"), table)?)
+}
+
+/// Returns the stored model of a spec, unless it has mistakes.
+fn compiled(spec: &Spec) -> Result<Option<Vec<u8>>, postcard::Error> {
+    let source = Source::new(spec.file, spec.text.as_bytes().to_vec());
+    let protocol = source.and_then(compile_proven);
+    protocol.ok().map(|protocol| postcard::to_allocvec(&protocol)).transpose()
+}
