@@ -11,7 +11,9 @@ pub struct Status<'a> {
 impl Room for Status<'_> {
     fn value(&self, bits: u64) -> Value {
         let set = self.word.bits.iter().map(|bit| bit.bit).filter(|bit| bits >> bit & 1 == 1);
-        Value::Status { set: set.collect(), unknown: bits & !self.word.known() }
+        let set: Vec<u8> = if bits == 0 { Vec::new() } else { set.collect() };
+        let unknown = set.iter().fold(bits, |rest, bit| rest & !(1 << bit));
+        Value::Status { set, unknown }
     }
 
     fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {
@@ -40,10 +42,10 @@ impl Room for Status<'_> {
         Input::Status { set, unknown: 0 }
     }
 
-    fn oddity(&self, bits: u64, _: &Value) -> Option<(NoteRule, String)> {
-        let unknown = bits & !self.word.known();
+    fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
+        let Value::Status { unknown: unknown @ 1.., .. } = value else { return None };
         let text = || format!("{} has bits {unknown:#X} set that have no name", self.signal.name);
-        (unknown != 0).then(|| (NoteRule::UnknownBit, text()))
+        Some((NoteRule::UnknownBit, text()))
     }
 
     fn description(&self) -> Vec<String> {

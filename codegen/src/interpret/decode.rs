@@ -83,8 +83,9 @@ impl<'a> Decoder<'a> {
             (*first..=*last).contains(&value)
         };
         let same_width = self.frame.extended == self.protocol.identifier.extended;
-        let found = self.protocol.foreign.iter().find(|foreign| foreign.ranges.iter().all(within));
-        found.filter(|_| same_width).map(|foreign| {
+        let known = if same_width { &self.protocol.foreign[..] } else { &[] };
+        let found = known.iter().find(|foreign| foreign.ranges.iter().all(within));
+        found.map(|foreign| {
             let title = foreign.doc.title.as_ref().or(foreign.doc.note.as_ref());
             title.map_or_else(|| foreign.name.clone(), |title| format!("{}: {}", foreign.name, title.for_people()))
         })
@@ -271,6 +272,21 @@ impl<'a> Decoder<'a> {
     /// Finds the mode that fits best: documented addresses, then tolerated ones, then modes that
     /// the message does not have.
     fn addressing(&self, frame: &FrameLayout) -> Addressing<'a> {
+        self.documented(frame).unwrap_or_else(|| self.tolerated(frame))
+    }
+
+    /// Finds a mode of the message whose addresses are all documented, as nearly every frame has one.
+    fn documented(&self, frame: &FrameLayout) -> Option<Addressing<'a>> {
+        let protocol = self.protocol;
+        let ways = frame.travels.iter();
+        let ways = ways.filter_map(|way| Some((*way, protocol[way.mode].pattern(frame.kind, way.who)?)));
+        let fitting = ways.filter(|(_, pattern)| self.fits(pattern) == Some(false));
+        let best = fitting.min_by_key(|(_, pattern)| Reverse(pattern.constants))?;
+        Some(Addressing { fit: Fit::Documented, constants: best.1.constants, travel: Some(best) })
+    }
+
+    /// Finds the mode that fits best if none fits as documented.
+    fn tolerated(&self, frame: &FrameLayout) -> Addressing<'a> {
         let patterns = self.protocol.modes.entries().flat_map(|(mode, known)| {
             let senders: &[_] = match frame.kind {
                 Kind::Request => &[Who::Nobody],
@@ -386,7 +402,8 @@ impl<'a> Decoder<'a> {
             let text = format!("`{}` is not addressed by `{}`", message.name, self.protocol[travel.mode].name);
             notes.push(Note { rule: NoteRule::Addressing, text });
         }
-        for address in &pattern.addresses {
+        let addresses = if addressing.fit == Fit::Documented { &[][..] } else { &pattern.addresses };
+        for address in addresses {
             let address_type = &self.protocol[address.address_type];
             let raw = self.field(address.field);
             if !address_type.documents(raw) {

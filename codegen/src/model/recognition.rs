@@ -93,7 +93,7 @@ impl<T> Choice<T> {
             match choice {
                 Self::End(outcome) => return Some(outcome),
                 Self::By { place, cases, otherwise, .. } => {
-                    choice = cases.get(&read(*place)).or(otherwise.as_deref())?;
+                    choice = case(cases, read(*place)).or(otherwise.as_deref())?;
                 }
             }
         }
@@ -124,6 +124,17 @@ impl<T> Choice<T> {
             }
         }
     }
+}
+
+/// Cases up to this number are compared one after another, which takes less time than a hash.
+const FEW_CASES: usize = 24;
+
+/// Returns how a choice goes on after a value.
+fn case<T>(cases: &IndexMap<u64, T>, value: u64) -> Option<&T> {
+    if cases.len() > FEW_CASES {
+        return cases.get(&value);
+    }
+    cases.iter().find(|(known, _)| **known == value).map(|(_, case)| case)
 }
 
 impl Recognition {
