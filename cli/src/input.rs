@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -60,6 +61,36 @@ pub struct Line<'a> {
     pub number: usize,
     /// The line without its end, or why it is unreadable.
     pub text: Result<&'a str, String>,
+}
+
+impl<'a> Line<'a> {
+    fn new(number: usize, line: &'a [u8]) -> Self {
+        let line = if number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
+        Self { number, text: text(line.strip_suffix(b"\n").unwrap_or(line)) }
+    }
+}
+
+fn text(line: &[u8]) -> Result<&str, String> {
+    if line.len() > LONGEST {
+        return Err(format!("the line is longer than {LONGEST} bytes"));
+    }
+    str::from_utf8(line).map_err(|error| format!("byte {} of the line is not UTF-8", error.valid_up_to() + 1))
+}
+
+/// Says which line was refused, and why.
+fn complaint(name: &Path, number: usize, why: &str) -> String {
+    format!("{}:{number}: {}", shown(name), escaped(why))
+}
+
+/// Returns the lines of a text with their ends.
+fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = text;
+    iter::from_fn(move || {
+        let end = memchr::memchr(b'\n', rest).map_or(rest.len(), |end| end + 1);
+        let (line, after) = rest.split_at(end);
+        rest = after;
+        (!line.is_empty()).then_some(line)
+    })
 }
 
 impl Input {
@@ -122,10 +153,7 @@ impl Input {
         self.line.clear();
         let more = self.fill().map_err(|error| Failure::input(&self.name, &error))?;
         self.number += 1;
-        if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
-            self.line.drain(..BYTE_ORDER_MARK.len());
-        }
-        Ok(more.then(|| Line { number: self.number, text: self.text() }))
+        Ok(more.then(|| Line::new(self.number, &self.line)))
     }
 
     /// Refuses a file that has no lines, before the first one is read.
@@ -139,20 +167,13 @@ impl Input {
 
     /// Reads up to the end of a line, and drops what is too much of it.
     fn fill(&mut self) -> io::Result<bool> {
-        let limit = u64::try_from(LONGEST).unwrap_or(u64::MAX).saturating_add(1);
+        const MOST: usize = BYTE_ORDER_MARK.len() + LONGEST + 1;
+        let limit = u64::try_from(MOST).unwrap_or(u64::MAX);
         let count = self.reader.by_ref().take(limit).read_until(b'\n', &mut self.line)?;
-        if count > LONGEST && self.line.last() != Some(&b'\n') {
+        if count == MOST && self.line.last() != Some(&b'\n') {
             self.reader.skip_until(b'\n')?;
         }
         Ok(count > 0)
-    }
-
-    fn text(&self) -> Result<&str, String> {
-        let line = self.line.strip_suffix(b"\n").unwrap_or(&self.line);
-        if line.len() > LONGEST {
-            return Err(format!("the line is longer than {LONGEST} bytes"));
-        }
-        str::from_utf8(line).map_err(|error| format!("byte {} of the line is not UTF-8", error.valid_up_to() + 1))
     }
 
     /// Does `work` on each line; what it refuses is complained about, and the rest goes on.
@@ -163,39 +184,25 @@ impl Input {
     pub fn each<W: Write>(
         self,
         mut out: W,
-        work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
-    ) -> Result<Finish, Failure> {
-        let mut finish = Finish::Done;
-        self.watched().walk(&mut out, work, |input, out, why| {
-            finish = Finish::Errors;
-            out.flush()?;
-            input.tell(&why);
-            Ok(())
-        })?;
-        Ok(finish)
-    }
-
-    /// Does `work` on each line, and calls `complain` with what it refuses.
-    fn walk<W: Write>(
-        &mut self,
-        out: &mut W,
         mut work: impl FnMut(&mut W, Line<'_>) -> Result<io::Result<()>, String>,
-        mut complain: impl FnMut(&mut Self, &mut W, String) -> io::Result<()>,
-    ) -> Result<(), Failure> {
-        while let Some(line) = self.next_line()? {
-            match work(out, line) {
+    ) -> Result<Finish, Failure> {
+        let (mut input, mut finish) = (self.watched(), Finish::Done);
+        while let Some(line) = input.next_line()? {
+            match work(&mut out, line) {
                 Ok(written) => written?,
                 Err(why) => {
-                    let complaint = format!("{}:{}: {}", shown(&self.name), self.number, escaped(&why));
-                    complain(self, out, complaint)?;
+                    finish = Finish::Errors;
+                    out.flush()?;
+                    let complaint = complaint(&input.name, input.number, &why);
+                    input.tell(&complaint);
                 }
             }
-            self.advance(self.line.len());
-            if self.may_wait() {
+            input.advance(input.line.len());
+            if input.may_wait() {
                 out.flush()?;
             }
         }
-        Ok(())
+        Ok(finish)
     }
 
     /// Lets somebody at a terminal see how far it is read.
@@ -238,7 +245,7 @@ impl Input {
         let read = read.and_then(|_| if ends_line { Ok(false) } else { self.fill() });
         read.map_err(|error| Failure::input(&self.name, &error))?;
         let part = Part { name: self.name.clone(), number: self.number, bytes: self.line.as_slice().into() };
-        self.number += self.line.split_inclusive(|byte| *byte == b'\n').count();
+        self.number += lines(&self.line).count();
         Ok(Some(part).filter(|part| part.length() > 0))
     }
 }
@@ -259,16 +266,14 @@ impl Part {
     }
 
     /// Does `work` on each line, and returns what it writes, with the complaints about what it refuses.
-    pub fn work(self, work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String>) -> Written {
+    pub fn work(self, mut work: impl FnMut(&mut Vec<u8>, Line<'_>) -> Result<io::Result<()>, String>) -> Written {
         let mut written = Written::default();
-        let lines = Box::new(io::Cursor::new(self.bytes));
-        let mut input = Input { number: self.number, ..Input::new(&self.name, lines) };
-        let complaints = &mut written.complaints;
-        let walked = input.walk(&mut written.text, work, |_, out, why| {
-            complaints.push((out.len(), why));
-            Ok(())
-        });
-        debug_assert!(walked.is_ok(), "memory is read and written");
+        for (line, number) in lines(&self.bytes).zip(self.number + 1..) {
+            match work(&mut written.text, Line::new(number, line)) {
+                Ok(done) => debug_assert!(done.is_ok(), "memory is written"),
+                Err(why) => written.complaints.push((written.text.len(), complaint(&self.name, number, &why))),
+            }
+        }
         written
     }
 }
@@ -326,6 +331,14 @@ mod tests {
     #[test]
     fn a_byte_order_mark_belongs_to_no_line() {
         assert_eq!(lines("\u{FEFF}a\n\u{FEFF}b".into()), [good(1, "a"), good(2, "\u{FEFF}b")]);
+    }
+
+    #[test]
+    fn a_byte_order_mark_takes_nothing_from_the_longest_line() {
+        let longest = "x".repeat(LONGEST);
+        assert_eq!(lines(format!("\u{FEFF}{longest}\nb").into_bytes()), [good(1, &longest), good(2, "b")]);
+        let text = format!("\u{FEFF}{longest}x\nb").into_bytes();
+        assert_eq!(lines(text), [bad(1, "the line is longer than 65536 bytes"), good(2, "b")]);
     }
 
     #[test]
