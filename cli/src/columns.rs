@@ -10,8 +10,8 @@ const NARROWEST: usize = 40;
 const WIDEST: usize = 80;
 const GAP: &str = "  ";
 
-/// What fills up the widest cell.
-const BLANKS: &str = match str::from_utf8(&[b' '; WIDEST]) {
+/// What fills up the widest cell, and the gap behind it.
+const BLANKS: &str = match str::from_utf8(&[b' '; WIDEST + GAP.len()]) {
     Ok(blanks) => blanks,
     Err(_) => "",
 };
@@ -36,7 +36,10 @@ impl Columns {
     /// Makes room for these cells.
     pub fn widen(&mut self, cells: &[&str]) {
         for (column, cell) in self.widths.iter_mut().zip(cells) {
-            *column = (*column).max(width(cell)).min(WIDEST);
+            // There are at least as many bytes as characters.
+            if cell.len() > *column {
+                *column = (*column).max(width(cell)).min(WIDEST);
+            }
         }
     }
 
@@ -57,12 +60,12 @@ impl Columns {
     ///
     /// Where `out` cannot be written.
     pub fn write(&mut self, out: &mut impl Write, cells: &[&str], last: &Lines) -> io::Result<()> {
-        let mut cells = cells;
-        for line in last.text.split('\n') {
-            self.line(out, cells, line)?;
-            cells = &[];
+        let (mut cells, mut rest) = (cells, last.text.as_str());
+        while let Some(end) = memchr::memchr(b'\n', rest.as_bytes()) {
+            self.line(out, cells, &rest[..end])?;
+            (cells, rest) = (&[], &rest[end + 1..]);
         }
-        Ok(())
+        self.line(out, cells, rest)
     }
 
     fn line(&mut self, out: &mut impl Write, cells: &[&str], last: &str) -> io::Result<()> {
@@ -71,8 +74,7 @@ impl Columns {
         let blanks = std::iter::repeat("");
         for (column, cell) in widths.iter().zip(cells.iter().copied().chain(blanks)) {
             row.push_str(cell);
-            row.push_str(&BLANKS[..column.saturating_sub(width(cell))]);
-            row.push_str(GAP);
+            row.push_str(&BLANKS[..column.saturating_sub(width(cell)) + GAP.len()]);
         }
         row.push_str(last);
         row.truncate(row.trim_end().len());

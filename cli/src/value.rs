@@ -14,7 +14,7 @@ const MOST_DECIMALS: usize = 18;
 pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &Reading) {
     let _ = match &reading.value {
         Value::None => write!(text, "? (raw 0x{:X})", reading.bits),
-        Value::Integer(number) => write!(text, "{number}"),
+        Value::Integer(number) => text.write_str(itoa::Buffer::new().format(*number)),
         Value::Number(number) => match signal.encoding.linear() {
             Some(linear) => fixed(text, *number, decimals(&linear)),
             None => single(text, *number),
@@ -80,15 +80,15 @@ fn digits(text: &mut String, is_negative: bool, number: u64, decimals: usize) ->
 /// unit is smaller than a step, or if nothing is rounded at all.
 fn decimals(linear: &Linear) -> usize {
     let (scale, offset) = (linear.scale, linear.offset);
-    let suffices = |decimals: &usize| {
-        let units = u32::try_from(*decimals).ok().and_then(|decimals| 10_i128.checked_pow(decimals));
-        units.is_none_or(|units| {
-            let is_exact = units % scale.denominator() == 0 && units % offset.denominator() == 0;
-            let step = scale.numerator().checked_abs().and_then(|numerator| numerator.checked_mul(units));
-            is_exact || step.is_none_or(|step| step > scale.denominator())
-        })
+    let numbers = [scale.numerator(), scale.denominator(), offset.denominator()];
+    // The checks ensure that they fit.
+    let [step, scale, offset] = numbers.map(|number| i64::try_from(number).unwrap_or(i64::MAX));
+    let suffices = |units: &i64| {
+        let is_exact = units % scale == 0 && units % offset == 0;
+        is_exact || step.saturating_abs().checked_mul(*units).is_none_or(|step| step > scale)
     };
-    (0..MOST_DECIMALS).find(suffices).unwrap_or(MOST_DECIMALS)
+    let units = std::iter::successors(Some(1_i64), |units| units.checked_mul(10));
+    units.take(MOST_DECIMALS).position(|units| suffices(&units)).unwrap_or(MOST_DECIMALS)
 }
 
 /// Writes the shortest text of a number that came as an `f32`.
