@@ -86,8 +86,8 @@ impl Capture {
     /// Where the capture cannot be written, or its format has no such time.
     pub fn frame(&mut self, out: &mut impl Write, entry: &Entry<'_>) -> Result<io::Result<()>, String> {
         let time = entry.time.as_deref().map_or(Ok(0), |time| {
-            let refusal = || format!("a capture has no time `{}`; it counts nanoseconds from 1970 to 2554", time.get());
-            nanoseconds(time.get()).ok_or_else(refusal)
+            let refusal = || format!("a capture has no time `{time}`; it counts nanoseconds from 1970 to 2554");
+            nanoseconds(time).ok_or_else(refusal)
         })?;
         Ok(self.packet(out, entry, time))
     }

@@ -11,7 +11,7 @@ mod write;
 use canspec_codegen::interpret::Frame;
 
 pub use part::{channel, data_frame, is_finite, is_number};
-pub use write::{hexadecimal, identifier_digits, identifier_text, write};
+pub use write::{hexadecimal, identifier_digits, identifier_text, write, write_hexadecimal, write_identifier};
 
 /// A readable line of a log.
 #[derive(Debug)]

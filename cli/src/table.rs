@@ -1,6 +1,5 @@
 //! The table of frames that `decode` writes for people.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Reading, Unrecognised, Value};
@@ -32,6 +31,7 @@ pub struct Table {
 /// The texts of a row that are made for it.
 #[derive(Clone, Default)]
 struct Row {
+    identifier: Vec<u8>,
     address: String,
     message: String,
     lines: Lines,
@@ -80,10 +80,12 @@ impl Table {
     /// Where `out` cannot be written.
     pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
         let Self { columns, several, started, row } = self;
+        row.identifier.clear();
+        log::write_identifier(&mut row.identifier, outcome.frame)?;
         let access = row.name(outcome, several.then_some(outcome.protocol));
-        let identifier = log::identifier_text(outcome.frame);
-        let time = outcome.time.map_or("", |time| time.get());
-        let cells = [time, outcome.channel.unwrap_or(""), &identifier, &row.address, access, &row.message];
+        let identifier = str::from_utf8(&row.identifier).unwrap_or_default();
+        let time = outcome.time.unwrap_or_default();
+        let cells = [time, outcome.channel.unwrap_or(""), identifier, &row.address, access, &row.message];
         columns.widen(&cells);
         if !*started {
             columns.widen(&[&grown(time)]);
@@ -157,7 +159,7 @@ pub fn others(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
     let mut separator = "";
     for (kind, number) in addresses(outcome, decoded).filter(|(kind, number)| kind.send != Some(*number)) {
         text.extend([separator, &kind.name]);
-        let _ = write!(text, " {number}");
+        text.extend([" ", itoa::Buffer::new().format(number)]);
         separator = ", ";
     }
 }
@@ -172,9 +174,11 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
                 signal(item, outcome.protocol, decoded, reading);
                 item.push_str(GAP);
                 match &reading.value {
-                    Value::None | Value::Integer(_) | Value::Number(_) => lines.add(item, "", room + 1),
+                    Value::None | Value::Integer(_) | Value::Number(_) | Value::Name(_) => {
+                        lines.add(item, "", room + 1);
+                    }
                     // These may be long, and be parted after a comma.
-                    Value::Name(_) | Value::Text(_) | Value::Status { .. } => {
+                    Value::Text(_) | Value::Status { .. } => {
                         item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
                     }
                 }

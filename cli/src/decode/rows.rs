@@ -35,7 +35,7 @@ impl Rows {
             }
         };
         let line = outcome.line.to_string();
-        let (time, channel) = (outcome.time.map_or("", |time| time.get()), outcome.channel.unwrap_or_default());
+        let (time, channel) = (outcome.time.unwrap_or_default(), outcome.channel.unwrap_or_default());
         let id = log::identifier_text(outcome.frame);
         let frame =
             [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names).chain([address.as_str()]);

@@ -28,8 +28,8 @@ pub struct Summary {
 /// The first and the last time, as written and as numbers.
 #[derive(Clone)]
 struct Span {
-    first: (f64, Box<RawValue>),
-    last: (f64, Box<RawValue>),
+    first: (f64, String),
+    last: (f64, String),
 }
 
 /// How many frames there were, and the line of the first.
@@ -100,9 +100,9 @@ impl Summary {
     }
 
     /// Makes the span reach a time.
-    fn see(&mut self, time: Option<&RawValue>) {
+    fn see(&mut self, time: Option<&str>) {
         let Some(time) = time else { return };
-        let Ok(seconds) = time.get().parse::<f64>() else { return };
+        let Ok(seconds) = time.parse::<f64>() else { return };
         let now = || (seconds, time.to_owned());
         match &mut self.span {
             None => self.span = Some(Span { first: now(), last: now() }),
@@ -144,8 +144,8 @@ impl Summary {
     /// Where `out` cannot be written.
     pub fn write_jsonl(&self, out: &mut impl Write) -> io::Result<()> {
         let span = self.span.as_ref();
-        let first = span.map(|span| &*span.first.1);
-        let last = span.map(|span| &*span.last.1);
+        let first = span.and_then(|span| serde_json::from_str(&span.first.1).ok());
+        let last = span.and_then(|span| serde_json::from_str(&span.last.1).ok());
         let Self { frames, recognised, .. } = *self;
         let log = Object::Log { frames, recognised, first, last, seconds: self.seconds(), rate: self.rate(frames) };
         let messages = self.messages().into_iter().map(|([protocol, message, access, kind], frames)| Object::Message {
@@ -198,7 +198,7 @@ impl Summary {
         let count = format!("{frames} {noun}, {recognised} recognised");
         match (&self.span, self.seconds(), self.rate(*frames)) {
             (Some(span), Some(seconds), Some(rate)) => {
-                let (first, last) = (span.first.1.get(), span.last.1.get());
+                let (first, last) = (&span.first.1, &span.last.1);
                 format!("{count}, {rate:.2} a second in {seconds:.3} s from {first} to {last}")
             }
             _ => count,

@@ -168,7 +168,7 @@ fn reserved(digits: &str) -> Result<Vec<u8>, String> {
 }
 
 fn stamp(time: Box<RawValue>) -> Result<Box<RawValue>, String> {
-    let is_time = log::is_number(&time) && log::is_finite(&time);
+    let is_time = log::is_number(&time) && log::is_finite(time.get());
     if is_time { Ok(time) } else { Err(format!("`time` is a number or null, not {}", time.get())) }
 }
 

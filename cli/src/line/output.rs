@@ -4,15 +4,14 @@ use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, Table};
-use serde::Serialize;
-use serde_json::value::RawValue;
 
 use crate::log;
 
 /// A frame of a log, and what a protocol makes of it.
 pub struct Outcome<'a> {
     pub line: usize,
-    pub time: Option<&'a RawValue>,
+    /// The text of a number of JSON.
+    pub time: Option<&'a str>,
     pub channel: Option<&'a str>,
     pub frame: &'a Frame,
     pub protocol: &'a Protocol,
@@ -35,33 +34,33 @@ pub fn write(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
 
 fn head(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
     out.write_all(b"{\"line\":")?;
-    number(out, outcome.line)?;
+    integer(out, outcome.line)?;
     out.write_all(b",\"time\":")?;
-    out.write_all(outcome.time.map_or("null", RawValue::get).as_bytes())?;
+    out.write_all(outcome.time.unwrap_or("null").as_bytes())?;
     out.write_all(b",\"channel\":")?;
-    optional(out, outcome.channel)?;
+    optional(out, outcome.channel, text)?;
     out.write_all(b",\"id\":\"")?;
-    out.write_all(log::identifier_text(outcome.frame).as_bytes())?;
+    log::write_identifier(out, outcome.frame)?;
     out.write_all(b"\",\"data\":\"")?;
-    out.write_all(log::hexadecimal(&outcome.frame.data).as_bytes())?;
-    out.write_all(b"\",\"protocol\":")?;
-    name(out, &outcome.protocol.name)
+    log::write_hexadecimal(out, &outcome.frame.data)?;
+    out.write_all(b"\",\"protocol\":\"")?;
+    out.write_all(outcome.protocol.name.as_bytes())
 }
 
 fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) -> io::Result<()> {
     let protocol = outcome.protocol;
     let message = &protocol.messages[decoded.message];
-    out.write_all(b",\"message\":")?;
-    name(out, &message.name)?;
-    out.write_all(b",\"access\":")?;
-    name(out, &protocol.accesses[decoded.access].name)?;
-    out.write_all(b",\"kind\":")?;
-    name(out, decoded.kind.name())?;
-    out.write_all(b",\"addressing\":")?;
-    optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()))?;
+    out.write_all(b"\",\"message\":\"")?;
+    out.write_all(message.name.as_bytes())?;
+    out.write_all(b"\",\"access\":\"")?;
+    out.write_all(protocol.accesses[decoded.access].name.as_bytes())?;
+    out.write_all(b"\",\"kind\":\"")?;
+    out.write_all(decoded.kind.name().as_bytes())?;
+    out.write_all(b"\",\"addressing\":")?;
+    optional(out, decoded.addressing.map(|travel| protocol[travel.mode].name.as_str()), name)?;
     out.write_all(b",\"addresses\":")?;
     let addresses = addresses(outcome, decoded).map(|(kind, number)| (kind.name.as_str(), number));
-    object(out, addresses, number)?;
+    object(out, addresses, integer)?;
     selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
     out.write_all(b",\"signals\":")?;
     let signals = decoded.signals.iter().map(|reading| {
@@ -86,7 +85,7 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
 }
 
 fn unknown(out: &mut impl Write, protocol: &Protocol, unrecognised: &Unrecognised) -> io::Result<()> {
-    out.write_all(b",\"message\":null,\"problem\":{\"kind\":")?;
+    out.write_all(b"\",\"message\":null,\"problem\":{\"kind\":")?;
     name(out, unrecognised.problem.name())?;
     out.write_all(b",\"text\":")?;
     text(out, &unrecognised.text)?;
@@ -103,28 +102,29 @@ fn selectors(
 ) -> io::Result<()> {
     out.write_all(b",\"identifier\":")?;
     let names = protocol.identifier.fields.iter().map(|field| field.name.as_str());
-    object(out, names.zip(identifier.iter().copied()), number)?;
+    members(out, names.zip(identifier.iter().copied()), integer)?;
     out.write_all(b",\"selectors\":")?;
-    object(out, selectors.iter().map(|&(selector, value)| (protocol[selector].name.as_str(), value)), number)
+    object(out, selectors.iter().map(|&(selector, value)| (protocol[selector].name.as_str(), value)), integer)
 }
 
 fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &Reading) -> io::Result<()> {
     out.write_all(b"{\"raw\":")?;
     if let Value::Status { set, unknown } = &reading.value {
-        number(out, reading.bits)?;
+        integer(out, reading.bits)?;
         out.write_all(b",\"set\":")?;
         list(out, bit_names(protocol, signal, set), name)?;
         out.write_all(b",\"unknown\":")?;
-        number(out, *unknown)?;
+        integer(out, *unknown)?;
         return out.write_all(b"}");
     }
-    number(out, signal.raw_of(reading.bits))?;
+    long_integer(out, signal.raw_of(reading.bits))?;
     out.write_all(b",\"value\":")?;
     match &reading.value {
         Value::None | Value::Status { .. } => out.write_all(b"null")?,
-        Value::Integer(value) => number(out, *value)?,
-        Value::Number(value) => number(out, *value)?,
-        Value::Name(value) | Value::Text(value) => text(out, value)?,
+        Value::Integer(value) => long_integer(out, *value)?,
+        Value::Number(value) => serde_json::to_writer(&mut *out, value)?,
+        Value::Name(value) => name(out, value)?,
+        Value::Text(value) => text(out, value)?,
     }
     if let Some(unit) = signal.unit {
         out.write_all(b",\"unit\":")?;
@@ -156,21 +156,30 @@ pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> imp
 /// different places is such a case.
 fn object<'a, W: Write, V>(
     out: &mut W,
-    members: impl Iterator<Item = (&'a str, V)> + Clone,
+    entries: impl Iterator<Item = (&'a str, V)> + Clone,
+    write: impl FnMut(&mut W, V) -> io::Result<()>,
+) -> io::Result<()> {
+    let all = entries.clone();
+    let is_first = |index: usize, name: &str| all.clone().take(index).all(|(other, _)| other != name);
+    let firsts = entries.enumerate().filter(|(index, (name, _))| is_first(*index, name));
+    members(out, firsts.map(|(_, entry)| entry), write)
+}
+
+/// Writes members with names of their own.
+fn members<'a, W: Write, V>(
+    out: &mut W,
+    members: impl Iterator<Item = (&'a str, V)>,
     mut write: impl FnMut(&mut W, V) -> io::Result<()>,
 ) -> io::Result<()> {
-    let all = members.clone();
-    let is_first = |index: usize, name: &str| all.clone().take(index).all(|(other, _)| other != name);
-    let firsts = members.enumerate().filter(|(index, (name, _))| is_first(*index, name));
-    let mut separator = "{";
-    for (_, (key, value)) in firsts {
+    let mut separator = "{\"";
+    for (key, value) in members {
         out.write_all(separator.as_bytes())?;
-        name(out, key)?;
-        out.write_all(b":")?;
+        out.write_all(key.as_bytes())?;
+        out.write_all(b"\":")?;
         write(out, value)?;
-        separator = ",";
+        separator = ",\"";
     }
-    out.write_all(if separator == "{" { b"{}" } else { b"}" })
+    out.write_all(if separator == "{\"" { b"{}" } else { b"}" })
 }
 
 fn list<W: Write, V>(
@@ -187,8 +196,12 @@ fn list<W: Write, V>(
     out.write_all(if separator == "[" { b"[]" } else { b"]" })
 }
 
-fn optional(out: &mut impl Write, value: Option<&str>) -> io::Result<()> {
-    if let Some(value) = value { text(out, value) } else { out.write_all(b"null") }
+fn optional<W: Write>(
+    out: &mut W,
+    value: Option<&str>,
+    write: impl FnOnce(&mut W, &str) -> io::Result<()>,
+) -> io::Result<()> {
+    if let Some(value) = value { write(out, value) } else { out.write_all(b"null") }
 }
 
 fn text(out: &mut impl Write, value: &str) -> io::Result<()> {
@@ -205,8 +218,13 @@ fn name(out: &mut impl Write, name: &str) -> io::Result<()> {
     out.write_all(b"\"")
 }
 
-fn number(out: &mut impl Write, value: impl Serialize) -> io::Result<()> {
-    Ok(serde_json::to_writer(out, &value)?)
+fn integer(out: &mut impl Write, value: impl itoa::Integer) -> io::Result<()> {
+    out.write_all(itoa::Buffer::new().format(value).as_bytes())
+}
+
+/// Writes an integer that nearly always fits into 64 bits, whose digits come faster.
+fn long_integer(out: &mut impl Write, value: i128) -> io::Result<()> {
+    if let Ok(value) = i64::try_from(value) { integer(out, value) } else { integer(out, value) }
 }
 
 #[cfg(test)]

@@ -154,7 +154,7 @@ mod tests {
     fn frame(base: u32, line: &str) -> Option<(String, Form, String, String, u8)> {
         let entry = read(&mut Base(base), line).expect("the line is readable")?;
         let Frame { data, form, .. } = &entry.frame;
-        let place = format!("{} {}", entry.time?.get(), entry.channel?);
+        let place = format!("{} {}", entry.time?, entry.channel?);
         Some((place, *form, identifier_text(&entry.frame), hexadecimal(data), entry.digit))
     }
 

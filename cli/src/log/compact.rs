@@ -65,8 +65,8 @@ fn without_flags(data: &str) -> Result<&str, String> {
 
 /// Reads bytes that points may part, without a length code above 8 as in `_E`.
 fn dotted(data: &str, most: usize) -> Result<Vec<u8>, String> {
-    if is_hexadecimal(data) {
-        return bytes(data, most);
+    if let Ok(bytes) = bytes(data, most) {
+        return Ok(bytes);
     }
     let data = match data.rsplit_once('_') {
         Some((bytes, "9" | "A" | "B" | "C" | "D" | "E" | "F")) if most == CLASSIC => bytes,
@@ -80,6 +80,7 @@ fn dotted(data: &str, most: usize) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::part::Stamp;
 
     fn entry(line: &str) -> Entry<'_> {
         read(line).expect("the line is readable").expect("the line is not blank")
@@ -90,7 +91,7 @@ mod tests {
     }
 
     fn time(line: &str) -> Option<String> {
-        entry(line).time.map(|time| time.get().to_owned())
+        entry(line).time.map(Stamp::into_owned)
     }
 
     fn why(line: &str) -> String {
@@ -100,7 +101,7 @@ mod tests {
     #[test]
     fn a_line_of_candump_is_stamp_channel_and_frame() {
         let entry = entry("(1700000000.000000) can0 029C03F0#000B71B000003A98");
-        assert_eq!(entry.time.expect("it has a stamp").get(), "1700000000.000000");
+        assert_eq!(entry.time.expect("it has a stamp"), "1700000000.000000");
         assert_eq!(entry.channel, Some("can0"));
         let data = vec![0x00, 0x0B, 0x71, 0xB0, 0x00, 0x00, 0x3A, 0x98];
         assert_eq!(entry.frame, Frame { id: 0x029C_03F0, extended: true, data, form: Form::Data });

@@ -325,7 +325,7 @@ mod tests {
     fn read(heading: &str, line: &str) -> Result<(String, Form, String, String, u8), String> {
         let mut columns = Columns::of(heading).expect("it is a heading");
         let entry = columns.read(line)?.expect("every line has a frame");
-        let time = entry.time.as_ref().map_or("", |time| time.get());
+        let time = entry.time.as_deref().unwrap_or_default();
         let place = format!("{time} {}", entry.channel.unwrap_or_default());
         let Frame { data, form, .. } = &entry.frame;
         Ok((place, *form, identifier_text(&entry.frame), hexadecimal(data), entry.digit))

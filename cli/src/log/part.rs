@@ -16,8 +16,8 @@ pub const FLEXIBLE: usize = 64;
 /// Characters of the name of an interface, which has 15 on Linux, and of a stamp.
 const LONGEST_NAME: usize = 64;
 
-/// The seconds of a line: a number of JSON.
-pub type Stamp<'a> = Cow<'a, RawValue>;
+/// The seconds of a line: the text of a number of JSON.
+pub type Stamp<'a> = Cow<'a, str>;
 
 /// Keeps a stamp whose text is dropped.
 pub fn owned<'a>(stamp: Stamp<'_>) -> Stamp<'a> {
@@ -29,21 +29,23 @@ pub fn stamp(word: &str) -> Result<Stamp<'_>, String> {
     let refusal = || format!("the stamp {} is no number in parentheses", quoted(word));
     let seconds = word.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(refusal)?;
     short("stamp", word, LONGEST_NAME + "()".len())?;
-    finite(number(seconds).ok_or_else(refusal)?, word)
+    number(seconds, word, refusal)
 }
 
 /// Reads seconds without parentheses.
 pub fn seconds(word: &str) -> Result<Stamp<'_>, String> {
     short("stamp", word, LONGEST_NAME)?;
-    finite(number(word).ok_or_else(|| format!("the stamp {} is no number", quoted(word)))?, word)
+    number(word, word, || format!("the stamp {} is no number", quoted(word)))
 }
 
-/// Reads a number as JSON has it, but for leading zeros.
-fn number(text: &str) -> Option<&RawValue> {
-    serde_json::from_str::<&RawValue>(without_leading_zeros(text)).ok().filter(|value| is_number(value))
-}
-
-fn finite<'a>(value: &'a RawValue, word: &str) -> Result<Stamp<'a>, String> {
+/// Reads a number as JSON has it, but for leading zeros. `word` is short, so only an exponent makes it infinite.
+fn number<'a>(text: &'a str, word: &str, refusal: impl FnOnce() -> String) -> Result<Stamp<'a>, String> {
+    let text = without_leading_zeros(text);
+    if is_decimal(text.as_bytes()) {
+        return Ok(Cow::Borrowed(text));
+    }
+    let value = serde_json::from_str::<&RawValue>(text).ok().filter(|value| is_number(value));
+    let value = value.ok_or_else(refusal)?.get();
     if is_finite(value) {
         Ok(Cow::Borrowed(value))
     } else {
@@ -122,18 +124,30 @@ fn days(year: i64, month: i64, day: i64) -> i64 {
     year * 365 + leap_days + (month * 153 + 2) / 5 + day - 1 - 719_468
 }
 
+/// Tests for digits with at most one point between them.
+fn is_decimal(text: &[u8]) -> bool {
+    let are_digits = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
+    match text.iter().position(|byte| *byte == b'.') {
+        Some(point) => are_digits(&text[..point]) && are_digits(&text[point + 1..]),
+        None => are_digits(text),
+    }
+}
+
 /// Tests whether JSON is a number.
 pub fn is_number(value: &RawValue) -> bool {
     value.get().starts_with(|first: char| first == '-' || first.is_ascii_digit())
 }
 
 /// Tests whether a number is one for readers of JSON that know doubles alone.
-pub fn is_finite(number: &RawValue) -> bool {
-    number.get().parse().is_ok_and(f64::is_finite)
+pub fn is_finite(number: &str) -> bool {
+    number.parse().is_ok_and(f64::is_finite)
 }
 
 /// candump fills up seconds with zeros, which JSON does not allow.
 fn without_leading_zeros(number: &str) -> &str {
+    if !number.starts_with('0') {
+        return number;
+    }
     let significant = number.trim_start_matches('0');
     match number.strip_suffix(significant) {
         Some(zeros) if !zeros.is_empty() && !significant.starts_with(|next: char| next.is_ascii_digit()) => {
@@ -149,8 +163,9 @@ fn without_leading_zeros(number: &str) -> &str {
 ///
 /// Says why it cannot.
 pub fn channel(name: &str) -> Result<&str, String> {
+    let is_usual = name.bytes().all(|byte| byte.is_ascii_alphanumeric());
     let plain = |letter: char| !letter.is_whitespace() && forbidden(letter).is_none() && letter != '#';
-    if name.is_empty() || name.starts_with('(') || !name.chars().all(plain) {
+    if name.is_empty() || name.starts_with('(') || !(is_usual || name.chars().all(plain)) {
         return Err(format!("the channel {} is no name", quoted(name)));
     }
     short("channel", name, LONGEST_NAME)?;
@@ -169,8 +184,7 @@ fn short(what: &str, text: &str, most: usize) -> Result<(), String> {
 
 /// Returns the identifier, whether it has 29 bits, and whether it is that of an error frame.
 pub fn identifier(digits: &str) -> Result<(u32, bool, bool), String> {
-    let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_hexadecimal(digits));
-    let number = number.ok_or_else(|| format!("the identifier {} is not hexadecimal", quoted(digits)))?;
+    let number = hexadecimal(digits).ok_or_else(|| format!("the identifier {} is not hexadecimal", quoted(digits)))?;
     match digits.len() {
         8 if number & !LARGEST_EXTENDED == ERROR_FLAG => Ok((number & LARGEST_EXTENDED, true, true)),
         8 => fitting(number, true, digits).map(|number| (number, true, false)),
@@ -201,18 +215,44 @@ pub fn fitting(number: u32, extended: bool, digits: &str) -> Result<u32, String>
     }
 }
 
+/// The value of each hexadecimal digit; what is none has more bits.
+const VALUES: [u8; 256] = {
+    let mut values = [u8::MAX; 256];
+    let digits = b"0123456789ABCDEFabcdef";
+    let mut index: u8 = 0;
+    while (index as usize) < digits.len() {
+        values[digits[index as usize] as usize] = if index < 16 { index } else { index - 6 };
+        index += 1;
+    }
+    values
+};
+
+/// Reads a number of 32 bits in hexadecimal digits.
+fn hexadecimal(digits: &str) -> Option<u32> {
+    let number = digits.bytes().try_fold(0, |number, digit| {
+        let value = VALUES[usize::from(digit)];
+        (value < 16 && number >> 28 == 0).then(|| number << 4 | u32::from(value))
+    });
+    number.filter(|_| !digits.is_empty())
+}
+
 /// Reads data in hexadecimal digits without anything between them.
 pub fn bytes(digits: &str, most: usize) -> Result<Vec<u8>, String> {
-    if !is_hexadecimal(digits) {
+    let (pairs, odd) = digits.as_bytes().as_chunks();
+    let mut seen = 0;
+    let byte = |[high, low]: &[u8; 2]| {
+        let [high, low] = [high, low].map(|digit| VALUES[usize::from(*digit)]);
+        seen |= high | low;
+        high << 4 | low & 0x0F
+    };
+    let bytes: Vec<u8> = pairs.iter().map(byte).collect();
+    if seen > 0x0F || !odd.iter().all(u8::is_ascii_hexdigit) {
         return Err(format!("the data {} are not hexadecimal", quoted(digits)));
     }
-    if !digits.len().is_multiple_of(2) {
+    if !odd.is_empty() {
         return Err(format!("the data have an odd number of digits, {}", digits.len()));
     }
-    fewer(digits.len() / 2, most)?;
-    let digit = |digit: u8| (digit & 0x0F) + if digit.is_ascii_digit() { 0 } else { 9 };
-    let pairs = digits.as_bytes().chunks_exact(2);
-    Ok(pairs.map(|pair| pair.iter().fold(0, |byte, &next| byte << 4 | digit(next))).collect())
+    fewer(bytes.len(), most).map(|()| bytes)
 }
 
 /// Refuses data that no frame has room for.
@@ -241,7 +281,7 @@ mod tests {
     use super::*;
 
     fn text(value: Result<Stamp<'_>, String>) -> Result<String, String> {
-        value.map(|value| value.get().to_owned())
+        value.map(Stamp::into_owned)
     }
 
     #[test]

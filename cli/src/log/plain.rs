@@ -93,7 +93,7 @@ mod tests {
     }
 
     fn time_of(line: &str) -> Option<String> {
-        entry(line).time.map(|time| time.get().to_owned())
+        entry(line).time.map(Stamp::into_owned)
     }
 
     #[test]

@@ -89,7 +89,7 @@ mod tests {
             let entry = read(line).expect("the line is readable").expect("the line has a frame");
             assert_eq!((entry.frame.form, identifier_text(&entry.frame).as_str()), (form, id), "{line}");
             assert_eq!((hexadecimal(&entry.frame.data).as_str(), entry.digit), (data, digit), "{line}");
-            assert_eq!(entry.time.as_ref().map(|time| time.get()), time, "{line}");
+            assert_eq!(entry.time.as_deref(), time, "{line}");
         }
     }
 

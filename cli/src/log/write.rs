@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Form, Frame};
 
-use super::part::ERROR_FLAG;
+use super::part::{CLASSIC, ERROR_FLAG};
 
 /// Writes a data frame as a line of a log, with what it has of stamp and channel.
 ///
@@ -27,6 +27,18 @@ pub fn identifier_text(frame: &Frame) -> String {
     identifier_digits(frame.id | flag, frame.extended)
 }
 
+/// Writes the identifier as candump prints it.
+///
+/// # Errors
+///
+/// Where `out` cannot be written.
+pub fn write_identifier(out: &mut impl Write, frame: &Frame) -> io::Result<()> {
+    if frame.extended && frame.form != Form::Error {
+        return write_hexadecimal(out, &frame.id.to_be_bytes());
+    }
+    out.write_all(identifier_text(frame).as_bytes())
+}
+
 /// Returns an identifier in 8 digits if it has 29 bits, else in 3.
 pub fn identifier_digits(id: u32, extended: bool) -> String {
     if extended { hexadecimal(&id.to_be_bytes()) } else { format!("{id:03X}") }
@@ -34,12 +46,26 @@ pub fn identifier_digits(id: u32, extended: bool) -> String {
 
 /// Returns bytes in upper-case hexadecimal digits.
 pub fn hexadecimal(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
-    let mut digits = Vec::with_capacity(2 * bytes.len());
-    for byte in bytes {
-        digits.extend([byte >> 4, byte & 0x0F].map(|half| DIGITS[usize::from(half)]));
+    String::from_utf8(bytes.iter().flat_map(|byte| digits(*byte)).collect()).unwrap_or_default()
+}
+
+/// Writes bytes in upper-case hexadecimal digits.
+///
+/// # Errors
+///
+/// Where `out` cannot be written.
+pub fn write_hexadecimal(out: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
+    for bytes in bytes.chunks(CLASSIC) {
+        let mut pairs = [[0; 2]; CLASSIC];
+        pairs.iter_mut().zip(bytes).for_each(|(pair, byte)| *pair = digits(*byte));
+        out.write_all(&pairs.as_flattened()[..2 * bytes.len()])?;
     }
-    String::from_utf8(digits).unwrap_or_default()
+    Ok(())
+}
+
+fn digits(byte: u8) -> [u8; 2] {
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    [byte >> 4, byte & 0x0F].map(|half| DIGITS[usize::from(half)])
 }
 
 #[cfg(test)]
@@ -53,8 +79,7 @@ mod tests {
             let mut reader = Reader::default();
             let entry = reader.read(line).expect("the line is readable").expect("the line is not blank");
             let mut out = Vec::new();
-            let time = entry.time.as_ref().map(|time| time.get());
-            write(&mut out, time, entry.channel, &entry.frame).expect("a vector takes everything");
+            write(&mut out, entry.time.as_deref(), entry.channel, &entry.frame).expect("a vector takes everything");
             assert_eq!(String::from_utf8(out), Ok(format!("{line}\n")));
         }
     }
