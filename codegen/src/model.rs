@@ -18,6 +18,7 @@ mod recognition;
 mod set;
 mod signal;
 
+pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece};

@@ -1,7 +1,7 @@
 #![doc = include_str!("../rules/direction.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{AddressPattern, FieldTest, IdentifierField, Mode, Protocol};
+use crate::model::{AddressPattern, IdentifierField, Mode, Protocol, exclude};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
 
@@ -17,7 +17,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         .iter()
         .flat_map(|one| protocol.recognition.to_controller.any.iter().map(move |other| (one, other)));
     for (one, other) in pairs {
-        if !one.iter().any(|test| other.iter().any(|opposite| excludes(test, opposite) || excludes(opposite, test))) {
+        if !exclude(one, other) {
             report(protocol, diagnostics);
             return;
         }
@@ -66,7 +66,29 @@ fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagn
     let text = format!("a request and a reply look alike: both have {value} in `{name}`");
     let place = |known: &Known| known.mode.doc.path.key(known.key).key(name).at_value();
     let diagnostic = Diagnostic::error(&DIRECTION, place(reply), text).other(place(request), "the request");
-    diagnostics.push(diagnostic.help("give the reply another constant here"));
+    diagnostics.push(diagnostic.help(between(protocol, request.pattern, reply.pattern)));
+}
+
+/// Says what could tell a request from a reply with the same constant. It may be a number that is no
+/// address of the reply.
+fn between(protocol: &Protocol, request: &AddressPattern, reply: &AddressPattern) -> String {
+    let told = reply.addresses.iter().find_map(|address| {
+        let (field, address_type) = (&protocol[address.field], &protocol[address.address_type]);
+        let value = field.get(request.value);
+        let is_other = request.mask & field.mask() != 0 && !address_type.documents(value);
+        is_other.then_some((field, value, &address_type.name))
+    });
+    match told {
+        Some((field, value, name)) => {
+            let name_of_field = &field.name;
+            format!(
+                "write `outside: refused` in the type `{name}`: then {value:#04X} in `{name_of_field}` is a request"
+            )
+        }
+        None => {
+            "give one of the two another constant; if modules send both, write the request as a `report`".to_owned()
+        }
+    }
 }
 
 /// Says what could tell the direction. A constant that replies alone have may be a controller's address.
@@ -116,19 +138,4 @@ fn tells(patterns: &[Known], field: u32) -> bool {
     let (requests, replies): (Vec<_>, Vec<_>) = having.partition(|known| known.key == "request");
     let pairs = || requests.iter().flat_map(|one| replies.iter().map(move |other| (one.pattern, other.pattern)));
     pairs().next().is_some() && pairs().all(|(one, other)| (one.value ^ other.value) & field != 0)
-}
-
-/// Tests whether no value passes both tests of one field.
-fn excludes(one: &FieldTest, other: &FieldTest) -> bool {
-    let apart = |(first, last): &(u32, u32), (start, end): &(u32, u32)| last < start || end < first;
-    let contains = |(first, last): &(u32, u32), (start, end): &(u32, u32)| first <= start && end <= last;
-    one.field == other.field
-        && one.inside
-        && one.ranges.iter().all(|range| {
-            if other.inside {
-                other.ranges.iter().all(|opposite| apart(range, opposite))
-            } else {
-                other.ranges.iter().any(|opposite| contains(opposite, range))
-            }
-        })
 }

@@ -135,3 +135,30 @@ pub struct FieldTest {
     /// The value must lie in one of the ranges. Otherwise it must lie in none.
     pub inside: bool,
 }
+
+impl FieldTest {
+    /// Makes a test for one value.
+    pub(crate) fn constant(field: FieldId, value: u32) -> Self {
+        Self { field, ranges: vec![(value, value)], inside: true }
+    }
+
+    /// Tests whether no value that lies inside passes both tests of one field.
+    fn excludes(&self, other: &Self) -> bool {
+        let apart = |(first, last): &(u32, u32), (start, end): &(u32, u32)| last < start || end < first;
+        let contains = |(first, last): &(u32, u32), (start, end): &(u32, u32)| first <= start && end <= last;
+        self.field == other.field
+            && self.inside
+            && self.ranges.iter().all(|range| {
+                if other.inside {
+                    other.ranges.iter().all(|opposite| apart(range, opposite))
+                } else {
+                    other.ranges.iter().any(|opposite| contains(opposite, range))
+                }
+            })
+    }
+}
+
+/// Tests whether no identifier passes both lists of tests.
+pub(crate) fn exclude(tests: &[FieldTest], others: &[FieldTest]) -> bool {
+    tests.iter().any(|test| others.iter().any(|other| test.excludes(other) || other.excludes(test)))
+}

@@ -7,7 +7,7 @@ use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
     Address, AddressPattern, AddressType, AddressTypeId, Direction, FieldId, FieldTest, Identifier, IdentifierField,
-    Mode, ModeId, Table,
+    Mode, ModeId, Table, exclude,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -248,7 +248,8 @@ fn claimed(spec: &ast::Spec, field: &str, types: &AddressTypes) -> Vec<(u32, u32
 /// Works out how identifiers show their direction, to a module and to the controller.
 ///
 /// A constant counts only if the other direction has another constant in the same field. So an
-/// unknown device number does not hide the direction.
+/// unknown device number does not hide the direction. If two patterns still look alike, all
+/// constants in which they differ count.
 pub fn directions(
     identifier: &Identifier,
     types: &AddressTypes,
@@ -257,18 +258,47 @@ pub fn directions(
     let requests: Vec<_> = modes.iter().filter_map(|mode| mode.request.as_ref()).collect();
     let replies: Vec<_> =
         modes.iter().flat_map(|mode| [&mode.one, &mode.each, &mode.coordinator]).filter_map(Option::as_ref).collect();
-    let towards = |these: &[&AddressPattern], others: &[&AddressPattern]| {
-        let mut any: Vec<Vec<FieldTest>> = Vec::new();
-        for pattern in these {
-            let tests = direction_tests(pattern, others, identifier, types, modes);
-            if !any.iter().any(|known| known.iter().all(|test| tests.contains(test))) {
-                any.retain(|known| !tests.iter().all(|test| known.contains(test)));
-                any.push(tests);
+    let tests = |these: &[&AddressPattern], others: &[&AddressPattern]| -> Vec<_> {
+        these.iter().map(|pattern| direction_tests(pattern, others, identifier, types, modes)).collect()
+    };
+    let (mut to_module, mut to_controller) = (tests(&requests, &replies), tests(&replies, &requests));
+    for (request, tests) in requests.iter().zip(&mut to_module) {
+        for (reply, others) in replies.iter().zip(&mut to_controller) {
+            if !exclude(tests, others) {
+                add_differing(identifier, (request, tests), (reply, others));
             }
         }
-        Direction { any }
-    };
-    (towards(&requests, &replies), towards(&replies, &requests))
+    }
+    (towards(to_module), towards(to_controller))
+}
+
+/// Adds tests of the constants in which two patterns differ.
+fn add_differing(
+    identifier: &Identifier,
+    (one, tests): (&AddressPattern, &mut Vec<FieldTest>),
+    (other, others): (&AddressPattern, &mut Vec<FieldTest>),
+) {
+    for (id, field) in identifier.fields.entries() {
+        let differ = one.mask & other.mask & (one.value ^ other.value) & field.mask() != 0;
+        for (pattern, tests) in [(one, &mut *tests), (other, &mut *others)] {
+            let test = FieldTest::constant(id, field.get(pattern.value));
+            if differ && !tests.contains(&test) {
+                tests.push(test);
+            }
+        }
+    }
+}
+
+/// Joins the lists of tests of one direction, without those that another list includes.
+fn towards(lists: Vec<Vec<FieldTest>>) -> Direction {
+    let mut any: Vec<Vec<FieldTest>> = Vec::new();
+    for tests in lists {
+        if !any.iter().any(|known| known.iter().all(|test| tests.contains(test))) {
+            any.retain(|known| !tests.iter().all(|test| known.contains(test)));
+            any.push(tests);
+        }
+    }
+    Direction { any }
 }
 
 fn direction_tests(
@@ -285,8 +315,7 @@ fn direction_tests(
         if let Some(address) = address.filter(|address| types[address.address_type].strict) {
             tests.push(FieldTest { field: id, ranges: vec![types[address.address_type].raw_range()], inside: true });
         } else if pattern.mask & field.mask() != 0 && others.iter().all(|other| differs(pattern, other, field.mask())) {
-            let value = field.get(pattern.value);
-            tests.push(FieldTest { field: id, ranges: vec![(value, value)], inside: true });
+            tests.push(FieldTest::constant(id, field.get(pattern.value)));
         } else if (address.is_some() || pattern.mask & field.mask() != 0) && !claimed.is_empty() {
             tests.push(FieldTest { field: id, ranges: claimed, inside: false });
         }
