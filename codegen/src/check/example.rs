@@ -2,6 +2,7 @@
 #![doc = include_str!("../rules/expected_failure.md")]
 
 mod accused;
+mod byte_order;
 mod evidence;
 mod limit;
 mod repair;
@@ -165,8 +166,8 @@ impl<'a> Checker<'a> {
                 let text = format!("`{}` is {} here, but the frame says {read}", signal.name, meaning.text);
                 contradicted(meaning.path.at_value(), text, field)
             };
-            let about_offset = || about_offset(signal).map(str::to_owned);
-            return Err(Box::new(diagnostic.help_if(unnamed_bits(&reading.value, &read).or_else(about_offset))));
+            let help = self.by_other_order(signal).or_else(|| unnamed_bits(&reading.value, &read));
+            return Err(Box::new(diagnostic.help_if(help.or_else(|| about_offset(signal).map(str::to_owned)))));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {
@@ -176,9 +177,14 @@ impl<'a> Checker<'a> {
                 let read = shown(self.protocol, signal, &reading.value, reading.bits);
                 let text =
                     format!("the example does not say what `{}` means, which is {read} in this frame", signal.name);
-                Err(wrong(self.example.doc.path.key("means").at_key(), text))
+                let diagnostic = wrong(self.example.doc.path.key("means").at_key(), text);
+                Err(Box::new(diagnostic.help_if(self.by_other_order(signal))))
             }
         }
+    }
+
+    fn by_other_order(&self, signal: &Signal) -> Option<String> {
+        byte_order::explain(self.protocol, signal, &self.frame().padded())
     }
 
     /// Tests whether a digit of the frame is probably wrong, and not one of the text.
@@ -220,13 +226,14 @@ impl<'a> Checker<'a> {
             return Box::new(diagnostic);
         }
         let text = format!("this frame has the note `{}`: {}", note.rule, note.text);
-        let help = if note.rule == NoteRule::ReservedBit {
-            "add the field that has these bits; \
-             if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
-                .to_owned()
-        } else {
-            format!("if the document shows it so, add `{}` to its `notes`", note.rule)
-        };
+        let mut signals = decoded.signals.iter().map(|reading| &self.protocol[decoded.message][reading.signal]);
+        let by_other_order = signals.find_map(|signal| self.by_other_order(signal)).filter(|_| note.is_about_value());
+        let help = by_other_order.unwrap_or_else(|| match note.rule {
+            NoteRule::ReservedBit => "add the field that has these bits; \
+                 if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
+                .to_owned(),
+            rule => format!("if the document shows it so, add `{rule}` to its `notes`"),
+        });
         Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }
 

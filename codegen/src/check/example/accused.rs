@@ -89,11 +89,13 @@ impl<'a> Accused<'a> {
     /// The field alone explains the difference.
     fn explained(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
         let (field, first) = (self.fields.first()?, self.denials().next()?);
-        if let Some(word) = field.signal.encoding.status_word() {
-            let bits = &self.protocol[word].bits;
-            return field.moved_bit(first, bits).or_else(|| missing_bit(first, bits));
-        }
-        self.repaired(diagnostics).or_else(|| field.misnumbered(first, diagnostics))
+        self.repaired(diagnostics).or_else(|| match field.signal.encoding.status_word() {
+            Some(word) => {
+                let bits = &self.protocol[word].bits;
+                field.moved_bit(first, bits).or_else(|| missing_bit(first, bits))
+            }
+            None => field.misnumbered(first, diagnostics),
+        })
     }
 
     /// No example holds, and all would after one change.

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::ByteOrder;
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
 use crate::encoding::Words;
-use crate::model::{Encoding, Linear, Protocol, Signal, Unit};
+use crate::model::{Encoding, Linear, Meaning, Protocol, Signal, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -33,6 +33,11 @@ impl Change {
             Self::Unit(unit) => Signal { unit: Some(*unit), ..signal.clone() },
             Self::Encoding(encoding) => Signal { encoding: encoding.clone(), ..signal.clone() },
         }
+    }
+
+    /// Tests whether a text still has the same raw value.
+    fn keeps_raw(&self, signal: &Signal) -> bool {
+        matches!(self, Self::Place(place) if place.max() == signal.place.max())
     }
 
     /// Tests whether it moves a field onto the bits of another one.
@@ -70,8 +75,10 @@ pub fn find(
     let holds = |repair: &Repair| {
         fields.iter().all(|field| {
             let signal = repair.change.of(field.signal);
+            let parse = |text: &str| Words::from(protocol).with(&signal, |room| room.parse(text, true));
             let bears_out = |evidence: &Evidence| {
-                let raw = Words::from(protocol).with(&signal, |room| room.parse(&evidence.meaning.text, true));
+                let Meaning { raw, text, .. } = evidence.meaning;
+                let raw = if repair.change.keeps_raw(field.signal) { raw.clone() } else { parse(text) };
                 raw == Ok(signal.place.get(&evidence.data))
             };
             !repair.change.overlaps(field) && field.evidence.iter().all(bears_out)
@@ -81,6 +88,8 @@ pub fn find(
 }
 
 /// Reverses the byte order, or moves one or both ends of the place by bytes or bits.
+///
+/// A status word is only reversed. In another place, other bits of the frame would look like its own.
 fn moved(signal: &Signal, key: &str, text: &str, at: &Path) -> Vec<Repair> {
     let ends = text.split_once("..").unwrap_or((text, text));
     let (Ok(first), Ok(last)) = (ends.0.parse::<i8>(), ends.1.parse::<i8>()) else { return Vec::new() };
@@ -89,7 +98,8 @@ fn moved(signal: &Signal, key: &str, text: &str, at: &Path) -> Vec<Repair> {
         Repair { at: at.clone(), text: format!("{key}: {ends}"), change: Change::Place(place) }
     };
     let reversed = (key == "bytes" && first != last).then(|| Some(repair(last, first, bytes(last, first)?)));
-    let shifted = shifts().filter_map(|(of_first, of_last)| {
+    let is_movable = signal.encoding.status_word().is_none();
+    let shifted = shifts().filter(|_| is_movable).filter_map(|(of_first, of_last)| {
         let (first, last) = (first + of_first, last + of_last);
         let place = if key == "bytes" { bytes(first, last)? } else { bits(signal.place, of_first, of_last)? };
         Some(repair(first, last, place))
