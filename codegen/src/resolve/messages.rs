@@ -2,9 +2,10 @@
 
 use super::Resolver;
 use super::access::{Modes, Times, pattern_of};
+use super::sets::distinct;
 use super::signals::Leaves;
 use super::texts::remarks;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
     Message, MessageId, ModelId, SelectorPlace, Signal, SignalId, Table, Travel,
@@ -49,6 +50,36 @@ pub struct Choice {
     pub replies: Vec<Constant>,
     /// Constant fields, each with the only kinds of frames that have it.
     fixed: Vec<(Constant, Vec<Kind>)>,
+    /// All of these constants, and where they are written.
+    written: Vec<Written>,
+}
+
+/// A constant of a message, and where it is written.
+struct Written {
+    constant: Constant,
+    at: At,
+    part: Part,
+}
+
+/// The part of a spec that gives a frame a constant.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Match,
+    Field,
+    /// The `reply` of a field or of its type.
+    Reply,
+    Access,
+}
+
+impl Part {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Match => "the `match`",
+            Self::Field => "the field",
+            Self::Reply => "the `reply` of the value",
+            Self::Access => "the access",
+        }
+    }
 }
 
 impl Resolver<'_> {
@@ -90,10 +121,7 @@ impl Resolver<'_> {
         let length = message.length.as_ref().and_then(|text| self.integer(&path.key("length"), text, 0, 8));
         let length = length.unwrap_or(surroundings.length);
         let exchanges = self.exchanges(path, message, surroundings);
-        let matched = self.constants(&path.key("match"), &message.pattern, surroundings.identifier);
-        let fixed: Vec<_> = leaves.constants.into_iter().map(|(signal, value)| self.fixed(signal, value)).collect();
-        let replies = self.reply_constants(&leaves.replies, surroundings.identifier);
-        let choice = Choice { matched, replies, fixed };
+        let choice = self.choice(path, message, leaves.constants, &leaves.replies, surroundings.identifier);
         let set = self.set(path, message);
         self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
         let split = set.as_ref().map_or(&[][..], |set| &set.kinds);
@@ -104,10 +132,10 @@ impl Resolver<'_> {
             for kind in surroundings.accesses[exchange.access].kinds.iter().filter(|kind| !split.contains(kind)) {
                 let travel = self.access_constants(exchange.access, *kind, surroundings);
                 let frame = self.layout(&owner, *kind, &choice, &travel, surroundings);
-                self.check_constants(path, &frame);
+                self.check_constants(&frame, kind.name(), &choice);
                 frames.push(frame);
             }
-            refusals.extend(self.refusal(path, &owner, &choice.matched, surroundings));
+            refusals.extend(self.refusal(&owner, &choice, surroundings));
         }
         let always = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| *constant);
         let constants = choice.matched.iter().copied().chain(always).collect();
@@ -194,17 +222,37 @@ impl Resolver<'_> {
         models
     }
 
-    /// Returns the constants that a reply shows because of the message's fields.
-    fn reply_constants(&mut self, patterns: &[(Path, ast::Pattern)], identifier: &Identifier) -> Vec<Constant> {
-        let mut constants: Vec<Constant> = Vec::new();
-        for (path, pattern) in patterns {
-            for constant in self.constants(path, pattern, identifier) {
-                if !constants.contains(&constant) {
-                    constants.push(constant);
-                }
-            }
+    /// Resolves the constants that choose the frames of a message.
+    fn choice(
+        &mut self,
+        path: &Path,
+        message: &ast::Message,
+        fields: Vec<(Signal, u64)>,
+        replies: &[(Path, ast::Pattern)],
+        identifier: &Identifier,
+    ) -> Choice {
+        let matched = self.written(&path.key("match"), &message.pattern, Part::Match, identifier);
+        let replies: Vec<_> =
+            replies.iter().flat_map(|(path, pattern)| self.written(path, pattern, Part::Reply, identifier)).collect();
+        let mut fixed = Vec::new();
+        let mut written = Vec::new();
+        for (signal, value) in fields {
+            let at = signal.doc.path.at_key();
+            let (constant, kinds) = self.fixed(signal, value);
+            fixed.push((constant, kinds));
+            written.push(Written { constant, at, part: Part::Field });
         }
-        constants
+        let constants = |written: &[Written]| distinct(written.iter().map(|known| known.constant).collect());
+        let (of_match, of_replies) = (constants(&matched), constants(&replies));
+        written.extend(matched.into_iter().chain(replies));
+        Choice { matched: of_match, replies: of_replies, fixed, written }
+    }
+
+    /// Reads a pattern of numbers, and keeps the place of each.
+    fn written(&mut self, path: &Path, pattern: &ast::Pattern, part: Part, identifier: &Identifier) -> Vec<Written> {
+        let constants = self.constants(path, pattern, identifier);
+        let at = |constant: &Constant| path.key(&self.tables.selectors[constant.selector].name).at_value();
+        constants.into_iter().map(|constant| Written { constant, at: at(&constant), part }).collect()
     }
 
     /// Resolves `fields` or `value`.
@@ -321,43 +369,56 @@ impl Resolver<'_> {
 
     /// Returns the frame that refuses a request of the message. It carries none of the message's
     /// fields.
-    fn refusal(
-        &mut self,
-        path: &Path,
-        owner: &Owner,
-        matched: &[Constant],
-        surroundings: &Surroundings,
-    ) -> Option<FrameLayout> {
+    fn refusal(&mut self, owner: &Owner, choice: &Choice, surroundings: &Surroundings) -> Option<FrameLayout> {
         let spec = self.spec;
         let (name, known) = spec.access.get_index(owner.exchange.access.place())?;
         let pattern = known.refusal.as_ref()?;
         let path_of_pattern = Path::default().key("access").key(name).key("refusal");
         let travel = self.constants(&path_of_pattern, pattern, surroundings.identifier);
-        let choice = Choice { matched: matched.to_vec(), replies: Vec::new(), fixed: Vec::new() };
+        let bare_choice =
+            Choice { matched: choice.matched.clone(), replies: Vec::new(), fixed: Vec::new(), written: Vec::new() };
         let bare = Owner { signals: &Table::default(), ..*owner };
-        let frame = self.layout(&bare, Kind::Reply, &choice, &travel, surroundings);
-        self.check_constants(path, &frame);
+        let frame = self.layout(&bare, Kind::Reply, &bare_choice, &travel, surroundings);
+        self.check_constants(&frame, "refusal", choice);
         Some(frame)
     }
 
-    /// Tests that no selector has two values.
-    fn check_constants(&mut self, path: &Path, frame: &FrameLayout) {
-        let access = self.spec.access.get_index(frame.access.place()).map_or("", |(name, _)| name.as_str());
-        for (index, Constant { selector, value, .. }) in frame.constants.iter().enumerate() {
-            let twice =
-                frame.constants[..index].iter().find(|known| known.selector == *selector && known.value != *value);
-            if let Some(Constant { value: other, .. }) = twice {
-                let name = &self.tables.selectors[*selector].name;
-                let kind = frame.kind.name();
-                let message =
-                    format!("in a {kind} by `{access}`, `{name}` would have to be both {other:#04X} and {value:#04X}");
-                let pattern = Path::default().key("access").key(access).key(kind).key(name);
-                let help = format!("take `{name}` out of `match` or out of the access, or correct one of the two");
-                let diagnostic =
-                    Diagnostic::error(&rules::MATCH, path.key("match").key(name).at_value(), message).help(help);
-                self.diagnostics.push(diagnostic.other(pattern.at_value(), "the access"));
+    /// Tests that no selector has two values. `key` is that of the frame in its access.
+    fn check_constants(&mut self, frame: &FrameLayout, key: &str, choice: &Choice) {
+        for (index, constant) in frame.constants.iter().enumerate() {
+            let mut earlier = frame.constants[..index].iter();
+            if let Some(twice) =
+                earlier.find(|known| known.selector == constant.selector && known.value != constant.value)
+            {
+                self.report_twice(frame, key, [twice, constant], choice);
             }
         }
+    }
+
+    /// Reports that a selector has two values.
+    fn report_twice(&mut self, frame: &FrameLayout, key: &str, constants: [&Constant; 2], choice: &Choice) {
+        let access = self.spec.access.get_index(frame.access.place()).map_or("", |(name, _)| name.as_str());
+        let name = &self.tables.selectors[constants[0].selector].name;
+        let pattern = Path::default().key("access").key(access).key(key).key(name);
+        let [one, other] = constants.map(|constant| {
+            let known = choice.written.iter().find(|known| known.constant == *constant);
+            known.map_or_else(|| (Part::Access, pattern.at_value()), |known| (known.part, known.at.clone()))
+        });
+        let (first, second) = if other.0 == Part::Access { (one, other) } else { (other, one) };
+        let help = match (first.0, second.0) {
+            (Part::Reply, Part::Access) => format!(
+                "a message that is also written takes a type without `reply`; \
+                 name `{name}` in the `reply` of each of its accesses"
+            ),
+            (Part::Match, Part::Access) => {
+                format!("take `{name}` out of `match` or out of the access, or correct one of the two")
+            }
+            _ => format!("take `{name}` out of one of the two places, or correct one of them"),
+        };
+        let [low, high] = constants.map(|constant| constant.value);
+        let text = format!("in a {key} by `{access}`, `{name}` would have to be both {low:#04X} and {high:#04X}");
+        let diagnostic = Diagnostic::error(&rules::MATCH, first.1, text).help(help);
+        self.diagnostics.push(diagnostic.other(second.1, second.0.name()));
     }
 }
 

@@ -135,7 +135,7 @@ impl Resolver<'_> {
 }
 
 /// Leaves out repeated constants.
-fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
+pub fn distinct(constants: Vec<Constant>) -> Vec<Constant> {
     constants.into_iter().fold(Vec::new(), |mut known, constant| {
         if !known.contains(&constant) {
             known.push(constant);
