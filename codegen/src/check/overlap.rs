@@ -6,6 +6,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, FrameLayout, Message, Protocol, SelectorPlace, Signal};
 use crate::rule::rules;
+use crate::syntax::tree::Path;
 
 rules! {
     OVERLAP "overlap" Check ERROR;
@@ -65,11 +66,25 @@ fn leaf(signal: &Signal) -> Leaf<'_> {
 /// Reports two leaves. The later one is probably wrong if `is_later`, else the earlier one.
 fn report(message: &Message, [earlier, later]: [&Leaf; 2], is_later: bool, diagnostics: &mut Diagnostics) {
     let text = format!("`{}` and `{}` of `{}` share {}", earlier.0, later.0, message.name, bits(earlier.2 & later.2));
-    let help = "correct one of the two places, or remove one of the two";
-    let (wrong, right) = if is_later { (later, earlier) } else { (earlier, later) };
+    let repeated = [(later, earlier), (earlier, later)].into_iter().find(|(one, other)| repeats(one, other));
+    let (wrong, right) = repeated.unwrap_or(if is_later { (later, earlier) } else { (earlier, later) });
+    let help = match repeated {
+        Some(_) => format!(
+            "the header reads `{}` in this frame already, and `selectors` of JSON lines show it; \
+             take the field out, or correct its place",
+            right.0
+        ),
+        None => "correct one of the two places, or remove one of the two".to_owned(),
+    };
     let at = |leaf: &Leaf| diagnostics.written(&leaf.1.path, &["bytes", "bits"]);
     let diagnostic = Diagnostic::error(&OVERLAP, at(wrong), text).help(help).other(at(right), "the other one");
     diagnostics.push(diagnostic);
+}
+
+/// Tests whether a field of a message reads bits that one field of the header holds.
+fn repeats(one: &Leaf, other: &Leaf) -> bool {
+    let is_of_header = |leaf: &Leaf| leaf.1.path.ancestors().any(|outer| *outer == Path::default().key("header"));
+    !is_of_header(one) && is_of_header(other) && one.2 & !other.2 == 0
 }
 
 /// Names bits of the frame: byte, and bits of the byte.
