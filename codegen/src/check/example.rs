@@ -105,7 +105,14 @@ impl<'a> Checker<'a> {
 
     fn unreadable(&self, problem: &Unrecognised) -> Box<Diagnostic> {
         let text = format!("this frame cannot be read: {}", problem.text);
-        let help = format!("if the document prints it so, add `fails: {}` and an erratum", problem.problem.name());
+        let help = match (problem.problem, &self.example.data) {
+            (Problem::Length, Some(data)) => format!(
+                "if the message has {length} data bytes, write `length: {length}` in it; \
+                 if the document prints it wrongly, add `fails: length` and an erratum",
+                length = data.len()
+            ),
+            (other, _) => format!("if the document prints it so, add `fails: {}` and an erratum", other.name()),
+        };
         Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }
 

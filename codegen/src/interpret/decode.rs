@@ -7,7 +7,7 @@ use super::value::physical;
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
 use crate::encoding::Words;
 use crate::model::{
-    AddressPattern, Course, Direction, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId, NoteRule,
+    AddressPattern, Choice, Course, Direction, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId, NoteRule,
     Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
@@ -171,11 +171,23 @@ impl<'a> Decoder<'a> {
     fn by_length(&self, group: &'a Group) -> Result<&'a Scope, Unrecognised> {
         let length = self.frame.data.len();
         group.of_length(length).ok_or_else(|| {
-            let wanted = group.lengths.last().map_or(8, |(length, _)| *length);
+            let wanted = self.nearest_length(group);
             let bytes = if length == 1 { "byte" } else { "bytes" };
             let text = format!("{length} data {bytes} instead of {wanted}");
             self.unrecognised(Problem::Length, text, true, Some(&group.all))
         })
+    }
+
+    /// Returns the length of the frames whose constants and addresses fit best. Of several lengths
+    /// it is the nearest, of two equally near ones the greater.
+    fn nearest_length(&self, group: &Group) -> u8 {
+        let by_constants = group.choice.as_ref().and_then(|choice| choice.find(|place| self.read(place)));
+        let all = || group.choice.iter().flat_map(Choice::ends).collect();
+        let frames: Vec<_> = by_constants.map_or_else(all, |frames| vec![frames]);
+        let frames = frames.into_iter().flatten().map(|id| &self.protocol[*id]);
+        let far = |frame: &FrameLayout| frame.length.abs_diff(u8::try_from(self.frame.data.len()).unwrap_or(u8::MAX));
+        let rank = |frame: &&FrameLayout| (self.addressing(frame).fit, far(frame), Reverse(frame.length));
+        frames.min_by_key(rank).map_or(8, |frame| frame.length)
     }
 
     /// Returns the kind of frame that fits best, and all that have the frame's constants.
