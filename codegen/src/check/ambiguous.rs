@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{AddressPattern, FieldId, FrameId, FrameLayout, Id, Protocol};
+use crate::model::{AddressPattern, FieldId, FrameId, FrameLayout, Id, Message, Protocol, SelectorId};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
 
@@ -77,6 +77,16 @@ fn report(
         format!("the {} of `{message}` by `{access}`{set}", frame.kind.name())
     };
     let text = format!("a frame can be {} and {}", name(other), name(one));
+    if let Some((open, closed)) = open_one(protocol, one, other).filter(|_| place != second) {
+        let (open, closed) = (&protocol[open.message], &protocol[closed.message]);
+        let has = if open.constants.is_empty() { "has no `match`" } else { "has fewer constants" };
+        let missing = selectors_beyond(closed, open).map(|selector| format!("`{}`", protocol[selector].name));
+        let missing = missing.collect::<Vec<_>>().join(" and ");
+        let help = format!("name {missing} in the `match` of `{}`, as `{}` does", open.name, closed.name);
+        let diagnostic =
+            Diagnostic::error(&AMBIGUOUS, open.doc.path.at_key(), format!("{text}: `{}` {has}", open.name));
+        return diagnostics.push_first(diagnostic.help(help).other(closed.doc.path.at_key(), "the other one"));
+    }
     let help = "give one of the two another constant, addressing modes of its own, or `models` of its own";
     let (at, second) = if place == second {
         let access = |frame: &FrameLayout| place.key("access").index(frame.exchange.place()).at_value();
@@ -85,6 +95,30 @@ fn report(
         (place.at_key(), second.at_key())
     };
     diagnostics.push(Diagnostic::error(&AMBIGUOUS, at, text).help(help).other(second, "the other one"));
+}
+
+/// Returns two frames in another order, if the message of the first lacks constants of the second,
+/// and not the other way round.
+fn open_one<'a>(
+    protocol: &Protocol,
+    one: &'a FrameLayout,
+    other: &'a FrameLayout,
+) -> Option<(&'a FrameLayout, &'a FrameLayout)> {
+    let lacks = |one: &FrameLayout, other: &FrameLayout| {
+        selectors_beyond(&protocol[other.message], &protocol[one.message]).next().is_some()
+    };
+    match (lacks(one, other), lacks(other, one)) {
+        (true, false) => Some((one, other)),
+        (false, true) => Some((other, one)),
+        _ => None,
+    }
+}
+
+/// Lists the selectors that have a constant in every frame of the first message, and not of the
+/// second.
+fn selectors_beyond<'a>(first: &'a Message, second: &'a Message) -> impl Iterator<Item = SelectorId> + 'a {
+    let has = |known: &SelectorId| second.constants.iter().any(|constant| constant.selector == *known);
+    first.constants.iter().map(|constant| constant.selector).filter(move |known| !has(known))
 }
 
 /// Returns the places of the sets of two frames. If they have no sets or the same one, it returns
