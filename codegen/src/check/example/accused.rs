@@ -123,8 +123,11 @@ impl<'a> Accused<'a> {
         {
             return None;
         }
-        let help = "correct its place, its scale, its `as`, or the examples";
-        Some(self.denied(self.path.at_key()).help(help))
+        let help = "correct its place, its scale, its offset, its `as`, or the examples";
+        let of_types = MEANING.iter().filter_map(|key| self.written(key, diagnostics));
+        let of_types = of_types.filter(|at| !at.ancestors().any(|outer| *outer == self.path));
+        let denied = self.denied(self.path.at_key()).help(help);
+        Some(of_types.fold(denied, |denied, at| denied.other(at.at_value(), "the field takes this from a type")))
     }
 
     fn denied(&self, at: At) -> Diagnostic {

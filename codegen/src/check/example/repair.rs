@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::ByteOrder;
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
 use crate::encoding::Words;
-use crate::model::{Encoding, Linear, Meaning, Protocol, Signal, Unit};
+use crate::model::{Encoding, Linear, Meaning, Numeral, Protocol, Signal, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -72,6 +72,7 @@ pub fn find(
     });
     let unit = written("unit").and_then(|at| with_unit(&examples, at));
     let scale = written("scale").and_then(|at| with_scale(&examples, &text(&at)?, at));
+    let offset = written("offset").and_then(|at| with_offset(&examples, &text(&at)?, at));
     let holds = |repair: &Repair| {
         fields.iter().all(|field| {
             let signal = repair.change.of(field.signal);
@@ -84,7 +85,7 @@ pub fn find(
             !repair.change.overlaps(field) && field.evidence.iter().all(bears_out)
         })
     };
-    places.into_iter().flatten().chain(unit).chain(scale).find(holds)
+    places.into_iter().flatten().chain(unit).chain(scale).chain(offset).find(holds)
 }
 
 /// Reverses the byte order, or moves one or both ends of the place by bytes or bits.
@@ -132,11 +133,39 @@ fn with_unit(examples: &[(&Signal, &Evidence)], at: Path) -> Option<Repair> {
 fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
     let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
     let Linear { numeral, offset, .. } = signal.encoding.linear()?;
+    let (number, integer) = sides(signal, numeral, example)?;
+    let scale = number.minus(offset)?.over(integer)?;
+    let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
+    linear(examples, "scale", scale, text, at, change)
+}
+
+/// Replaces the offset by that of the first example, if the two are easily mistaken for each other.
+fn with_offset(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
+    let (signal, example) = examples.first()?;
+    let Linear { numeral, scale, .. } = signal.encoding.linear()?;
+    let (number, integer) = sides(signal, numeral, example)?;
+    let offset = number.minus(integer.times(scale)?)?;
+    let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
+    linear(examples, "offset", offset, text, at, change)
+}
+
+/// Returns the number that an example means, and the integer in its frame.
+fn sides(signal: &Signal, numeral: Numeral, example: &Evidence) -> Option<(Rational, Rational)> {
     let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
     let integer = numeral.integer(signal.raw_of(signal.place.get(&example.data)))?;
-    let scale = number.minus(offset)?.over(Rational::integer(integer))?;
-    let right = scale.fraction();
-    let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
+    Some((number, Rational::integer(integer)))
+}
+
+/// Replaces the number after a key, if several examples say so or one digit is wrong.
+fn linear(
+    examples: &[(&Signal, &Evidence)],
+    key: &str,
+    right: Rational,
+    text: &str,
+    at: Path,
+    change: Change,
+) -> Option<Repair> {
+    let right = right.fraction();
     let is_near = examples.len() > 1 || strsim::osa_distance(&right, text) == 1;
-    is_near.then(|| Repair { at, text: format!("scale: {right}"), change })
+    is_near.then(|| Repair { at, text: format!("{key}: {right}"), change })
 }
