@@ -16,7 +16,7 @@ pub(super) enum Complaint {
 }
 
 /// Keys of other description formats, our key for the same, and what to write.
-const ELSEWHERE: [(&str, &str, &str); 11] = [
+const ELSEWHERE: [(&str, &str, &str); 12] = [
     ("signed", "as", "write `as: signed`;"),
     ("factor", "scale", "did you mean `scale`?"),
     ("resolution", "scale", "did you mean `scale`?"),
@@ -28,6 +28,7 @@ const ELSEWHERE: [(&str, &str, &str); 11] = [
     ("choices", "values", "did you mean `values`?"),
     ("enum", "values", "did you mean `values`?"),
     ("description", "note", "did you mean `note`?"),
+    ("description", "title", "did you mean `title`?"),
 ];
 
 /// What a value can be.
@@ -80,10 +81,15 @@ fn unknown_key(path: &Path, key: &str, allowed: &[String]) -> Diagnostic {
     Diagnostic::error(&rules::UNKNOWN_KEY, path.at_key(), format!("unknown key `{key}`")).help(help)
 }
 
-/// Says how to write a key of another description format.
+/// Says how to write a key of another description format. Each has a meaning in fields, if nowhere
+/// else.
 fn said_otherwise(key: &str, allowed: &[String]) -> Option<String> {
-    let known = ELSEWHERE.iter().find(|(word, of, _)| *word == key && allowed.iter().any(|key| key == of));
-    known.map(|(_, _, help)| (*help).to_owned())
+    let mut known = ELSEWHERE.iter().filter(|(word, ..)| *word == key);
+    let here = known.clone().find(|(_, of, _)| allowed.iter().any(|key| key == of));
+    let (of_field, found) = (here.is_none(), here.or_else(|| known.next()));
+    found.map(
+        |(_, _, help)| if of_field { format!("each field says this for itself: {help}") } else { (*help).to_owned() },
+    )
 }
 
 fn missing_key(path: &Path, key: &str) -> Diagnostic {
