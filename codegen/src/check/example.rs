@@ -7,7 +7,9 @@ mod evidence;
 mod limit;
 mod repair;
 mod unread;
+mod unreadable;
 
+use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
@@ -38,8 +40,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
     let mut counts = Counts::default();
     let mut explained = accused::blame(protocol, diagnostics);
     for (message, frames) in unread::find(protocol) {
-        diagnostics.push(unread::report(&protocol.messages[message], &frames));
-        explained.extend(frames);
+        diagnostics.push(unread::report(protocol, message, &frames));
+        explained.extend(frames.iter().map(unread::place));
     }
     let is_explained = |diagnostic: &Diagnostic| {
         let others = diagnostic.others.iter().map(|(at, _)| at);
@@ -90,7 +92,7 @@ impl<'a> Checker<'a> {
         let outcome = decode(self.protocol, self.example.model, &self.frame());
         match (self.example.fails, outcome) {
             (Some(failure), outcome) => self.fits().and_then(|()| self.fails(failure, outcome)),
-            (None, Err(problem)) => Err(self.unreadable(&problem)),
+            (None, Err(problem)) => Err(Box::new(unreadable::report(self.protocol, self.example, &problem))),
             (None, Ok(decoded)) => self.holds(&decoded),
         }
     }
@@ -101,19 +103,6 @@ impl<'a> Checker<'a> {
 
     fn frame_at(&self) -> At {
         self.example.doc.path.key(self.example.kind.name()).at_value()
-    }
-
-    fn unreadable(&self, problem: &Unrecognised) -> Box<Diagnostic> {
-        let text = format!("this frame cannot be read: {}", problem.text);
-        let help = match (problem.problem, &self.example.data) {
-            (Problem::Length, Some(data)) => format!(
-                "if the message has {length} data bytes, write `length: {length}` in it; \
-                 if the document prints it wrongly, add `fails: length` and an erratum",
-                length = data.len()
-            ),
-            (other, _) => format!("if the document prints it so, add `fails: {}` and an erratum", other.name()),
-        };
-        Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }
 
     fn holds(&self, decoded: &Decoded) -> Checked {
@@ -136,7 +125,11 @@ impl<'a> Checker<'a> {
         let said = self.example.message.map_or("another message", |message| &self.protocol.messages[message].name);
         let (found, stated) = (decoded.kind.name(), self.example.kind.name());
         let text = format!("this frame is a {found} of `{}`, not a {stated} of `{said}`", shown.name);
-        Err(wrong(self.frame_at(), text))
+        let diagnostic = *wrong(self.frame_at(), text);
+        Err(Box::new(match Slip::find(self.protocol, self.example) {
+            Some(slip) => slip.mark(diagnostic),
+            None => diagnostic,
+        }))
     }
 
     fn is_addressed(&self, decoded: &Decoded) -> Checked {

@@ -7,8 +7,8 @@ use super::value::physical;
 use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
 use crate::encoding::Words;
 use crate::model::{
-    AddressPattern, Choice, Course, Direction, FieldId, FrameId, FrameLayout, Group, Kind, Message, ModelId, NoteRule,
-    Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
+    AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Kind, Message, ModelId,
+    NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
 };
 
 /// Decodes a frame that goes to or comes from a device model.
@@ -22,6 +22,27 @@ use crate::model::{
 /// one exception. Constants in the data bytes are tested after the length.
 pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Decoded, Unrecognised> {
     Decoder { protocol, model, frame, data: frame.padded() }.decode()
+}
+
+/// Returns tests of one field that keep a frame from showing the direction of a kind. They are of
+/// the lists of which the frame fails the fewest.
+pub fn failed_tests<'a>(protocol: &'a Protocol, frame: &Frame, kind: Kind) -> Vec<&'a FieldTest> {
+    let decoder = Decoder { protocol, model: None, frame, data: frame.padded() };
+    let Recognition { to_module, to_controller, .. } = &protocol.recognition;
+    let direction = if kind.is_to_module() { to_module } else { to_controller };
+    let failed = |tests: &'a Vec<FieldTest>| tests.iter().filter(|test| !decoder.passes(test)).collect::<Vec<_>>();
+    let lists: Vec<_> = direction.any.iter().map(failed).collect();
+    let fewest = lists.iter().map(Vec::len).min();
+    let first =
+        lists.into_iter().filter(|tests| Some(tests.len()) == fewest).filter_map(|tests| tests.first().copied());
+    let mut found: Vec<&FieldTest> = Vec::new();
+    for test in first {
+        let is_alike = found.first().is_none_or(|known| (known.field, known.inside) == (test.field, test.inside));
+        if is_alike && !found.contains(&test) {
+            found.push(test);
+        }
+    }
+    found
 }
 
 /// A kind of frame that a frame may be.
@@ -107,14 +128,8 @@ impl<'a> Decoder<'a> {
         if self.frame.id & identifier.mask != identifier.value {
             return Err(self.unrecognised(Problem::Identifier, self.wrong_bits(), true, None));
         }
-        let holds = |direction: &Direction| {
-            direction.any.iter().any(|tests| {
-                tests.iter().all(|test| {
-                    let value = self.field(test.field);
-                    test.ranges.iter().any(|(first, last)| (*first..=*last).contains(&value)) == test.inside
-                })
-            })
-        };
+        let holds =
+            |direction: &Direction| direction.any.iter().any(|tests| tests.iter().all(|test| self.passes(test)));
         let Recognition { to_module, to_controller, .. } = &self.protocol.recognition;
         match (holds(to_module), holds(to_controller)) {
             (true, false) => Ok(Kind::Request),
@@ -124,6 +139,11 @@ impl<'a> Decoder<'a> {
                 Err(self.unrecognised(Problem::Identifier, text.to_owned(), true, None))
             }
         }
+    }
+
+    fn passes(&self, test: &FieldTest) -> bool {
+        let value = self.field(test.field);
+        test.ranges.iter().any(|(first, last)| (*first..=*last).contains(&value)) == test.inside
     }
 
     /// Says what is wrong with the fixed bits.
