@@ -24,8 +24,8 @@ pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Res
     Decoder { protocol, model, frame, data: frame.padded() }.decode()
 }
 
-/// Returns tests of one field that keep a frame from showing the direction of a kind. They are of
-/// the lists of which the frame fails the fewest.
+/// Returns tests of one field that keep a frame from showing the direction of a kind. They are those
+/// of the lists with the fewest failed tests.
 pub fn failed_tests<'a>(protocol: &'a Protocol, frame: &Frame, kind: Kind) -> Vec<&'a FieldTest> {
     let decoder = Decoder { protocol, model: None, frame, data: frame.padded() };
     let Recognition { to_module, to_controller, .. } = &protocol.recognition;

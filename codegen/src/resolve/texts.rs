@@ -130,7 +130,13 @@ impl Resolver<'_> {
     fn ends<'t>(&mut self, path: &Path, text: &'t str, form: &str) -> Option<(&'t str, &'t str)> {
         let ends = text.split_once("..").unwrap_or((text, text));
         if Rational::parse(ends.0).is_none() || Rational::parse(ends.1).is_none() {
-            let help = format!("write `{form}` or one number");
+            let parts: Vec<_> = text.trim_matches(['[', ']']).split(['-', ':', ',', '.']).map(str::trim).collect();
+            let help = match parts.iter().filter(|part| !part.is_empty()).collect::<Vec<_>>()[..] {
+                [first, last] if [first, last].iter().all(|end| Rational::parse(end).is_some()) => {
+                    format!("write `{first}..{last}`")
+                }
+                _ => format!("write `{form}` or one number"),
+            };
             self.error_with_help(&rules::PLACE, path.at_value(), format!("`{text}` is not a place"), help);
             return None;
         }

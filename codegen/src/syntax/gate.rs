@@ -177,7 +177,9 @@ impl Gate<'_> {
             None => (span.start..span.start, "this item of the list has no value".to_owned()),
         };
         let help = match key {
-            Some(key) if !is_key && self.has_no_colon(key) => self.help_on_comma(key),
+            Some(key) if !is_key && self.has_no_colon(key) => {
+                help_on_blank(key).unwrap_or_else(|| self.help_on_comma(key))
+            }
             _ => "write it, write `\"\"` for an empty text, or remove the line".to_owned(),
         };
         Diagnostic::error(&rules::WRONG_KIND, span, message).help(help)
@@ -316,6 +318,13 @@ impl Gate<'_> {
     }
 }
 
+/// Says that a blank is missing in what was read as a key.
+fn help_on_blank(key: &Key) -> Option<String> {
+    let (name, value) = key.name.split_once(':')?;
+    let is_name = name.starts_with(char::is_alphabetic) && !value.is_empty();
+    is_name.then(|| format!("put a blank after the `:`, as in `{name}: {value}`"))
+}
+
 fn put_entry(entries: &mut IndexMap<String, Entry>, key: Key, value: Node) -> Option<Diagnostic> {
     if let Some((index, name, first)) = entries.get_full(&key.name) {
         let text = format!("duplicate key `{name}`");
@@ -328,7 +337,16 @@ fn put_entry(entries: &mut IndexMap<String, Entry>, key: Key, value: Node) -> Op
                 .label("given again here")
                 .other(first.key.clone(), "first given here")
         };
-        return Some(problem.help("remove one of the two, or give it another name"));
+        let can_be_joined = match (&first.value.content, &value.content) {
+            (Content::Map(one), Content::Map(other)) => !other.keys().any(|key| one.contains_key(key)),
+            _ => false,
+        };
+        let help = if can_be_joined {
+            "put the entries of both below one of the two, or give it another name"
+        } else {
+            "remove one of the two, or give it another name"
+        };
+        return Some(problem.help(help));
     }
     entries.insert(key.name, Entry { key: key.span, value });
     None

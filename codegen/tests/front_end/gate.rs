@@ -161,7 +161,7 @@ fn what_is_not_yaml_is_said_in_words() {
         ("a: - b\n", "8:4", "a `-` that starts no item"),
         ("a: [- b]\n", "8:5", "a `-` that starts no item"),
         ("  a: b\n", "8:3", "expected a key at this indentation"),
-        ("a: @b\n", "8:4", "an unquoted text cannot start with this character"),
+        ("a: @b\n", "8:4", "an unquoted text cannot start with `@`"),
         ("a: \"\\q\"\n", "8:4", "unknown escape in a text in double quotes"),
         ("just a line\n", "8:1", "`just a line` has no `:`"),
         ("a:\n  b [c]\n  d: e\n", "9:3", "`b [c]` has no `:`"),

@@ -27,8 +27,25 @@ pub(super) fn open_bracket(text: &str, at: Range<usize>, opened: Option<usize>) 
         return None;
     }
     let diagnostic = Diagnostic::error(&rules::YAML, start..start + 1, format!("this `{bracket}` is not closed"));
-    let diagnostic = diagnostic.other(at, format!("here `,` or `{end}` was expected"));
-    Some(diagnostic.help(format!("close it with `{end}`")))
+    let diagnostic = match comment_within(text, start..at.start, end) {
+        Some(comment) => {
+            let help = format!("quote the text that holds ` #`, or put `{end}` before the comment");
+            diagnostic.other(comment, "` #` begins a comment, up to the end of the line").help(help)
+        }
+        None => {
+            diagnostic.other(at, format!("here `,` or `{end}` was expected")).help(format!("close it with `{end}`"))
+        }
+    };
+    Some(diagnostic)
+}
+
+/// Finds the sign that makes a comment of the end of a bracket.
+fn comment_within(text: &str, within: Range<usize>, end: char) -> Option<Range<usize>> {
+    let line = line_from(text, within.start);
+    let (before, comment) = line.split_once(" #")?;
+    let is_quoted = before.matches('"').count() % 2 == 1;
+    let at = within.start + before.len() + 1;
+    (comment.contains(end) && !is_quoted && within.contains(&at)).then_some(at..at + 1)
 }
 
 /// Tests whether the text ends, or goes on no deeper than the line that opens a bracket.

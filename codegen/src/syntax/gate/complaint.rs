@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::rules;
 
 /// A part of the parser's message, our message, and the help.
-const TRANSLATIONS: [(&str, &str, &str); 19] = [
+const TRANSLATIONS: [(&str, &str, &str); 18] = [
     ("tab", "a tab stands where only spaces may", "indent with spaces"),
     ("unexpected end of stream", "this quoted text is never closed", "close it with the same quote"),
     ("unknown anchor", "an alias may not stand in a spec", "write out what it stands for"),
@@ -34,7 +34,6 @@ const TRANSLATIONS: [(&str, &str, &str); 19] = [
     ("did not find expected key", "expected a key at this indentation", "indent the line like the keys around it"),
     ("did not find expected '-'", "expected a `-` at this indentation", "indent the line like the items around it"),
     ("simple key expect", "a line without a `:`", "write `name: value`, or indent it under the text it belongs to"),
-    ("unexpected character", "an unquoted text cannot start with this character", "quote the text"),
     (
         "unknown escape",
         "unknown escape in a text in double quotes",
@@ -66,10 +65,13 @@ pub(super) fn translate(text: &str, at: usize, complaint: &str, opened: Option<u
     cause::open_quote(text, at, complaint)
         .or_else(|| cause::open_bracket(text, span.clone(), opened))
         .or_else(|| cause::line_above(text, at).filter(|_| is_begun_above))
-        .unwrap_or_else(|| translated(span, complaint, opened))
+        .unwrap_or_else(|| translated(text, span, complaint, opened))
 }
 
-fn translated(span: Range<usize>, complaint: &str, opened: Option<usize>) -> Diagnostic {
+fn translated(text: &str, span: Range<usize>, complaint: &str, opened: Option<usize>) -> Diagnostic {
+    if complaint.contains("unexpected character") {
+        return unstartable(text, span);
+    }
     let diagnostic = match TRANSLATIONS.iter().find(|(part, ..)| complaint.contains(part)) {
         Some((_, message, help)) => Diagnostic::error(&rules::YAML, span, *message).help(*help),
         None => Diagnostic::error(&rules::YAML, span, format!("this is not YAML: {complaint}"))
@@ -79,6 +81,14 @@ fn translated(span: Range<usize>, complaint: &str, opened: Option<usize>) -> Dia
         Some(start) => diagnostic.other(start..start + 1, "opened here"),
         None => diagnostic,
     }
+}
+
+/// Reports a character with which only a quoted text can start.
+fn unstartable(text: &str, span: Range<usize>) -> Diagnostic {
+    let message = format!("an unquoted text cannot start with `{}`", &text[span.clone()]);
+    let rest = text[span.start..].split(['\n', ',', '}', ']']).next().unwrap_or_default();
+    let rest = rest.split(" #").next().unwrap_or_default().trim_end();
+    Diagnostic::error(&rules::YAML, span, message).help(format!("quote the text: `\"{rest}\"`"))
 }
 
 /// Reports nesting that no spec needs.

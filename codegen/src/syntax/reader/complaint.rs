@@ -64,21 +64,32 @@ impl Complaint {
     /// Makes a diagnostic with a place.
     pub(super) fn report(&self, path: &Path, tree: &Node) -> Diagnostic {
         match self {
-            Self::UnknownKey { key, allowed } => unknown_key(path, key, allowed),
+            Self::UnknownKey { key, allowed } => unknown_key(path, key, allowed, tree),
             Self::MissingKey(key) => missing_key(path, key),
             Self::WrongKind { allowed, expected } => wrong_kind(path, allowed, *expected, tree),
         }
     }
 }
 
-fn unknown_key(path: &Path, key: &str, allowed: &[String]) -> Diagnostic {
+fn unknown_key(path: &Path, key: &str, allowed: &[String], tree: &Node) -> Diagnostic {
     let listed = allowed.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
     let nearest = nearest(key, allowed.iter().map(String::as_str)).map(|nearest| format!("did you mean `{nearest}`?"));
-    let help = match nearest.or_else(|| said_otherwise(key, allowed)) {
+    let help = match nearest.or_else(|| said_otherwise(key, allowed)).or_else(|| outdented(path, allowed, tree)) {
         Some(what) => format!("{what} allowed here: {listed}"),
         None => format!("allowed here: {listed}"),
     };
     Diagnostic::error(&rules::UNKNOWN_KEY, path.at_key(), format!("unknown key `{key}`")).help(help)
+}
+
+/// Says where a map belongs that stands beside the map above it.
+fn outdented(path: &Path, allowed: &[String], tree: &Node) -> Option<String> {
+    let (parent, Step::Key(key)) = path.split()? else { return None };
+    let entries = tree.get(parent)?.entries()?;
+    entries.get(key)?.value.entries()?;
+    let before = entries.iter().take_while(|(name, _)| *name != key);
+    let (above, entry) = before.filter(|(name, _)| allowed.contains(name)).last()?;
+    entry.value.entries()?;
+    Some(format!("if it belongs to `{above}`, indent it and what stands below it;"))
 }
 
 /// Says how to write a key of another description format. Each has a meaning in fields, if nowhere
@@ -109,8 +120,16 @@ fn wrong_kind(path: &Path, allowed: &str, expected: Kind, tree: &Node) -> Diagno
         Some((list, Step::Index(_))) => format!("an item of `{list}`"),
     };
     let message = format!("expected {allowed} for {whose}, found {found_text}");
-    let help = found.and_then(|found| how_to_write(found, expected));
+    let help = found.and_then(|found| range_of(path, found).or_else(|| how_to_write(found, expected)));
     Diagnostic::error(&rules::WRONG_KIND, path.at_value(), message).help_if(help)
+}
+
+/// Says how to write a range whose ends stand in a list.
+fn range_of(path: &Path, found: &Node) -> Option<String> {
+    let (Some((_, Step::Key(key))), Content::List(items)) = (path.split(), &found.content) else { return None };
+    let [first, last] = &items[..] else { return None };
+    let is_range = ["range", "bytes", "bits"].contains(&key.as_str());
+    is_range.then(|| Some(format!("write `{key}: {}..{}`", first.text()?, last.text()?)))?
 }
 
 /// Says how to write the kind that is expected.
