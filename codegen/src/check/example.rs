@@ -41,7 +41,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
     let mut explained = accused::blame(protocol, diagnostics);
     for (message, frames) in unread::find(protocol) {
         diagnostics.push(unread::report(protocol, message, &frames));
-        explained.extend(frames.iter().map(unread::place));
+        explained.extend(frames.into_iter().map(unread::place));
     }
     let is_explained = |diagnostic: &Diagnostic| {
         let others = diagnostic.others.iter().map(|(at, _)| at);
@@ -184,7 +184,7 @@ impl<'a> Checker<'a> {
     }
 
     fn by_other_order(&self, signal: &Signal) -> Option<String> {
-        byte_order::explain(self.protocol, signal, &self.frame().padded())
+        byte_order::explain(self.protocol, signal, self.frame().padded())
     }
 
     /// Tests whether a digit of the frame is probably wrong, and not one of the text.
@@ -228,12 +228,16 @@ impl<'a> Checker<'a> {
         let text = format!("this frame has the note `{}`: {}", note.rule, note.text);
         let mut signals = decoded.signals.iter().map(|reading| &self.protocol[decoded.message][reading.signal]);
         let by_other_order = signals.find_map(|signal| self.by_other_order(signal)).filter(|_| note.is_about_value());
-        let help = by_other_order.unwrap_or_else(|| match note.rule {
-            NoteRule::ReservedBit => "add the field that has these bits; \
+        let by_notes = || {
+            if note.rule == NoteRule::ReservedBit {
+                "add the field that has these bits; \
                  if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
-                .to_owned(),
-            rule => format!("if the document shows it so, add `{rule}` to its `notes`"),
-        });
+                    .to_owned()
+            } else {
+                format!("if the document shows it so, add `{}` to its `notes`", note.rule)
+            }
+        };
+        let help = by_other_order.unwrap_or_else(by_notes);
         Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
     }
 

@@ -9,17 +9,17 @@ use crate::interpret::physical;
 use crate::model::{Protocol, Signal};
 
 /// Says what a signal would be by the other byte order, if nothing is odd about it then.
-pub fn explain(protocol: &Protocol, signal: &Signal, data: &[u8; 8]) -> Option<String> {
+pub fn explain(protocol: &Protocol, signal: &Signal, data: [u8; 8]) -> Option<String> {
     let (first, last) = reversed(signal.place)?;
     let other = Signal { place: Place::bytes(first, last), ..signal.clone() };
     let is_odd = |signal: &Signal| {
-        let bits = signal.place.get(data);
+        let bits = signal.place.get(&data);
         Words::from(protocol).with(signal, |room| room.oddity(bits, &room.value(bits)).is_some())
     };
     if !is_odd(signal) || is_odd(&other) {
         return None;
     }
-    let bits = other.place.get(data);
+    let bits = other.place.get(&data);
     let read = shown(protocol, &other, &physical(protocol, &other, bits), bits);
     Some(format!(
         "with `bytes: {first}..{last}`, `{}` would be {read}; write that place, or correct the frame",

@@ -44,6 +44,6 @@ pub fn report(protocol: &Protocol, message: MessageId, examples: &[&Example]) ->
 }
 
 /// Returns the place of the frame of an example.
-pub fn place(example: &&Example) -> Path {
+pub fn place(example: &Example) -> Path {
     example.doc.path.key(example.kind.name())
 }

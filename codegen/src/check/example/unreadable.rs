@@ -43,9 +43,8 @@ fn undirected(protocol: &Protocol, example: &Example, at: At, wrongly: &str) -> 
     let tests = failed_tests(protocol, &frame, example.kind);
     let FieldTest { field, inside, .. } = tests.first()?;
     let ranges: Vec<_> = tests.iter().flat_map(|test| &test.ranges).collect();
-    let shown = |(first, last): &&(u32, u32)| match first == last {
-        true => format!("{first:#04X}"),
-        false => format!("{first:#04X}..{last:#04X}"),
+    let shown = |(first, last): &&(u32, u32)| {
+        if first == last { format!("{first:#04X}") } else { format!("{first:#04X}..{last:#04X}") }
     };
     let allowed = ranges.iter().map(shown).collect::<Vec<_>>().join(" or ");
     let (name, found, kind) = (&protocol[*field].name, protocol[*field].get(frame.id), example.kind.name());
