@@ -17,7 +17,7 @@ error[duplicate_key]: duplicate key `a`
 10 |   a: {}
    |   ^ given again here
    |
-   = help: remove one of the two, or give it another name
+   = help: put the entries of both below one of the two, or give it another name
 
 error[unknown_key]: unknown key `max_paralel`
   --> mini.yaml:11:14
@@ -45,7 +45,7 @@ error[duplicate_key]: duplicate key `types`
    8 | types: {}
      | ----- first given here
      |
-     = help: remove one of the two, or give it another name";
+     = help: put the entries of both below one of the two, or give it another name";
     assert_eq!(first(&text).render(false), expected);
 }
 
