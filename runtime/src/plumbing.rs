@@ -26,8 +26,5 @@ pub mod prelude {
         Address, Continuation, Decode, Encode, IdFilter, Legend, Pattern, Piece, Recognised, Task, Who, Word,
         left_aligned, right_aligned,
     };
-    pub use crate::{
-        AddressType, AnySignal, Bits, Destination, Entry, Exchange, Filter, FrameSet, Mode, Place, Protocol, Selector,
-        Signal,
-    };
+    pub use crate::{Destination, Protocol};
 }

@@ -1,6 +1,7 @@
 //! Items that users of a generated module need to name. Every such module re-exports them.
 
 pub use crate::{
-    Bcd, Data, Error, Failure, Filter, Frame, IdentifierFields, Kind, Layout, Meaning, Number, PackedText, Payload,
-    Problem, Reading, Replies, Route, Severity, StatusBit, Text, assembler, embedded_can,
+    AddressType, AnySignal, Bcd, Bits, Data, Entry, Error, Exchange, Failure, Filter, Frame, FrameSet,
+    IdentifierFields, Kind, Layout, Meaning, Mode, Number, PackedText, Payload, Place, Problem, Reading, Replies,
+    Route, Selector, Severity, Signal, StatusBit, Text, assembler, embedded_can,
 };

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD;
+pub const FRAME: Filter = Filter::STANDARD;
 
 /// Signal: byte 0. Section 2.
 pub const SIGNAL_SELECTOR: Selector = Selector::new("signal", Place::byte(0));

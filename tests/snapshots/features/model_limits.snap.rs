@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD;
+pub const FRAME: Filter = Filter::STANDARD;
 
 /// The 11-bit identifier of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -162,7 +162,8 @@ const FLOW_LIMITS: &[(u8, Option<(f64, f64)>)] =
 pub struct SetSpeed {
     /// Speed in rpm: bytes 0..1, `0..=3000`. The limits depend on the device model.
     pub speed_rpm: u16,
-    /// Flow in %: bytes 2..3, steps of 0.1 %, `-30..=30.5`. The limits depend on the device model.
+    /// Flow in %: bytes 2..3, steps of 0.1 %, `-30..=30.5`. The limits depend on the device model. These
+    /// have none: `P_10A`, `P_20A`.
     pub flow_percent: f64,
 }
 

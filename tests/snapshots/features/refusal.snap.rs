@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD.id(Identifier::COMMAND, 0x005);
+pub const FRAME: Filter = Filter::STANDARD.id(Identifier::COMMAND, 0x005);
 
 /// Operation: byte 0. Section 2.
 pub const OPERATION_SELECTOR: Selector = Selector::new("operation", Place::byte(0));

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD;
+pub const FRAME: Filter = Filter::STANDARD;
 
 /// Function: byte 0. Section 2.
 pub const FUNCTION_SELECTOR: Selector = Selector::new("function", Place::byte(0));

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD;
+pub const FRAME: Filter = Filter::STANDARD;
 
 /// Sign: byte 0. Section 4.
 pub const SIGN_SELECTOR: Selector = Selector::new("sign", Place::byte(0));

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::EXTENDED;
+pub const FRAME: Filter = Filter::EXTENDED;
 
 /// Limit the input current: bytes 0..1. Section 3.3.
 pub const SUB_COMMAND_SELECTOR: Selector = Selector::new("sub_command", Place::bytes(0, 1));

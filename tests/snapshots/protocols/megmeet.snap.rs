@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::EXTENDED.id_bits(0x0000_007E, 0x0000_007E).id(Identifier::PROTOCOL, 0x21);
+pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0000_007E, 0x0000_007E).id(Identifier::PROTOCOL, 0x21);
 
 /// Why a module did not do what was asked: byte 0, bits 7..4. Section 2.2.1, 4.
 ///
@@ -1994,7 +1994,7 @@ impl Layout for HardwareAddress {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputVoltageSetting {
     /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `41.5..=58.5`.
-    /// The limits depend on the device model.
+    /// The limits depend on the device model. These have none: `V24`, `V72`.
     pub value_v: f64,
 }
 
@@ -2070,7 +2070,7 @@ impl Layout for OutputVoltageSetting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultOutputVoltage {
     /// Default output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `48..=58`. The limits depend on the device model.
+    /// `48..=58`. The limits depend on the device model. These have none: `V24`, `V72`.
     pub value_v: f64,
 }
 
@@ -2155,7 +2155,7 @@ impl Layout for DefaultOutputVoltage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OvervoltageProtectionPoint {
     /// Overvoltage point within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `58.5..=60.5`.
-    /// The limits depend on the device model.
+    /// The limits depend on the device model. These have none: `V24`, `V72`.
     pub value_v: f64,
 }
 
@@ -3693,7 +3693,7 @@ impl Layout for PvCurrentLimitSetting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RectifierOutputVoltageSetting {
     /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `41.5..=58.5`.
-    /// The limits depend on the device model.
+    /// The limits depend on the device model. These have none: `V24`, `V72`.
     pub value_v: f64,
 }
 
@@ -3763,7 +3763,7 @@ impl Layout for RectifierOutputVoltageSetting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PvOutputVoltageSetting {
     /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V, `41.5..=58.5`.
-    /// The limits depend on the device model.
+    /// The limits depend on the device model. These have none: `V24`, `V72`.
     pub value_v: f64,
 }
 

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::EXTENDED.id(Identifier::PROTOCOL, 0x060);
+pub const FRAME: Filter = Filter::EXTENDED.id(Identifier::PROTOCOL, 0x060);
 
 /// What a request wants, and of which type the value of a reply is: byte 0. Section 2.3.
 ///

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD;
+pub const FRAME: Filter = Filter::STANDARD;
 
 /// What a request wants, or what became of it: byte 0. Section 5.
 pub const OPERATION_SELECTOR: Selector = Selector::new("operation", Place::byte(0));

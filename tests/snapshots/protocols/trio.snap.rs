@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::prelude::*;
 pub use canspec_runtime::prelude::*;
 
 /// What every frame shows.
-const FRAME: Filter =
+pub const FRAME: Filter =
     Filter::EXTENDED.id(Identifier::RESERVED, 0x0).id(Identifier::DATA_PAGE, 0x0).send_id(Identifier::PRIORITY, 0x6);
 
 /// The 29-bit identifier of a frame.

@@ -14,7 +14,7 @@ pub fn base(Base { extended, bits, constants, sent, .. }: &Base) -> TokenStream 
     let sent = sent.iter().map(|(place, value)| quote!(.send_id(Identifier::#place, #value)));
     quote! {
         /// What every frame shows.
-        const FRAME: Filter = Filter::#width #(#bits)* #(#constants)* #(#sent)*;
+        pub const FRAME: Filter = Filter::#width #(#bits)* #(#constants)* #(#sent)*;
     }
 }
 

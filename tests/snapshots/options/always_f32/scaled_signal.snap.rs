@@ -10,7 +10,7 @@ use canspec_runtime::plumbing::defmt;
 use canspec_runtime::plumbing::serde;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::EXTENDED;
+pub const FRAME: Filter = Filter::EXTENDED;
 
 /// The 29-bit identifier of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize, defmt::Format)]

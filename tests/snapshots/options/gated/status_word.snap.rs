@@ -15,7 +15,7 @@ use canspec_runtime::plumbing::defmt;
 use canspec_runtime::plumbing::serde;
 
 /// What every frame shows.
-const FRAME: Filter = Filter::STANDARD;
+pub const FRAME: Filter = Filter::STANDARD;
 
 /// The 11-bit identifier of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

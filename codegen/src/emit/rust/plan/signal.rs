@@ -140,7 +140,7 @@ impl Context<'_> {
         coding: &Coding,
         range: Option<Range>,
     ) -> Member {
-        let sentence = sentence(signal, coding, range);
+        let sentence = sentence(self.protocol, signal, coding, range);
         let paragraphs = doc::paragraphs(self.protocol, &signal.doc, &sentence, Some(&message.doc));
         let comment = Comment::new(paragraphs.into_iter().chain(type_notes(self.protocol, signal, coding)));
         let [get, put] = coding.methods();
@@ -169,15 +169,25 @@ fn as_signed(raw: i128) -> TokenStream {
     quote!(u64::cast_signed(#bits))
 }
 
-fn sentence(signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
+fn sentence(protocol: &Protocol, signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
     let title = doc::title(&signal.doc, &signal.name);
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
     let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
     let facts = [Some(Written::new(signal.place).text()), coding.step.clone(), range, specials(signal)];
     let facts: Vec<_> = facts.into_iter().flatten().collect();
-    let depends = !signal.model_ranges.is_empty();
-    let model = if depends { " The limits depend on the device model." } else { "" };
-    format!("{}{model}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
+    let models = models(protocol, signal);
+    format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
+}
+
+/// Says that limits depend on the device model, and which models have none.
+fn models(protocol: &Protocol, signal: &model::Signal) -> String {
+    if signal.model_ranges.is_empty() {
+        return String::new();
+    }
+    let unlimited = protocol.models.entries().filter(|(id, _)| signal.range_for(Some(*id)).is_none());
+    let names: Vec<_> = unlimited.map(|(_, model)| format!("`{}`", model.name)).collect();
+    let none = if names.is_empty() { String::new() } else { format!(" These have none: {}.", names.join(", ")) };
+    format!(" The limits depend on the device model.{none}")
 }
 
 fn specials(signal: &model::Signal) -> Option<String> {
