@@ -28,8 +28,8 @@ use summary::Summary;
 
 /// Decode a log of a CAN bus.
 ///
-/// The log comes from candump, an SLCAN adapter or Vector's programs (ASC), or is a table in CSV. canspec recognises
-/// the format. Unreadable lines are reported and skipped.
+/// The log comes from candump, an SLCAN adapter, Vector's programs (ASC) or those of PEAK (TRC), or is a table in CSV.
+/// canspec recognises the format. Unreadable lines are reported and skipped.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Decode {

@@ -6,6 +6,7 @@ mod csv;
 mod part;
 mod plain;
 mod slcan;
+mod trc;
 mod write;
 
 use canspec_codegen::interpret::Frame;
@@ -37,6 +38,7 @@ enum Format {
     Slcan,
     Asc(asc::Base),
     Csv(Box<csv::Columns>),
+    Trc(trc::Columns),
     /// A table without a column that it needs, and the complaint if nobody has heard it.
     Incomplete(Option<String>),
 }
@@ -62,6 +64,7 @@ impl Reader {
             Some(Format::Slcan) => slcan::read(line),
             Some(Format::Asc(base)) => asc::read(base, line),
             Some(Format::Csv(columns)) => columns.read(line),
+            Some(Format::Trc(columns)) => trc::read(columns, line),
             Some(Format::Incomplete(complaint)) => complaint.take().map_or(Ok(None), Err),
             None => Err(unknown(line)),
         }
@@ -80,7 +83,7 @@ impl Reader {
     /// Finds out the format of a line. A line that shows none has the format so far.
     fn tell(&mut self, line: &str) {
         let told = match &self.0 {
-            Some(Format::Asc(_) | Format::Csv(_)) => None,
+            Some(Format::Asc(_) | Format::Csv(_) | Format::Trc(_)) => None,
             Some(Format::Compact | Format::Plain | Format::Slcan | Format::Incomplete(_)) => {
                 frame(line).or_else(|| head(line))
             }
@@ -95,7 +98,9 @@ impl Reader {
 /// Returns the format that begins with such a line.
 fn head(line: &str) -> Option<Format> {
     let csv = || csv::Columns::of(line).map(|columns| Format::Csv(Box::new(columns)));
-    csv().or_else(|| asc::begins(line).then(|| Format::Asc(asc::Base::default())))
+    let asc = || asc::begins(line).then(|| Format::Asc(asc::Base::default()));
+    let trc = || trc::begins(line).then(|| Format::Trc(trc::Columns::default()));
+    csv().or_else(asc).or_else(trc)
 }
 
 /// Returns the format of a first line that has less than it should.
@@ -120,7 +125,8 @@ fn frame(line: &str) -> Option<Format> {
 fn unknown(line: &str) -> String {
     format!(
         "{} is of no known log; known are candump (`can0 123#1122` or `can0  123   [2]  11 22`), SLCAN (`t12321122`), \
-         Vector ASC (begins with `date` or `base`), and CSV (begins with names of columns, such as `time,id,data`)",
+         Vector ASC (begins with `date` or `base`), TRC of PEAK (begins with `;$FILEVERSION=`), and CSV (begins with \
+         names of columns, such as `time,id,data`)",
         part::quoted(line.trim())
     )
 }
@@ -142,7 +148,7 @@ mod tests {
 
     #[test]
     fn each_format_is_told_by_its_own_lines() {
-        let logs: [&[&str]; 10] = [
+        let logs: [&[&str]; 12] = [
             &["(1.5) can0 123#1122"],
             &["  can0  123   [2]  11 22"],
             &["  can0  123   [2]  11 22   '#['"],
@@ -152,6 +158,8 @@ mod tests {
             &["timestamp,arbitration_id,extended,remote,error,dlc,data", "0.5,0x123,0,0,0,2,ESI="],
             &["Time [s];ID;DLC;Data", "0.5;123;2;11 22"],
             &["#,Time,ID,Data", "7,0.5,123,1122"],
+            &["", ";$FILEVERSION=1.1", ";   |  time, id | data", "  1)  0.5  Rx  0123  2  11 22"],
+            &[";##########", ";    |     |", "     1)       5  0123  2 11 22"],
             &["id,data", "124,3344", "id,data", "123,1122"],
         ];
         for log in logs {
@@ -196,7 +204,7 @@ mod tests {
             why.starts_with("`hello \\u{1b}world` is of no known log; known are candump (`can0 123#1122` or"),
             "{why}"
         );
-        for name in ["candump", "SLCAN", "Vector ASC", "CSV"] {
+        for name in ["candump", "SLCAN", "Vector ASC", "TRC", "CSV"] {
             assert!(why.contains(name), "{name} in {why}");
         }
     }

@@ -29,11 +29,6 @@ const KINDS: &[Kind] = &[
         help: "`can_logconvert FILE.mf4 FILE.log` of python-can and asammdf makes a text of it",
     },
     Kind {
-        begins: &[b";$FILEVERSION="],
-        name: "is a trace of PEAK's programs (TRC)",
-        help: "`can_logconvert FILE.trc FILE.log` of python-can makes a log of it",
-    },
-    Kind {
         begins: &[b"\n\r\r\n", b"\xD4\xC3\xB2\xA1", b"\xA1\xB2\xC3\xD4", b"\x4D\x3C\xB2\xA1", b"\xA1\xB2\x3C\x4D"],
         name: "is a capture (pcap or pcapng)",
         help: "tshark makes a table of it, by the call that `canspec decode --help` shows",
