@@ -32,6 +32,7 @@ mod protocols;
 mod rules;
 mod schema;
 mod settings;
+mod severity;
 mod signature;
 mod table;
 mod tips;

@@ -4,7 +4,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
-use canspec_codegen::model::{DeviceModel, Doc, Document, Example, Message, MessageId, Protocol, SelectorId, Signal};
+use canspec_codegen::model::{
+    DeviceModel, Doc, Document, Example, Message, MessageId, Protocol, SelectorId, Signal, StatusBit,
+};
 use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
 use clap::Args;
@@ -13,6 +15,7 @@ use crate::columns::{self, Row};
 use crate::failure::{Failure, Finish};
 use crate::output::output;
 use crate::protocols;
+use crate::severity::Severity;
 
 /// List the built-in protocols, or the messages of one.
 #[derive(Args)]
@@ -190,9 +193,18 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     let mut items = Vec::new();
     items.extend(signal.range.map(|range| format!("{}..{}", range.minimum, range.maximum)));
     items.extend((!signal.model_ranges.is_empty()).then(|| "limits by model".to_owned()));
-    items.extend(description(protocol, signal));
+    match signal.encoding.status_word() {
+        Some(word) => items.extend(protocol.status_words[word].bits.iter().map(status_bit)),
+        None => items.extend(description(protocol, signal)),
+    }
     items.extend(signal.specials.iter().map(|special| format!("{} = {}", special.raw, special.name)));
     items
+}
+
+/// Returns number, name and severity of a status bit.
+fn status_bit(bit: &StatusBit) -> String {
+    let severity = Severity::of(bit).map_or(String::new(), |severity| format!(" ({})", severity.word()));
+    format!("bit {} {}{severity}", bit.bit, bit.name)
 }
 
 /// Returns a text of the spec, or nothing.

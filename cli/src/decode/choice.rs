@@ -1,11 +1,13 @@
 //! Choosing messages and signals of a log.
 
-use canspec_codegen::interpret::Decoded;
-use canspec_codegen::model::{Message, Protocol};
+use canspec_codegen::interpret::{Decoded, Reading, Value};
+use canspec_codegen::model::{Message, Protocol, Signal};
 use canspec_codegen::nearest;
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::line::set_bits;
+use crate::severity::Severity;
 
 /// A complaint lists no more names.
 const MOST_NAMES: usize = 20;
@@ -19,6 +21,9 @@ pub struct Choice {
     /// Only this signal, and frames that have it; repeatable.
     #[arg(long, value_name = "NAME", conflicts_with = "to")]
     signal: Vec<String>,
+    /// Only status words with a set bit of this severity, and frames that have one; repeatable.
+    #[arg(long, value_enum, value_name = "SEVERITY", conflicts_with = "to")]
+    severity: Vec<Severity>,
 }
 
 impl Choice {
@@ -49,7 +54,11 @@ impl Choice {
 
     /// Tests whether everything is shown, unrecognised frames too.
     pub fn is_everything(&self) -> bool {
-        self.message.is_empty() && self.signal.is_empty()
+        self.message.is_empty() && self.has_all_signals()
+    }
+
+    fn has_all_signals(&self) -> bool {
+        self.signal.is_empty() && self.severity.is_empty()
     }
 
     /// Takes away signals that are not chosen, and returns whether the frame is still to be shown.
@@ -58,10 +67,24 @@ impl Choice {
         if !self.has_message(protocol, message) {
             return false;
         }
-        if !self.signal.is_empty() {
-            decoded.signals.retain(|reading| self.signal.contains(&message.signals[reading.signal].name));
+        if self.has_all_signals() {
+            return true;
         }
-        self.signal.is_empty() || !decoded.signals.is_empty()
+        let is_error_reply = decoded.is_error_reply();
+        decoded.signals.retain(|reading| {
+            let signal = &message.signals[reading.signal];
+            let is_named = self.signal.is_empty() || self.signal.contains(&signal.name);
+            // Values of an error reply mean nothing.
+            is_named && (self.severity.is_empty() || !is_error_reply && self.is_grave(protocol, signal, reading))
+        });
+        !decoded.signals.is_empty()
+    }
+
+    /// Tests for a set bit of a chosen severity.
+    fn is_grave(&self, protocol: &Protocol, signal: &Signal, reading: &Reading) -> bool {
+        let Value::Status { set, .. } = &reading.value else { return false };
+        let mut severities = set_bits(protocol, signal, set).filter_map(Severity::of);
+        severities.any(|severity| self.severity.contains(&severity))
     }
 
     fn has_message(&self, protocol: &Protocol, message: &Message) -> bool {

@@ -184,6 +184,8 @@ struct SignalObject {
     unit: Option<String>,
     set: Option<Vec<String>>,
     unknown: Option<u64>,
+    #[serde(rename = "severity")]
+    _severity: Option<IgnoredAny>,
 }
 
 impl SignalObject {
@@ -370,7 +372,10 @@ mod tests {
         assert_eq!(input(r#"{"raw":7,"value":null}"#), Ok(Input::Raw(7)));
         assert_eq!(input(r#"{"raw":-7}"#), Ok(Input::Raw(-7)));
         assert_eq!(input(r#"{"raw":18446744073709551615}"#), Ok(Input::Raw(u64::MAX.into())));
-        assert_eq!(input(r#"{"raw":7,"set":[],"unknown":1}"#), Ok(Input::Status { set: Vec::new(), unknown: 1 }));
+        assert_eq!(
+            input(r#"{"raw":7,"set":[],"unknown":1,"severity":{}}"#),
+            Ok(Input::Status { set: Vec::new(), unknown: 1 })
+        );
     }
 
     #[test]

@@ -3,9 +3,10 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
-use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, Table};
+use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, StatusBit, Table};
 
 use crate::log;
+use crate::severity::Severity;
 
 /// A frame of a log, and what a protocol makes of it.
 pub struct Outcome<'a> {
@@ -115,6 +116,7 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
         list(out, bit_names(protocol, signal, set), name)?;
         out.write_all(b",\"unknown\":")?;
         integer(out, *unknown)?;
+        severities(out, &set_bits(protocol, signal, set))?;
         return out.write_all(b"}");
     }
     long_integer(out, signal.raw_of(reading.bits))?;
@@ -133,6 +135,21 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
     out.write_all(b"}")
 }
 
+/// Writes the names of set bits by their severity, if one of them has any.
+fn severities<'a>(out: &mut impl Write, bits: &(impl Iterator<Item = &'a StatusBit> + Clone)) -> io::Result<()> {
+    let names = |severity| {
+        let bits = bits.clone().filter(move |bit| Severity::of(bit) == Some(severity));
+        bits.map(|bit| bit.name.as_str())
+    };
+    let groups = Severity::ALL.into_iter().map(|severity| (severity.word(), names(severity)));
+    let mut groups = groups.filter(|(_, names)| names.clone().next().is_some()).peekable();
+    if groups.peek().is_none() {
+        return Ok(());
+    }
+    out.write_all(b",\"severity\":")?;
+    object(out, groups, |out, names| list(out, names, name))
+}
+
 /// Returns the addresses that the identifier shows, each with its kind.
 pub fn addresses<'a>(
     outcome: &Outcome<'a>,
@@ -146,10 +163,19 @@ pub fn addresses<'a>(
     })
 }
 
+/// Returns the set bits of a status word that have a name.
+pub fn set_bits<'a>(
+    protocol: &'a Protocol,
+    signal: &Signal,
+    set: &[u8],
+) -> impl Iterator<Item = &'a StatusBit> + Clone {
+    let bits = signal.encoding.status_word().map_or(&[][..], |word| &protocol.status_words[word].bits);
+    bits.iter().filter(|bit| set.contains(&bit.bit))
+}
+
 /// Returns the names of the set bits of a status word.
 pub fn bit_names<'a>(protocol: &'a Protocol, signal: &Signal, set: &[u8]) -> impl Iterator<Item = &'a str> {
-    let bits = signal.encoding.status_word().map_or(&[][..], |word| &protocol.status_words[word].bits);
-    bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str())
+    set_bits(protocol, signal, set).map(|bit| bit.name.as_str())
 }
 
 /// Writes members in their order. If some have the same name, the first one counts. A field that messages have in
@@ -250,7 +276,7 @@ types:
   controller: {range: 3..3, outside: refused, send: 3, section: "1"}
   module:     {range: 0..1, section: "1"}
   power:      {values: {0: "on", 1: "off"}, section: "1"}
-  state:      {status: {fault: {bit: 0}, full: {bit: 6}}, section: "1"}
+  state:      {status: {fault: {bit: 0, severity: fault}, full: {bit: 6}}, section: "1"}
 addressing:
   one:
     section: "1"
@@ -301,7 +327,8 @@ messages:
             r#""addresses":{"controller":3,"module":0},"#,
             r#""identifier":{"device":1,"command":1,"target":3,"source":0},"selectors":{},"#,
             r#""signals":{"temperature":{"raw":-2,"value":-2,"unit":"°C"},"voltage":{"raw":4020,"value":402.0,"unit":"V"},"#,
-            r#""power":{"raw":1,"value":"off"},"state":{"raw":65,"set":["fault","full"],"unknown":0}},"notes":[]}"#,
+            r#""power":{"raw":1,"value":"off"},"#,
+            r#""state":{"raw":65,"set":["fault","full"],"unknown":0,"severity":{"fault":["fault"]}}},"notes":[]}"#,
             "\n",
         );
         assert_eq!(line("(1.50) can0 11c#fe0fb40141000000"), expected);
@@ -313,7 +340,7 @@ messages:
         for part in [
             r#"{"line":7,"time":null,"channel":null,"id":"11C""#,
             r#""power":{"raw":2,"value":null}"#,
-            r#""state":{"raw":67,"set":["fault","full"],"unknown":2}"#,
+            r#""state":{"raw":67,"set":["fault","full"],"unknown":2,"severity":{"fault":["fault"]}}"#,
             r#""reserved":"0000000000000080","notes":[{"rule":""#,
         ] {
             assert!(written.contains(part), "{part} in {written}");
