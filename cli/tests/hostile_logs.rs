@@ -89,7 +89,7 @@ fn a_stamp_that_readers_of_json_take_for_infinite_is_refused() {
 #[test]
 fn a_channel_holds_no_characters_that_nobody_sees() {
     let (_, told) = decoded(&format!("(1) can\u{200B}\u{202E}0 {FRAME}\n"));
-    assert_eq!(told, "bus.log:1: the channel `can\\u{200b}\\u{202e}0` is no name\n");
+    assert!(told.starts_with("bus.log:1: the channel `can\\u{200b}\\u{202e}0` is no name; a name has"), "{told}");
 }
 
 #[test]

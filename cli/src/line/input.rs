@@ -410,7 +410,11 @@ mod tests {
             (line(r#","signals":{"s":{"raw":1},"s":{"raw":1}}"#), "duplicate field `s` (column 84)"),
             (line(r#","signals":{},"kind":"answer""#), r#"`kind` is request, reply or report, not "answer""#),
             (line(r#","signals":{},"time":"now""#), r#"`time` is a number or null, not "now""#),
-            (line(r#","signals":{},"channel":"can 0""#), "the channel `can 0` is no name"),
+            (
+                line(r#","signals":{},"channel":"can 0""#),
+                "the channel `can 0` is no name; a name has no blanks, no `#` and nothing invisible, and does not begin \
+                 with `(`",
+            ),
             (
                 line(r#","signals":{},"reserved":"0G""#),
                 r#"`reserved` is an even number of hexadecimal digits, at most 16, not "0G""#,

@@ -198,8 +198,16 @@ mod tests {
         let reasons = [
             ("can0", "no frame in the form ID#DATA; `candump -L` writes it"),
             ("can0 can1 123#00", "`can1` is no ID#DATA; `candump -L` writes it"),
-            ("(1) (2) 123#00", "the channel `(2)` is no name"),
-            ("\u{1b}[2J 123#00", "the channel `\\u{1b}[2J` is no name"),
+            (
+                "(1) (2) 123#00",
+                "the channel `(2)` is no name; a name has no blanks, no `#` and nothing invisible, and does not begin \
+                 with `(`",
+            ),
+            (
+                "\u{1b}[2J 123#00",
+                "the channel `\\u{1b}[2J` is no name; a name has no blanks, no `#` and nothing invisible, and does not \
+                 begin with `(`",
+            ),
             ("20000000G#00", "the identifier `20000000G` is not hexadecimal"),
             ("#00", "the identifier `` is not hexadecimal"),
             ("+12#00", "the identifier `+12` is not hexadecimal"),

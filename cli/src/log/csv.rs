@@ -1,5 +1,7 @@
 //! Tables in CSV, whose heading says what the columns hold: those of python-can, `SavvyCAN`, and others with common names.
 
+use std::ops::Range;
+
 use canspec_codegen::interpret::{Form, Frame};
 use csv_core::{ReadRecordResult, ReaderBuilder};
 
@@ -185,9 +187,25 @@ impl Columns {
         count + more
     }
 
-    fn cell(&self, index: usize) -> Option<&str> {
+    fn place(&self, index: usize) -> Option<Range<usize>> {
         let start = if index == 0 { 0 } else { *self.ends.get(index - 1)? };
-        str::from_utf8(self.text.get(start..*self.ends.get(index)?)?).ok().map(str::trim)
+        Some(start..*self.ends.get(index)?)
+    }
+
+    fn cell(&self, index: usize) -> Option<&str> {
+        str::from_utf8(self.text.get(self.place(index)?)?).ok().map(str::trim)
+    }
+
+    /// Makes a name of a channel such as `CAN 1` or `(1)`, by `_` for each character that no name may have.
+    fn name_channels(&mut self, count: usize) {
+        let is_channel = |index: &usize| self.kinds.get(*index) == Some(&Column::Channel);
+        let places: Vec<_> = (0..count).filter(is_channel).filter_map(|index| self.place(index)).collect();
+        for place in places {
+            let Some(cell) = self.text.get_mut(place) else { continue };
+            let name = cell.len() - cell.trim_ascii_start().len()..cell.trim_ascii_end().len();
+            let letters = cell.get_mut(name).into_iter().flatten();
+            letters.filter(|byte| matches!(byte, b' ' | b'\t' | b'#' | b'(')).for_each(|byte| *byte = b'_');
+        }
     }
 
     /// Reads a line that is not blank; the heading may stand there again, where logs were put together.
@@ -196,6 +214,7 @@ impl Columns {
             return Ok(None);
         }
         let count = self.split(line);
+        self.name_channels(count);
         // Cells at the end that hold nothing may be missing, or be more than those of the heading.
         let surplus = (self.kinds.len()..count).filter_map(|index| self.cell(index)).find(|cell| !cell.is_empty());
         if let Some(cell) = surplus {
@@ -332,6 +351,15 @@ mod tests {
     }
 
     #[test]
+    fn a_row_that_ends_before_its_channel_keeps_its_data() {
+        let mut columns = Columns::of("id,data,dlc,bus").expect("it is a heading");
+        for (row, channel) in [("1,1 2,,c 1", Some("c_1")), ("123,1 2", None)] {
+            let entry = columns.read(row).expect("it is readable").expect("it has a frame");
+            assert_eq!((entry.channel, hexadecimal(&entry.frame.data).as_str()), (channel, "0102"), "{row}");
+        }
+    }
+
+    #[test]
     fn headings_say_what_the_columns_hold() {
         let savvy = "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8";
         let logs = [
@@ -354,6 +382,8 @@ mod tests {
             ("ts,id_dec,data", "2023-11-14T23:13:20.5+01:00,2047,11", "1700000000.5", "", "7FF", "11"),
             ("id_dec,ext,data", "2047,1,11", "", "", "000007FF", "11"),
             ("id_hex,data", "1025,11", "", "", "00001025", "11"),
+            ("bus,id,data", " CAN 1 ,123,11 22", "", "CAN_1", "123", "1122"),
+            ("id,data,bus", "123,11 22,\"(CAN#\t1)\"", "", "_CAN__1)", "123", "1122"),
         ];
         for (heading, line, time, channel, id, data) in logs {
             let expected = (format!("{time} {channel}"), Form::Data, id.to_owned(), data.to_owned(), 0);

@@ -166,7 +166,8 @@ pub fn channel(name: &str) -> Result<&str, String> {
     let is_usual = name.bytes().all(|byte| byte.is_ascii_alphanumeric());
     let plain = |letter: char| !letter.is_whitespace() && forbidden(letter).is_none() && letter != '#';
     if name.is_empty() || name.starts_with('(') || !(is_usual || name.chars().all(plain)) {
-        return Err(format!("the channel {} is no name", quoted(name)));
+        let rule = "a name has no blanks, no `#` and nothing invisible, and does not begin with `(`";
+        return Err(format!("the channel {} is no name; {rule}", quoted(name)));
     }
     short("channel", name, LONGEST_NAME)?;
     Ok(name)
