@@ -63,9 +63,7 @@ impl Settings {
     ///
     /// Where the file cannot be read, or says something else.
     pub fn find() -> Result<Self, Failure> {
-        let value = env::var(VARIABLE).unwrap_or_default();
-        let names = value.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned);
-        let protocols: Vec<String> = names.collect();
+        let protocols = parted(&[env::var(VARIABLE).unwrap_or_default()]);
         if !protocols.is_empty() {
             return Ok(Self { protocols, origin: Some(VARIABLE.to_owned()), ..Self::default() });
         }
@@ -90,7 +88,7 @@ impl Settings {
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let specs = OneOrMany::names(spec).into_iter().map(|spec| folder.join(spec)).collect();
-        Ok(Self { protocols: OneOrMany::names(protocol), specs, model, origin: Some(shown(path)) })
+        Ok(Self { protocols: parted(&OneOrMany::names(protocol)), specs, model, origin: Some(shown(path)) })
     }
 
     /// Makes the failure of a wrong name, which says where the name stands.
@@ -98,6 +96,12 @@ impl Settings {
         let origin = self.origin.as_ref().map_or(String::new(), |origin| format!("{origin}: "));
         Failure::Call(format!("{origin}{why}"))
     }
+}
+
+/// Parts names with commas between them.
+fn parted(texts: &[String]) -> Vec<String> {
+    let names = texts.iter().flat_map(|text| text.split(',')).map(str::trim);
+    names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
 }
 
 /// Tests whether a value in a line of the file begins with a letter or a digit, as no text does.

@@ -76,6 +76,8 @@ fn the_nearest_file_names_protocols_for_the_folders_below_it() {
     fs::write(folder.path().join("logs/canspec.toml"), "protocol = [\"mxr\"]\n").expect("the folder can be written");
     assert_eq!(protocol(&below, None, &[]), "mxr");
     assert_eq!(protocol(folder.path(), None, &[]), "infy");
+    fs::write(folder.path().join("canspec.toml"), "protocol = \"trio, infy\"\n").expect("the folder can be written");
+    assert_eq!(protocol(folder.path(), None, &[]), "infy");
 }
 
 #[test]
