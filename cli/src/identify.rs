@@ -22,7 +22,8 @@ use crate::protocols;
 ///
 /// Tries each built-in protocol and each given spec on every frame. The one that recognises most frames without a
 /// contradiction stands first. Protocols with the same numbers fit equally well. A contradiction is a note, such as
-/// a value outside its range or a reserved bit.
+/// a value outside its range or a reserved bit. ALONE counts the frames that no other protocol recognises. A
+/// protocol without such frames shares all of them with others, and need not be on the bus.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec identify --spec my.yaml --channel can1 bus.log")]
 pub struct Identify {
@@ -54,6 +55,7 @@ struct Candidate {
     recognised: u64,
     share: f64,
     contradicted: u64,
+    alone: u64,
 }
 
 impl Identify {
@@ -65,8 +67,9 @@ impl Identify {
             let entry = reader.read(line.text?)?;
             if let Some(entry) = entry.filter(|entry| self.channels.keep(entry.channel, &mut others)) {
                 frames += 1;
-                for candidate in &mut candidates {
-                    candidate.try_on(&entry.frame);
+                let fitting = candidates.iter_mut().filter_map(|candidate| candidate.try_on(&entry.frame));
+                if let [only] = &mut fitting.collect::<Vec<_>>()[..] {
+                    only.alone += 1;
                 }
             }
             Ok(Ok(()))
@@ -96,7 +99,12 @@ impl Identify {
         match self.format {
             Format::Text => {
                 let rows: Vec<Row> = candidates.iter().map(Candidate::row).collect();
-                columns::write(&mut out, &["PROTOCOL", "RECOGNISED", "SHARE", "CONTRADICTED"], "TITLE", &rows)?;
+                columns::write(
+                    &mut out,
+                    &["PROTOCOL", "RECOGNISED", "SHARE", "CONTRADICTED", "ALONE"],
+                    "TITLE",
+                    &rows,
+                )?;
                 let best = candidates.chunk_by(|one, next| one.fit() == next.fit()).next().unwrap_or_default();
                 if best.len() > 1 {
                     let names: Vec<_> = best.iter().map(|candidate| candidate.name.as_str()).collect();
@@ -116,13 +124,15 @@ impl Identify {
 
 impl Candidate {
     fn new(protocol: Protocol) -> Self {
-        Self { name: protocol.name.clone(), protocol, recognised: 0, share: 0.0, contradicted: 0 }
+        Self { name: protocol.name.clone(), protocol, recognised: 0, share: 0.0, contradicted: 0, alone: 0 }
     }
 
-    fn try_on(&mut self, frame: &Frame) {
-        let Ok(decoded) = decode(&self.protocol, None, frame) else { return };
+    /// Counts a frame, and returns itself if it recognises the frame.
+    fn try_on(&mut self, frame: &Frame) -> Option<&mut Self> {
+        let decoded = decode(&self.protocol, None, frame).ok()?;
         self.recognised += 1;
         self.contradicted += u64::from(decoded.notes.iter().any(|note| contradicts(note.rule)));
+        Some(self)
     }
 
     /// Returns the frames without a contradiction, then all that are recognised.
@@ -132,7 +142,8 @@ impl Candidate {
 
     fn row(&self) -> Row {
         let share = format!("{:.1} %", self.share * 100.0);
-        let cells = vec![self.name.clone(), self.recognised.to_string(), share, self.contradicted.to_string()];
+        let counts = [self.contradicted, self.alone].map(|count| count.to_string());
+        let cells = [&[self.name.clone(), self.recognised.to_string(), share][..], &counts].concat();
         Row { cells, last: vec![self.protocol.title.for_people().to_owned()], separator: "" }
     }
 }

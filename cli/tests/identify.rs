@@ -27,3 +27,24 @@ fn each_session_is_known_by_its_own_protocol() {
     }
     assert_eq!(count, 6);
 }
+
+#[test]
+fn frames_that_two_protocols_share_count_as_alone_for_neither() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/logs");
+    let session = |name: &str| fs::read(folder.join(format!("{name}-session.log"))).expect("the log can be read");
+    let joined = tempfile::tempdir().expect("there is a folder for temporary files");
+    let log = joined.path().join("bus.log");
+    fs::write(&log, ["infy", "mxr", "megmeet"].map(session).concat()).expect("the folder can be written");
+    let mut canspec = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    let output = canspec.args(["identify", "--format", "jsonl"]).arg(&log).output().expect("it starts");
+    let text = String::from_utf8(output.stdout).expect("JSON is text");
+    let counts = |name: &str| {
+        let objects = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("it is JSON"));
+        let object = objects.into_iter().find(|object| object["protocol"] == name).expect("it recognises frames");
+        ["recognised", "alone"].map(|member| object[member].as_u64().expect("a number"))
+    };
+    let ([infy, infy_alone], [gcp, gcp_alone], [mxr, mxr_alone]) = (counts("infy"), counts("gcp"), counts("mxr"));
+    // GCP is INFY's protocol with other commands, and no frame of the log is one of those.
+    assert_eq!((infy_alone, gcp_alone, mxr_alone), (infy - gcp, 0, mxr));
+    assert!(infy_alone > 0 && gcp > 0 && mxr > 0, "{text}");
+}

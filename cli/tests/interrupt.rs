@@ -38,6 +38,6 @@ fn a_summary_shows_the_whole_lines_so_far() {
 fn identify_shows_the_protocols_so_far() {
     let (status, shown) = interrupted(&["identify", "--format", "jsonl", "-"]);
     assert_eq!(status, Some(1), "the third line is unreadable");
-    let expected = r#"{"protocol":"infy","recognised":2,"share":1.0,"contradicted":0}"#;
+    let expected = r#"{"protocol":"infy","recognised":2,"share":1.0,"contradicted":0,"alone":0}"#;
     assert!(shown.lines().any(|line| line == expected), "{shown}");
 }
