@@ -22,8 +22,18 @@ pub struct Summary {
     /// By rule.
     notes: BTreeMap<&'static str, Seen>,
     /// By identifier and problem.
-    unrecognised: BTreeMap<(String, &'static str), Seen>,
+    unrecognised: BTreeMap<(String, &'static str), (Seen, Reasons)>,
 }
+
+/// The first reasons, each once: by them registers with one identifier can be told apart.
+#[derive(Clone, Default)]
+struct Reasons {
+    texts: Vec<String>,
+    has_more: bool,
+}
+
+/// A count lists no more reasons.
+const MOST_REASONS: usize = 5;
 
 /// The first and the last time, as written and as numbers.
 #[derive(Clone)]
@@ -68,6 +78,7 @@ enum Object<'a> {
         problem: &'a str,
         frames: u64,
         line: usize,
+        reasons: &'a [String],
     },
 }
 
@@ -78,9 +89,12 @@ impl Summary {
         self.see(outcome.time);
         match outcome.decoded {
             Ok(decoded) => self.recognise(outcome, decoded),
-            Err(Unrecognised { problem, .. }) => {
+            Err(Unrecognised { problem, text, .. }) => {
                 let key = (log::identifier_text(outcome.frame), problem.name());
-                Seen::count(self.unrecognised.entry(key), outcome.line);
+                let (seen, reasons) =
+                    self.unrecognised.entry(key).or_insert((Seen::first(outcome.line), Reasons::default()));
+                seen.frames += 1;
+                reasons.add(text);
             }
         }
     }
@@ -95,7 +109,7 @@ impl Summary {
         rules.sort_unstable();
         rules.dedup();
         for rule in rules {
-            Seen::count(self.notes.entry(rule), outcome.line);
+            self.notes.entry(rule).or_insert(Seen::first(outcome.line)).frames += 1;
         }
     }
 
@@ -130,10 +144,11 @@ impl Summary {
     }
 
     /// Returns unrecognised frames, the most frequent ones first.
-    fn unrecognised(&self) -> Vec<(&str, &'static str, &Seen)> {
+    fn unrecognised(&self) -> Vec<(&str, &'static str, &Seen, &Reasons)> {
+        let counts = self.unrecognised.iter();
         let mut unrecognised: Vec<_> =
-            self.unrecognised.iter().map(|((id, problem), seen)| (id.as_str(), *problem, seen)).collect();
-        unrecognised.sort_by_key(|(.., seen)| std::cmp::Reverse(seen.frames));
+            counts.map(|((id, problem), (seen, reasons))| (id.as_str(), *problem, seen, reasons)).collect();
+        unrecognised.sort_by_key(|(_, _, seen, _)| std::cmp::Reverse(seen.frames));
         unrecognised
     }
 
@@ -158,8 +173,8 @@ impl Summary {
         });
         let notes =
             self.notes.iter().map(|(rule, Seen { frames, line })| Object::Note { rule, frames: *frames, line: *line });
-        let unrecognised = self.unrecognised().into_iter().map(|(id, problem, Seen { frames, line })| {
-            Object::Unrecognised { id, problem, frames: *frames, line: *line }
+        let unrecognised = self.unrecognised().into_iter().map(|(id, problem, Seen { frames, line }, reasons)| {
+            Object::Unrecognised { id, problem, frames: *frames, line: *line, reasons: &reasons.texts }
         });
         for object in [log].into_iter().chain(messages).chain(notes).chain(unrecognised) {
             serde_json::to_writer(&mut *out, &object)?;
@@ -185,10 +200,12 @@ impl Summary {
         let notes =
             notes.map(|(rule, seen)| row(vec![(*rule).to_owned(), seen.frames.to_string()], seen.line.to_string()));
         table(out, &["NOTE", "FRAMES"], "FIRST LINE", &notes.collect::<Vec<_>>())?;
-        let unrecognised = self.unrecognised().into_iter().map(|(id, problem, seen)| {
-            row(vec![id.to_owned(), problem.to_owned(), seen.frames.to_string()], seen.line.to_string())
+        let unrecognised = self.unrecognised().into_iter().map(|(id, problem, seen, reasons)| {
+            let cells = vec![id.to_owned(), problem.to_owned(), seen.frames.to_string(), seen.line.to_string()];
+            Row { cells, last: reasons.words(), separator: " " }
         });
-        table(out, &["UNRECOGNISED", "PROBLEM", "FRAMES"], "FIRST LINE", &unrecognised.collect::<Vec<_>>())
+        let headings = ["UNRECOGNISED", "PROBLEM", "FRAMES", "FIRST LINE"];
+        table(out, &headings, "REASONS", &unrecognised.collect::<Vec<_>>())
     }
 
     /// Says how many frames there are, in which time.
@@ -220,7 +237,28 @@ fn table(out: &mut impl Write, headings: &[&str], last: &str, rows: &[Row]) -> i
 }
 
 impl Seen {
-    fn count<K: Ord>(entry: std::collections::btree_map::Entry<'_, K, Self>, line: usize) {
-        entry.or_insert(Self { frames: 0, line }).frames += 1;
+    /// Begins to count with the frame in this line.
+    fn first(line: usize) -> Self {
+        Self { frames: 0, line }
+    }
+}
+
+impl Reasons {
+    fn add(&mut self, text: &str) {
+        if self.texts.iter().any(|known| known == text) {
+            return;
+        }
+        if self.texts.len() < MOST_REASONS {
+            self.texts.push(text.to_owned());
+        } else {
+            self.has_more = true;
+        }
+    }
+
+    /// Returns the words of all reasons.
+    fn words(&self) -> Vec<String> {
+        let more = if self.has_more { "; ..." } else { "" };
+        let text = self.texts.join("; ") + more;
+        text.split(' ').map(str::to_owned).collect()
     }
 }
