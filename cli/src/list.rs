@@ -17,6 +17,9 @@ use crate::output::output;
 use crate::protocols;
 use crate::severity::Severity;
 
+/// The signal of a message that has only a value.
+const VALUE: &str = "value";
+
 /// List the built-in protocols, or the messages of one.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec list --protocol NAME")]
@@ -79,6 +82,9 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
         rows.extend(signals.map(|signal| signal_row(protocol, selectors.len(), message, signal)));
     }
     columns::write(out, &headings, "MEANING", &rows)?;
+    if protocol.messages.iter().any(|message| value(message).is_some()) {
+        writeln!(out, "\nA message without signals below it has at most one, called `{VALUE}`.")?;
+    }
     models(out, protocol)
 }
 
@@ -167,7 +173,7 @@ fn members(protocol: &Protocol, message: &Message) -> Vec<String> {
 
 /// Returns the signal of a message that has only a value, like a register.
 fn value(message: &Message) -> Option<&Signal> {
-    message.signals.first().filter(|signal| message.signals.len() == 1 && signal.name == "value")
+    message.signals.first().filter(|signal| message.signals.len() == 1 && signal.name == VALUE)
 }
 
 fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: &Signal) -> Row {

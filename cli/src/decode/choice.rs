@@ -45,6 +45,9 @@ impl Choice {
         for name in &self.signal {
             let is_known = signals().any(|known| known == name);
             is_known.then_some(()).ok_or_else(|| {
+                if messages().any(|(protocol, message)| is_called(protocol, message, name)) {
+                    return message_instead(name);
+                }
                 let both = messages().find_map(|(protocol, message)| parted(protocol, message, name));
                 both.map_or_else(|| unknown("signal", name, signals()), |both| joined(name, both))
             })?;
@@ -108,6 +111,11 @@ fn parted<'n>(protocol: &Protocol, message: &Message, name: &'n str) -> Option<(
 /// Refuses `MESSAGE.SIGNAL`.
 fn joined(name: &str, (message, signal): (&str, &str)) -> Failure {
     Failure::Call(format!("unknown signal `{name}`; write `--message {message} --signal {signal}`"))
+}
+
+/// Refuses the name of a message in place of that of a signal.
+fn message_instead(name: &str) -> Failure {
+    Failure::Call(format!("unknown signal `{name}`; it is a message, so write `--message {name}`"))
 }
 
 fn unknown<'n>(what: &str, name: &str, known: impl IntoIterator<Item = &'n str>) -> Failure {
