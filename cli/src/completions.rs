@@ -20,8 +20,11 @@ pub struct Completions {
 }
 
 const EXAMPLES: &str = "Examples:
+  mkdir -p ~/.local/share/bash-completion/completions
   canspec completions bash > ~/.local/share/bash-completion/completions/canspec
+  mkdir -p ~/.zfunc
   canspec completions zsh > ~/.zfunc/_canspec
+  mkdir -p ~/.config/fish/completions
   canspec completions fish > ~/.config/fish/completions/canspec.fish";
 
 impl Completions {
