@@ -1,5 +1,7 @@
 //! `canspec list`.
 
+mod timing;
+
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
@@ -85,7 +87,8 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     if protocol.messages.iter().any(|message| value(message).is_some()) {
         writeln!(out, "\nA message without signals below it has at most one, called `{VALUE}`.")?;
     }
-    models(out, protocol)
+    models(out, protocol)?;
+    timing::write(out, protocol)
 }
 
 /// Writes a table of the device models, if there are any.

@@ -1,0 +1,50 @@
+//! Tables of what a program must do in time and in order.
+
+use std::io::{self, Write};
+
+use canspec_codegen::model::{Procedure, Protocol, Quantity, Timing};
+use canspec_codegen::text::Text;
+
+use super::{split, title, words};
+use crate::columns::{self, Row};
+
+/// Writes a table of the times and one of the procedures, if there are any.
+pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
+    table(out, &["TIMING", "TIME", "MINIMUM", "SECTION"], protocol.timing.iter().map(timing).collect())?;
+    table(out, &["PROCEDURE", "SECTION"], protocol.procedures.iter().flat_map(procedure).collect())
+}
+
+fn table(out: &mut impl Write, headings: &[&str], rows: Vec<Row>) -> io::Result<()> {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    columns::write(out, headings, "MEANING", &rows)
+}
+
+fn timing(timing: &Timing) -> Row {
+    let Timing { name, doc, range, unit, minimum, .. } = timing;
+    let time = if range.minimum == range.maximum {
+        range.minimum.to_string()
+    } else {
+        format!("{}..{}", range.minimum, range.maximum)
+    };
+    let minimum = minimum.map_or(String::new(), |Quantity { value, unit, .. }| {
+        format!("{value}{}", unit.map_or(String::new(), |unit| format!(" {}", unit.symbol)))
+    });
+    let cells = vec![name.clone(), format!("{time} {}", unit.symbol), minimum, words(doc.section.as_ref())];
+    let meaning: Vec<_> = [title(doc), doc.note.as_ref().map(Text::for_people)].into_iter().flatten().collect();
+    Row { cells, last: split(&meaning.join("; ")), separator: " " }
+}
+
+/// Returns a row for a procedure, and one for each of its steps.
+fn procedure(procedure: &Procedure) -> impl Iterator<Item = Row> {
+    let head = vec![procedure.name.clone(), words(procedure.doc.section.as_ref())];
+    let head = Row { cells: head, last: split(title(&procedure.doc).unwrap_or_default()), separator: " " };
+    let steps = procedure.steps.iter().zip(1..).map(|(step, number): (_, usize)| Row {
+        cells: vec![format!("  {number}"), String::new()],
+        last: split(step.for_people()),
+        separator: " ",
+    });
+    std::iter::once(head).chain(steps)
+}
