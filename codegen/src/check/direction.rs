@@ -1,7 +1,9 @@
 #![doc = include_str!("../rules/direction.md")]
 
+use std::collections::{BTreeSet, HashSet};
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{AddressPattern, IdentifierField, Mode, Protocol, exclude};
+use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Mode, ModeId, Protocol, Who, exclude};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
 
@@ -10,132 +12,259 @@ rules! {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let pairs = protocol
-        .recognition
-        .to_module
-        .any
-        .iter()
-        .flat_map(|one| protocol.recognition.to_controller.any.iter().map(move |other| (one, other)));
-    for (one, other) in pairs {
-        if !exclude(one, other) {
-            report(protocol, diagnostics);
-            return;
-        }
+    let (to_module, to_controller) = (&protocol.recognition.to_module, &protocol.recognition.to_controller);
+    let is_told = |tests: &Vec<_>| to_controller.any.iter().all(|others| exclude(tests, others));
+    if !to_module.any.iter().all(is_told) {
+        report(protocol, diagnostics);
     }
 }
 
-/// Names the patterns without the constant that shows the direction of the others. If there is no
-/// such constant, it names all patterns.
+/// Names the requests and replies that look alike, each with its own way out. A pattern is named
+/// once, as one change may tell it from all others.
 fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    let text = "nothing in the identifier tells a request from a reply";
-    let patterns = patterns(protocol);
-    let fields = protocol.identifier.fields.iter();
-    let nearly = fields.filter(|field| tells(&patterns, field.mask()));
-    let lacking = |field: &&IdentifierField| patterns.iter().filter(|known| !known.has(field.mask())).count();
-    let Some(field) = nearly.min_by_key(lacking) else {
-        return report_alike(protocol, &patterns, diagnostics);
-    };
-    for known in patterns.iter().filter(|known| !known.has(field.mask())) {
-        let text = format!("{text}: `{}` of `{}` has no constant in `{}`", known.key, known.mode.name, field.name);
-        let help = format!("give `{}` a constant here, as the other patterns have", field.name);
-        let at = known.mode.doc.path.key(known.key).at_key();
-        diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(help));
+    let (requests, replies): (Vec<_>, Vec<_>) = patterns(protocol).partition(Known::is_request);
+    let pairs = || requests.iter().flat_map(|request| replies.iter().map(move |reply| Pair { request, reply }));
+    let fitting = pairs().filter_map(|pair| Some((pair, Some(pair.common(protocol, tolerates)?))));
+    let mut alike: Vec<_> = fitting.collect();
+    if alike.is_empty() {
+        let close = pairs().filter(|pair| pair.common(protocol, |address, _| !is_strict(protocol, address)).is_some());
+        alike = close.map(|pair| (pair, None)).collect();
     }
-}
-
-/// Shows where requests and replies have the same constant, or asks for something that tells them
-/// apart.
-fn report_alike(protocol: &Protocol, patterns: &[Known], diagnostics: &mut Diagnostics) {
-    let (requests, replies): (Vec<_>, Vec<_>) = patterns.iter().partition(|known| known.key == "request");
-    let mut pairs = requests.iter().flat_map(|one| replies.iter().map(move |other| (*one, *other)));
-    let common = pairs.find_map(|(one, other)| {
-        let has = |field: &&IdentifierField| one.has(field.mask()) && other.has(field.mask());
-        let mut fields = protocol.identifier.fields.iter().filter(has);
-        let is_same = |field: &IdentifierField| (one.pattern.value ^ other.pattern.value) & field.mask() == 0;
-        let has_own = other.pattern.mask & !one.pattern.mask != 0;
-        let first = fields.next().filter(|field| !has_own && is_same(field) && fields.all(is_same))?;
-        Some((one, other, first))
-    });
-    let Some((request, reply, field)) = common else {
-        let text = "nothing in the identifier tells a request from a reply";
+    if alike.is_empty() {
         let at = Path::default().key("addressing").at_key();
-        let diagnostic = Diagnostic::error(&DIRECTION, at, text);
-        return diagnostics.push(diagnostic.help(way_out(protocol, &requests, &replies)));
-    };
-    let (name, value) = (&field.name, field.get(request.pattern.value));
-    let text = format!("a request and a reply look alike: both have {value} in `{name}`");
-    let place = |known: &Known| known.mode.doc.path.key(known.key).key(name).at_value();
-    let diagnostic = Diagnostic::error(&DIRECTION, place(reply), text).other(place(request), "the request");
-    diagnostics.push(diagnostic.help(between(protocol, request.pattern, reply.pattern)));
-}
-
-/// Says what could tell a request from a reply with the same constant. It may be a number that is no
-/// address of the reply.
-fn between(protocol: &Protocol, request: &AddressPattern, reply: &AddressPattern) -> String {
-    let told = reply.addresses.iter().find_map(|address| {
-        let (field, address_type) = (&protocol[address.field], &protocol[address.address_type]);
-        let value = field.get(request.value);
-        let is_other = request.mask & field.mask() != 0 && !address_type.documents(value);
-        is_other.then_some((field, value, &address_type.name))
-    });
-    match told {
-        Some((field, value, name)) => {
-            let name_of_field = &field.name;
-            format!(
-                "write `outside: refused` in the type `{name}`: then {value:#04X} in `{name_of_field}` is a request"
-            )
-        }
-        None => {
-            "give one of the two another constant; if modules send both, write the request as a `report`".to_owned()
+        let text = "nothing in the identifier tells a request from a reply";
+        diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(ELSE));
+    }
+    let (mut given, mut named) = (HashSet::new(), HashSet::new());
+    for (pair, identifier) in alike {
+        let help = pair.way_out(protocol);
+        let paths = [pair.request.path(), pair.reply.path()];
+        if !paths.iter().any(|path| named.contains(path)) && given.insert(help.clone()) {
+            named.extend(paths);
+            diagnostics.push(pair.report(protocol, identifier).help(help));
         }
     }
 }
 
-/// Says what could tell the direction. A constant that replies alone have may be a controller's address.
-fn way_out(protocol: &Protocol, requests: &[&Known], replies: &[&Known]) -> String {
-    let is_own = |field: &&IdentifierField| requests.iter().all(|request| !request.has(field.mask()));
-    let controller = replies.iter().find_map(|reply| {
-        let mut fields = protocol.identifier.fields.iter().filter(|field| reply.has(field.mask()));
-        Some(fields.find(is_own)?.get(reply.pattern.value))
-    });
-    let refusing = match controller {
-        Some(address) => {
-            let written = format!("{{range: {address:#04X}..{address:#04X}, outside: refused, send: {address:#04X}}}");
-            format!("If no module has the address {address:#04X}, put the name of a type there: `{written}`")
-        }
-        None => "If no module has a controller's address, write `outside: refused` in the controller's type".to_owned(),
-    };
-    format!("give one field different constants in requests and replies. {refusing}")
+/// What always tells the direction.
+const ELSE: &str = "give one of the two another constant; if modules send both, write the request as a `report`";
+
+/// Tests whether an address of the pattern may have a number that the document does not name.
+fn tolerates(address: &Address, raw: u32) -> bool {
+    !address.excluded.iter().any(|(first, last)| (*first..=*last).contains(&raw))
+}
+
+fn is_strict(protocol: &Protocol, address: &Address) -> bool {
+    protocol[address.address_type].strict
 }
 
 /// A pattern of an addressing mode, and its key.
 struct Known<'a> {
+    id: ModeId,
     mode: &'a Mode,
     key: &'static str,
+    who: Who,
     pattern: &'a AddressPattern,
 }
 
+fn patterns(protocol: &Protocol) -> impl Iterator<Item = Known<'_>> {
+    protocol.modes.entries().flat_map(|(id, mode)| {
+        let Mode { request, one, each, coordinator, .. } = mode;
+        let all = [
+            ("request", Who::Nobody, request),
+            ("one", Who::One, one),
+            ("each", Who::Each, each),
+            ("coordinator", Who::Coordinator, coordinator),
+        ];
+        all.into_iter()
+            .filter_map(move |(key, who, pattern)| Some(Known { id, mode, key, who, pattern: pattern.as_ref()? }))
+    })
+}
+
 impl Known<'_> {
-    /// Tests whether the pattern has a constant in a field.
-    fn has(&self, field: u32) -> bool {
-        self.pattern.mask & field != 0
+    fn is_request(&self) -> bool {
+        self.key == "request"
+    }
+
+    fn path(&self) -> Path {
+        self.mode.doc.path.key(self.key)
+    }
+
+    fn constant(&self, protocol: &Protocol, field: FieldId) -> Option<u32> {
+        let field = &protocol[field];
+        (self.pattern.mask & field.mask() != 0).then(|| field.get(self.pattern.value))
+    }
+
+    fn address(&self, field: FieldId) -> Option<&Address> {
+        self.pattern.addresses.iter().find(|address| address.field == field)
+    }
+
+    fn says_nothing(&self, protocol: &Protocol, field: FieldId) -> bool {
+        self.constant(protocol, field).is_none() && self.address(field).is_none()
+    }
+
+    fn allows(&self, protocol: &Protocol, field: FieldId, raw: u32, tolerates: impl Fn(&Address, u32) -> bool) -> bool {
+        let is_address = |address: &Address| {
+            let known = &protocol[address.address_type];
+            known.documents(raw) || !known.strict && tolerates(address, raw)
+        };
+        self.constant(protocol, field).is_none_or(|value| value == raw) && self.address(field).is_none_or(is_address)
+    }
+
+    /// Returns numbers that show what the pattern says of a field.
+    fn samples(&self, protocol: &Protocol, field: FieldId) -> impl Iterator<Item = u32> {
+        let documented = self.address(field).map(|address| protocol[address.address_type].raw_range().0);
+        self.constant(protocol, field).into_iter().chain(documented)
+    }
+
+    /// Returns what frames of the pattern have in a field.
+    fn used(&self, protocol: &Protocol, field: FieldId) -> BTreeSet<u32> {
+        let travels = |frame: &&FrameLayout| {
+            let is_its_kind = frame.kind.is_to_module() == self.is_request();
+            let is_its_way = |mode, who| mode == self.id && (self.is_request() || who == self.who);
+            is_its_kind && frame.travels.iter().any(|travel| is_its_way(travel.mode, travel.who))
+        };
+        let constants = protocol.frames.iter().filter(travels).flat_map(FrameLayout::identifier);
+        constants.filter_map(|(id, value)| (id == field).then_some(value)).collect()
     }
 }
 
-fn patterns(protocol: &Protocol) -> Vec<Known<'_>> {
-    protocol.modes.iter().flat_map(patterns_of).collect()
+/// A request and a reply.
+#[derive(Clone, Copy)]
+struct Pair<'a> {
+    request: &'a Known<'a>,
+    reply: &'a Known<'a>,
 }
 
-fn patterns_of(mode: &Mode) -> impl Iterator<Item = Known<'_>> {
-    let Mode { request, one, each, coordinator, .. } = mode;
-    let keys = [("request", request), ("one", one), ("each", each), ("coordinator", coordinator)];
-    keys.into_iter().filter_map(move |(key, pattern)| Some(Known { mode, key, pattern: pattern.as_ref()? }))
-}
+impl Pair<'_> {
+    /// Returns an identifier that fits both.
+    fn common(&self, protocol: &Protocol, tolerates: impl Fn(&Address, u32) -> bool) -> Option<u32> {
+        let Self { request, reply } = self;
+        let mut fields = protocol.identifier.fields.entries();
+        fields.try_fold(protocol.identifier.value, |identifier, (id, field)| {
+            let sampled = request.samples(protocol, id).chain(reply.samples(protocol, id));
+            let mut values = sampled.chain([field.sent()]);
+            let fits = |known: &Known, raw| known.allows(protocol, id, raw, &tolerates);
+            Some(field.put(identifier, values.find(|raw| fits(request, *raw) && fits(reply, *raw))?))
+        })
+    }
 
-/// Tests whether the constants of requests in the field differ from those of replies.
-fn tells(patterns: &[Known], field: u32) -> bool {
-    let having = patterns.iter().filter(|known| known.has(field));
-    let (requests, replies): (Vec<_>, Vec<_>) = having.partition(|known| known.key == "request");
-    let pairs = || requests.iter().flat_map(|one| replies.iter().map(move |other| (one.pattern, other.pattern)));
-    pairs().next().is_some() && pairs().all(|(one, other)| (one.value ^ other.value) & field != 0)
+    fn report(&self, protocol: &Protocol, identifier: Option<u32>) -> Diagnostic {
+        let name = |known: &Known| format!("`{}` of `{}`", known.key, known.mode.name);
+        let (request, reply) = (name(self.request), name(self.reply));
+        let text = match identifier {
+            Some(identifier) => {
+                let digits = if protocol.identifier.extended { 8 } else { 3 };
+                format!(
+                    "a request and a reply look alike: the identifier {identifier:0digits$X} fits {request} and {reply}"
+                )
+            }
+            None => format!("nothing in the identifier tells {request} from {reply}"),
+        };
+        let diagnostic = Diagnostic::error(&DIRECTION, self.reply.path().at_key(), text);
+        diagnostic.other(self.request.path().at_key(), "the request")
+    }
+
+    /// Says what could tell the two apart. What the accesses hold comes first, then addresses, which
+    /// one may refuse.
+    fn way_out(&self, protocol: &Protocol) -> String {
+        let each = |way: fn(&Self, &Protocol, FieldId) -> Option<String>| {
+            protocol.identifier.fields.ids().find_map(|field| way(self, protocol, field))
+        };
+        let ways =
+            [Self::by_access, Self::by_controller, Self::by_module, Self::by_constant, Self::by_type, Self::by_other];
+        ways.into_iter().find_map(each).unwrap_or_else(|| ELSE.to_owned())
+    }
+
+    /// Returns the pattern that says nothing of a field, and the other one.
+    fn lacking(&self, protocol: &Protocol, field: FieldId) -> Option<(&Known<'_>, &Known<'_>)> {
+        let pairs = [(self.request, self.reply), (self.reply, self.request)];
+        let is_fixed = |known: &Known| {
+            let is_strict = |address| is_strict(protocol, address);
+            known.constant(protocol, field).is_some() || known.address(field).is_some_and(is_strict)
+        };
+        pairs.into_iter().find(|(one, other)| one.says_nothing(protocol, field) && is_fixed(other))
+    }
+
+    /// The accesses of one have constants that the other cannot have.
+    fn by_access(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
+        let (lacking, other) = self.lacking(protocol, field)?;
+        let used = lacking.used(protocol, field);
+        if used.iter().any(|value| other.allows(protocol, field, *value, tolerates)) {
+            return None;
+        }
+        let (key, mode, name) = (lacking.key, &lacking.mode.name, &protocol[field].name);
+        let values: Vec<_> = used.iter().map(|value| format!("{value:#04X}")).collect();
+        match &values[..] {
+            [] => None,
+            [value] => Some(format!("write `{name}: {value}` in `{key}` of `{mode}`, as its accesses have it")),
+            [first, ..] => Some(format!(
+                "the accesses of `{mode}` have {} in `{name}`: write one such mode for each, \
+                 with its constant in `{key}`, as in `{name}: {first}`",
+                values.join(" or ")
+            )),
+        }
+    }
+
+    /// A constant of the reply may be the address of a controller.
+    fn by_controller(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
+        let address = self.reply.constant(protocol, field)?;
+        if protocol[self.request.address(field)?.address_type].documents(address) {
+            return None;
+        }
+        let written = format!("{{range: {address:#04X}..{address:#04X}, outside: refused, send: {address:#04X}}}");
+        Some(format!(
+            "give one field different constants in requests and replies. \
+             If no module has the address {address:#04X}, put the name of a type there: `{written}`"
+        ))
+    }
+
+    /// A constant of the request may be no address of a module.
+    fn by_module(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
+        let value = self.request.constant(protocol, field)?;
+        let known = &protocol[self.reply.address(field)?.address_type];
+        let (name, name_of_field) = (&known.name, &protocol[field].name);
+        (!known.documents(value)).then(|| {
+            format!(
+                "write `outside: refused` in the type `{name}`: then {value:#04X} in `{name_of_field}` is a request"
+            )
+        })
+    }
+
+    /// One lacks a constant, and its accesses do not say which.
+    fn by_constant(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
+        let (lacking, other) = self.lacking(protocol, field)?;
+        if !lacking.used(protocol, field).is_empty() {
+            return None;
+        }
+        let (key, mode, name) = (lacking.key, &lacking.mode.name, &protocol[field].name);
+        let taken = match other.constant(protocol, field) {
+            Some(value) => format!("other than {value:#04X}"),
+            None => format!("that `{}` of `{}` cannot have", other.key, other.mode.name),
+        };
+        Some(format!("in `{key}` of `{mode}`, give `{name}` a constant {taken}"))
+    }
+
+    /// Both have addresses, of types that share no number.
+    fn by_type(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
+        let of = |known: &Known| Some(&protocol[known.address(field)?.address_type]);
+        let (asked, answered) = (of(self.request)?, of(self.reply)?);
+        let ((first, last), (start, end)) = (asked.raw_range(), answered.raw_range());
+        (last < start || end < first).then(|| {
+            format!(
+                "give one field different constants in requests and replies. \
+                 If no `{}` has a number of `{}`, write `outside: refused` in the type `{}`",
+                asked.name, answered.name, answered.name
+            )
+        })
+    }
+
+    /// Both have the same constant.
+    fn by_other(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
+        let name = &protocol[field].name;
+        self.request.constant(protocol, field).filter(|value| self.reply.constant(protocol, field) == Some(*value))?;
+        Some(format!(
+            "give one of the two another constant, as in `{name}`; if modules send both, write the request as a `report`"
+        ))
+    }
 }
