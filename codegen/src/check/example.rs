@@ -48,7 +48,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
         others.chain([&diagnostic.at]).any(|at| matches!(at, At::Value(path) if explained.contains(path)))
     };
     for example in &protocol.examples {
-        let checked = Checker { protocol, example };
+        let checked = Checker { protocol, example, diagnostics: &*diagnostics };
         match (checked.run(), example.fails, &example.data) {
             (Err(diagnostic), _, _) if is_explained(&diagnostic) => {}
             (Err(diagnostic), _, _) => diagnostics.push(*diagnostic),
@@ -85,6 +85,7 @@ type Checked = Result<(), Box<Diagnostic>>;
 struct Checker<'a> {
     protocol: &'a Protocol,
     example: &'a Example,
+    diagnostics: &'a Diagnostics,
 }
 
 impl<'a> Checker<'a> {
@@ -167,7 +168,13 @@ impl<'a> Checker<'a> {
                 contradicted(meaning.path.at_value(), text, field)
             };
             let help = self.by_other_order(signal).or_else(|| unnamed_bits(&reading.value, &read));
-            return Err(Box::new(diagnostic.help_if(help.or_else(|| about_offset(signal).map(str::to_owned)))));
+            let Some(about_offset) = about_offset(signal).filter(|_| help.is_none()) else {
+                return Err(Box::new(diagnostic.help_if(help)));
+            };
+            return Err(Box::new(match self.possible_offset(signal, &meaning.text, reading.bits) {
+                Some((offset, at)) => diagnostic.other(at, "the offset").help(format!("{about_offset}; {offset}")),
+                None => diagnostic.help(about_offset),
+            }));
         }
         let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
         match silent {
@@ -181,6 +188,13 @@ impl<'a> Checker<'a> {
                 Err(Box::new(diagnostic.help_if(self.by_other_order(signal))))
             }
         }
+    }
+
+    /// Names the offset that explains the difference, and the place of the present one.
+    fn possible_offset(&self, signal: &Signal, text: &str, bits: u64) -> Option<(String, At)> {
+        let offset = repair::offset_of(signal, text, bits)?.fraction();
+        let at = evidence::written(signal, "offset", self.diagnostics)?;
+        Some((format!("`offset: {offset}` would explain this example"), at.at_value()))
     }
 
     fn by_other_order(&self, signal: &Signal) -> Option<String> {

@@ -105,6 +105,14 @@ pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evide
     fields
 }
 
+/// Finds the place of a key in the field of a signal, or else in one of its types.
+pub fn written(signal: &Signal, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
+    let types = Path::default().key("types");
+    let own = std::iter::once(signal.doc.path.clone());
+    let mut sources = own.chain(signal.types.iter().map(|name| types.key(name)));
+    sources.find_map(|source| Some(source.key(key)).filter(|path| diagnostics.has(path)))
+}
+
 /// A field and what the examples say about it.
 pub struct Field<'a> {
     /// The names of its message and of itself.
@@ -137,10 +145,7 @@ impl<'a> Field<'a> {
 
     /// Finds the place of a key in the field, or else in one of its types.
     pub fn written(&self, key: &str, diagnostics: &Diagnostics) -> Option<Path> {
-        let types = Path::default().key("types");
-        let own = std::iter::once(self.signal.doc.path.clone());
-        let mut sources = own.chain(self.signal.types.iter().map(|name| types.key(name)));
-        sources.find_map(|source| Some(source.key(key)).filter(|path| diagnostics.has(path)))
+        written(self.signal, key, diagnostics)
     }
 
     /// Reports that the frame sets a bit without a name in place of the one that the example names.

@@ -6,7 +6,7 @@ use canspec_runtime::plumbing::ByteOrder;
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
 use crate::encoding::Words;
-use crate::model::{Encoding, Linear, Meaning, Numeral, Protocol, Signal, Unit};
+use crate::model::{Encoding, Linear, Meaning, Protocol, Signal, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -133,7 +133,7 @@ fn with_unit(examples: &[(&Signal, &Evidence)], at: Path) -> Option<Repair> {
 fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
     let (signal, example) = examples.iter().find(|(signal, example)| signal.place.get(&example.data) != 0)?;
     let Linear { numeral, offset, .. } = signal.encoding.linear()?;
-    let (number, integer) = sides(signal, numeral, example)?;
+    let (number, integer) = sides(signal, &example.meaning.text, signal.place.get(&example.data))?;
     let scale = number.minus(offset)?.over(integer)?;
     let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
     linear(examples, "scale", scale, text, at, change)
@@ -143,16 +143,22 @@ fn with_scale(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option
 fn with_offset(examples: &[(&Signal, &Evidence)], text: &str, at: Path) -> Option<Repair> {
     let (signal, example) = examples.first()?;
     let Linear { numeral, scale, .. } = signal.encoding.linear()?;
-    let (number, integer) = sides(signal, numeral, example)?;
-    let offset = number.minus(integer.times(scale)?)?;
+    let offset = offset_of(signal, &example.meaning.text, signal.place.get(&example.data))?;
     let change = Change::Encoding(Encoding::Number { numeral, scale, offset });
     linear(examples, "offset", offset, text, at, change)
 }
 
-/// Returns the number that an example means, and the integer in its frame.
-fn sides(signal: &Signal, numeral: Numeral, example: &Evidence) -> Option<(Rational, Rational)> {
-    let number = example.meaning.text.split(' ').next().and_then(Rational::parse)?;
-    let integer = numeral.integer(signal.raw_of(signal.place.get(&example.data)))?;
+/// Returns the offset with which these bits of a frame mean a text.
+pub fn offset_of(signal: &Signal, text: &str, bits: u64) -> Option<Rational> {
+    let Linear { scale, .. } = signal.encoding.linear()?;
+    let (number, integer) = sides(signal, text, bits)?;
+    number.minus(integer.times(scale)?)
+}
+
+/// Returns the number in a text, and the integer in the bits of a frame.
+fn sides(signal: &Signal, text: &str, bits: u64) -> Option<(Rational, Rational)> {
+    let number = text.split(' ').next().and_then(Rational::parse)?;
+    let integer = signal.encoding.linear()?.numeral.integer(signal.raw_of(bits))?;
     Some((number, Rational::integer(integer)))
 }
 
