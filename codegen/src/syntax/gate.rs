@@ -62,7 +62,12 @@ struct Open {
 
 enum Entries {
     List(Vec<Node>),
-    Map { entries: IndexMap<String, Entry>, key: Option<Key> },
+    Map {
+        entries: IndexMap<String, Entry>,
+        key: Option<Key>,
+        /// Whether the entries of a later map have got into it, by a name that is indented too deep.
+        is_mixed: bool,
+    },
 }
 
 struct Key {
@@ -123,7 +128,7 @@ impl Gate<'_> {
             }
             Event::MappingStart(anchor, tag) => {
                 self.refuse_properties(anchor, tag.is_some(), &span);
-                self.open(span, Entries::Map { entries: IndexMap::new(), key: None })?;
+                self.open(span, Entries::Map { entries: IndexMap::new(), key: None, is_mixed: false })?;
             }
             Event::SequenceEnd | Event::MappingEnd => self.close(span)?,
             Event::Nothing | Event::StreamStart | Event::StreamEnd | Event::DocumentStart(_) | Event::DocumentEnd => {}
@@ -141,7 +146,7 @@ impl Gate<'_> {
         self.put(node)
     }
 
-    fn problem_of_text(&self, node: &Node, style: ScalarStyle, is_key: bool) -> Option<Diagnostic> {
+    fn problem_of_text(&mut self, node: &Node, style: ScalarStyle, is_key: bool) -> Option<Diagnostic> {
         let Content::Text(text) = &node.content else { return None };
         if self.open.is_empty() {
             return None;
@@ -166,7 +171,11 @@ impl Gate<'_> {
         })
     }
 
-    fn problem_of_nothing(&self, span: Range<usize>, is_key: bool) -> Diagnostic {
+    fn problem_of_nothing(&mut self, span: Range<usize>, is_key: bool) -> Diagnostic {
+        let outer = self.too_deep_in().filter(|_| !is_key).map(str::to_owned);
+        if let Some(Open { entries: Entries::Map { is_mixed, .. }, .. }) = self.open.last_mut() {
+            *is_mixed |= outer.is_some();
+        }
         let key = match self.open.last() {
             Some(Open { entries: Entries::Map { key: Some(key), .. }, .. }) => Some(key),
             _ => None,
@@ -180,6 +189,14 @@ impl Gate<'_> {
             Some(key) if !is_key && self.has_no_colon(key) => {
                 help_on_blank(key).unwrap_or_else(|| self.help_on_comma(key))
             }
+            Some(key) if let Some(outer) = outer => format!(
+                "it may be indented too deep, as the next key stands in `{outer}` already; \
+                 then indent `{}` like `{outer}`, else write its value",
+                key.name
+            ),
+            Some(key) if let Some(comment) = self.comment_after(key).filter(|_| !is_key) => {
+                format!("`#` begins a comment here; if it belongs to the text, quote it: `{}: \"{comment}\"`", key.name)
+            }
             _ => "write it, write `\"\"` for an empty text, or remove the line".to_owned(),
         };
         Diagnostic::error(&rules::WRONG_KIND, span, message).help(help)
@@ -190,8 +207,27 @@ impl Gate<'_> {
         self.opened().is_some() && !self.source.text()[key.span.end..].trim_start().starts_with(':')
     }
 
+    /// Returns the comment that stands in place of a value.
+    fn comment_after(&self, key: &Key) -> Option<&str> {
+        let line = self.source.text()[key.span.end..].lines().next()?;
+        let rest = line.trim_start().strip_prefix(':')?.trim();
+        rest.starts_with('#').then_some(rest)
+    }
+
+    /// Returns the name of the map around a key without a value, if the next key stands in it
+    /// already.
+    fn too_deep_in(&self) -> Option<&str> {
+        let [.., around, Open { entries: Entries::Map { entries, key: Some(key), .. }, .. }] = &self.open[..] else {
+            return None;
+        };
+        let Entries::Map { key: Some(outer), .. } = &around.entries else { return None };
+        let mut lines = self.source.text()[key.span.end..].lines().skip(1).map(str::trim_start);
+        let (next, _) = lines.find(|line| !line.is_empty() && !line.starts_with('#'))?.split_once(':')?;
+        (self.opened().is_none() && entries.contains_key(next)).then_some(outer.name.as_str())
+    }
+
     fn help_on_comma(&self, key: &Key) -> String {
-        let before = self.source.text()[..key.span.start].trim_end().trim_end_matches(',');
+        let before = self.source.text()[..key.span.start].trim_end_matches(',');
         let is_of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '.');
         let number = before.rsplit(|letter: char| !is_of_number(letter)).next().unwrap_or_default();
         let digit = |letter: char| letter.is_ascii_digit();
@@ -274,9 +310,10 @@ impl Gate<'_> {
         match self.open.last_mut().map(|open| &mut open.entries) {
             None => self.root = Some(node),
             Some(Entries::List(items)) => items.push(node),
-            Some(Entries::Map { entries, key }) => {
+            Some(Entries::Map { entries, key, is_mixed }) => {
                 if let Some(key) = key.take() {
-                    self.problems.extend(put_entry(entries, key, node));
+                    let is_mixed = *is_mixed;
+                    self.problems.extend(put_entry(entries, key, node).filter(|_| !is_mixed));
                 }
             }
         }

@@ -83,6 +83,15 @@ pub(super) fn line_above(text: &str, at: usize) -> Option<Diagnostic> {
     Some(diagnostic.help(format!("write `{}`, or quote the text that it belongs to", entry.trim_end())))
 }
 
+/// Says how to write a map in one line that lacks braces, as `temperature: bytes: 4`.
+pub(super) fn without_braces(text: &str, at: usize) -> Option<String> {
+    let (name, value) = line_of(text, at).trim().split_once(": ")?;
+    let (key, _) = value.split_once(": ")?;
+    let is_name = |word: &str| !word.is_empty() && word.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
+    let has_names = is_name(name) && is_name(key);
+    has_names.then(|| format!("write `{name}: {{{value}}}`, or quote the text: `{name}: \"{value}\"`"))
+}
+
 /// Returns the last entry of a map or a list that starts before the line at `here`, without the `-` of an item.
 fn entry_above(text: &str, here: usize) -> Option<(usize, &str)> {
     let mut end = here;

@@ -65,7 +65,13 @@ pub(super) fn translate(text: &str, at: usize, complaint: &str, opened: Option<u
     cause::open_quote(text, at, complaint)
         .or_else(|| cause::open_bracket(text, span.clone(), opened))
         .or_else(|| cause::line_above(text, at).filter(|_| is_begun_above))
-        .unwrap_or_else(|| translated(text, span, complaint, opened))
+        .unwrap_or_else(|| {
+            let diagnostic = translated(text, span, complaint, opened);
+            match cause::without_braces(text, at).filter(|_| is_begun_above) {
+                Some(help) => diagnostic.help(help),
+                None => diagnostic,
+            }
+        })
 }
 
 fn translated(text: &str, span: Range<usize>, complaint: &str, opened: Option<usize>) -> Diagnostic {

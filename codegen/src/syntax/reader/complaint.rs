@@ -74,7 +74,11 @@ impl Complaint {
 fn unknown_key(path: &Path, key: &str, allowed: &[String], tree: &Node) -> Diagnostic {
     let listed = allowed.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
     let nearest = nearest(key, allowed.iter().map(String::as_str)).map(|nearest| format!("did you mean `{nearest}`?"));
-    let help = match nearest.or_else(|| said_otherwise(key, allowed)).or_else(|| outdented(path, allowed, tree)) {
+    let help = match nearest
+        .or_else(|| said_otherwise(key, allowed))
+        .or_else(|| indented(path, allowed, tree))
+        .or_else(|| outdented(path, allowed, tree))
+    {
         Some(what) => format!("{what} allowed here: {listed}"),
         None => format!("allowed here: {listed}"),
     };
@@ -90,6 +94,15 @@ fn outdented(path: &Path, allowed: &[String], tree: &Node) -> Option<String> {
     let (above, entry) = before.filter(|(name, _)| allowed.contains(name)).last()?;
     entry.value.entries()?;
     Some(format!("if it belongs to `{above}`, indent it and what stands below it;"))
+}
+
+/// Says where a map belongs that stands inside the map above it, whose keys it has.
+fn indented(path: &Path, allowed: &[String], tree: &Node) -> Option<String> {
+    let (parent, Step::Key(_)) = path.split()? else { return None };
+    let (_, Step::Key(above)) = parent.split()? else { return None };
+    let entries = tree.get(path)?.entries().filter(|entries| !entries.is_empty())?;
+    let is_alike = entries.keys().all(|key| allowed.contains(key));
+    is_alike.then(|| format!("if it belongs beside `{above}`, indent it and what stands below it less;"))
 }
 
 /// Says how to write a key of another description format. Each has a meaning in fields, if nowhere
@@ -132,6 +145,17 @@ fn range_of(path: &Path, found: &Node) -> Option<String> {
     is_range.then(|| Some(format!("write `{key}: {}..{}`", first.text()?, last.text()?)))?
 }
 
+/// Says how to write a list as a map.
+fn without_dash(items: &[Node]) -> String {
+    let mut entries = items.iter().filter_map(Node::entries).flatten();
+    match entries.next() {
+        Some((name, entry)) if entry.value.text().is_none() => {
+            format!("write `{name}:` without `-`, indent it like its siblings, and its entries deeper")
+        }
+        _ => "write `name: value` for each entry, without `-`".to_owned(),
+    }
+}
+
 /// Says how to write the kind that is expected.
 fn how_to_write(found: &Node, expected: Kind) -> Option<String> {
     match (&found.content, expected) {
@@ -140,7 +164,7 @@ fn how_to_write(found: &Node, expected: Kind) -> Option<String> {
         }
         (Content::Text(_), Kind::Map) => Some("write its entries below it, or in braces: `{name: value}`".to_owned()),
         (Content::Text(_), Kind::List) => Some("write its items in brackets: `[first, second]`".to_owned()),
-        (Content::List(_), Kind::Map) => Some("write `name: value` for each entry, without `-`".to_owned()),
+        (Content::List(items), Kind::Map) => Some(without_dash(items)),
         (Content::Map(_), Kind::List) => {
             Some("write each item after a `-`, or all in brackets: `[first, second]`".to_owned())
         }
