@@ -187,9 +187,11 @@ impl Resolver<'_> {
                 let (high, low) = self.bits(&bits, text, word.width())?;
                 Some(word.bits(high, low))
             }
-            (None, Some(_), None) => {
+            (None, Some(text), None) => {
                 let message = format!("`{name}` counts bits, but stands in no word");
-                let help = "write `bytes`, or put it into a word: `word: {bytes: 7..0, fields: {...}}`";
+                let (high, _) = self.bits(&bits, text, 64)?;
+                let word = if high < 8 { "0".to_owned() } else { format!("{}..0", high / 8) };
+                let help = format!("write `bytes`, or put it into a word: `word: {{bytes: {word}, fields: {{...}}}}`");
                 self.error_with_help(&rules::PLACE, bits.at_key(), message, help);
                 None
             }

@@ -61,7 +61,12 @@ impl Resolver<'_> {
     pub fn number(&mut self, path: &Path, text: &str) -> Option<Rational> {
         let number = Rational::parse(text);
         if number.is_none() {
-            let help = "write `12`, `-40`, `0x1F`, `41.5` or `1/1024`";
+            let is_hexadecimal = !text.is_empty() && text.chars().all(|digit| digit.is_ascii_hexdigit());
+            let help = if is_hexadecimal {
+                format!("a hexadecimal number begins with `0x`: `0x{text}`")
+            } else {
+                "write `12`, `-40`, `0x1F`, `41.5` or `1/1024`".to_owned()
+            };
             self.error_with_help(&rules::NUMBER, path.at_value(), format!("`{text}` is not a number"), help);
         }
         number
