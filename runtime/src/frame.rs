@@ -187,6 +187,14 @@ mod tests {
     }
 
     #[test]
+    fn a_known_length_must_be_that_of_the_data() {
+        let [seven, eight] = [7, 8].map(|length| Frame::new_raw(0x0107_F003, true, [1; 8], length));
+        let copied = |length, frame: &Frame| Frame::copied(frame.raw_id(), true, length, frame);
+        assert_eq!([copied(Some(8), &eight), copied(None, &eight)], [Some(eight); 2]);
+        assert_eq!((copied(Some(8), &seven), copied(None, &seven)), (None, Some(seven)));
+    }
+
+    #[test]
     fn nine_bytes_and_remote_frames_are_refused() {
         assert_eq!(Frame::new(StandardId::ZERO, &[0; 9]), None);
         assert_eq!(Frame::new_remote(StandardId::ZERO, 0), None);

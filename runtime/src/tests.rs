@@ -187,7 +187,7 @@ fn what_is_no_classic_data_frame_is_no_reply() {
     let error = Strange { is_data: false, ..strange(4) };
     let filter = request.replies().filter().expect("one heater replies");
     assert!(filter.matches(&strange(4)) && !filter.matches(&remote) && !filter.matches(&error));
-    for strange in [strange(12), remote, error] {
+    for strange in [strange(9), strange(12), remote, error] {
         assert_eq!(Received::<Message>::decode(&strange).map(|_| ()), Err(Problem::Frame));
         assert_eq!(values(strange), None);
     }
