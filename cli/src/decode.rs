@@ -285,8 +285,20 @@ type Device<'a> = (&'a Protocol, Option<ModelId>);
 /// What a protocol says of a frame.
 type Answer<'a> = (&'a Protocol, Result<Decoded, Unrecognised>);
 
-/// Decodes by the first protocol that recognises the frame, else says what the first one has against it.
+/// Decodes by the first protocol that recognises the frame. If none does, it is the one whose tests the frame passes
+/// furthest.
 fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
-    let by = |(protocol, model): &Device<'a>| (*protocol, interpret::decode(protocol, *model, frame));
-    devices.iter().map(by).find(|(_, decoded)| decoded.is_ok()).or_else(|| devices.first().map(by))
+    let mut nearest: Option<(u8, Answer<'a>)> = None;
+    for &(protocol, model) in devices {
+        match interpret::decode(protocol, model, frame) {
+            Ok(decoded) => return Some((protocol, Ok(decoded))),
+            Err(unrecognised) => {
+                let passed = unrecognised.problem as u8;
+                if nearest.as_ref().is_none_or(|(known, _)| passed > *known) {
+                    nearest = Some((passed, (protocol, Err(unrecognised))));
+                }
+            }
+        }
+    }
+    nearest.map(|(_, answer)| answer)
 }

@@ -16,10 +16,10 @@ const MOST_NAMES: usize = 20;
 #[derive(Args)]
 pub struct Choice {
     /// Only frames of this message; repeatable.
-    #[arg(long, value_name = "NAME", conflicts_with = "to")]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', conflicts_with = "to")]
     message: Vec<String>,
     /// Only this signal, and frames that have it; repeatable.
-    #[arg(long, value_name = "NAME", conflicts_with = "to")]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', conflicts_with = "to")]
     signal: Vec<String>,
     /// Only status words with a set bit of this severity, and frames that have one; repeatable.
     #[arg(long, value_enum, value_name = "SEVERITY", conflicts_with = "to")]

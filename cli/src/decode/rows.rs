@@ -8,7 +8,7 @@ use crate::line::{Outcome, bit_names};
 use crate::log;
 use crate::table::others;
 
-const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes";
+const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes,data";
 
 /// Rows that are written as their frames come.
 #[derive(Clone, Default, PartialEq)]
@@ -36,13 +36,13 @@ impl Rows {
         };
         let line = outcome.line.to_string();
         let (time, channel) = (outcome.time.unwrap_or_default(), outcome.channel.unwrap_or_default());
-        let id = log::identifier_text(outcome.frame);
+        let (id, data) = (log::identifier_text(outcome.frame), log::hexadecimal(&outcome.frame.data));
         let frame =
             [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names).chain([address.as_str()]);
         let signals = readings.iter().map(|reading| cells(outcome, reading));
         let signals: Vec<_> = if readings.is_empty() { vec![Default::default()] } else { signals.collect() };
         for signal in signals {
-            let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain([notes.as_str()]);
+            let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain([notes.as_str(), data.as_str()]);
             writeln!(out, "{}", cells.map(quoted).collect::<Vec<_>>().join(","))?;
         }
         Ok(())
