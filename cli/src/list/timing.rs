@@ -10,16 +10,16 @@ use crate::columns::{self, Row};
 
 /// Writes a table of the times and one of the procedures, if there are any.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    table(out, &["TIMING", "TIME", "MINIMUM", "SECTION"], protocol.timing.iter().map(timing).collect())?;
-    table(out, &["PROCEDURE", "SECTION"], protocol.procedures.iter().flat_map(procedure).collect())
+    table(out, &["TIMING", "TIME", "MINIMUM", "SECTION"], &protocol.timing.iter().map(timing).collect::<Vec<_>>())?;
+    table(out, &["PROCEDURE", "SECTION"], &protocol.procedures.iter().flat_map(procedure).collect::<Vec<_>>())
 }
 
-fn table(out: &mut impl Write, headings: &[&str], rows: Vec<Row>) -> io::Result<()> {
+fn table(out: &mut impl Write, headings: &[&str], rows: &[Row]) -> io::Result<()> {
     if rows.is_empty() {
         return Ok(());
     }
     writeln!(out)?;
-    columns::write(out, headings, "MEANING", &rows)
+    columns::write(out, headings, "MEANING", rows)
 }
 
 fn timing(timing: &Timing) -> Row {
