@@ -22,7 +22,7 @@ pub struct Choice {
     #[arg(long, value_name = "NAME", value_delimiter = ',', conflicts_with = "to")]
     signal: Vec<String>,
     /// Only status words with a set bit of this severity, and frames that have one; repeatable.
-    #[arg(long, value_enum, value_name = "SEVERITY", conflicts_with = "to")]
+    #[arg(long, value_enum, value_name = "SEVERITY", value_delimiter = ',', conflicts_with = "to")]
     severity: Vec<Severity>,
 }
 

@@ -14,6 +14,9 @@ use canspec_codegen::model::{Numeral, Protocol};
 use canspec_runtime::plumbing::Scale;
 use canspec_tests::protocol;
 
+/// Distances are counted in parts of 2 to this power.
+const FINENESS: u32 = 80;
+
 /// A scale and an offset, as fractions, and whether raw values have a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Case {
@@ -82,18 +85,12 @@ impl Case {
         let ([scale, below_scale], [offset, below_offset]) = (self.scale.map(i128::from), self.offset.map(i128::from));
         let exact = i128::from(raw) * scale * below_offset + offset * below_scale;
         let below = below_scale * below_offset;
-        let distance = |double: f64| over(double, exact, below);
-        distance(physical) <= distance(physical.next_up()) && distance(physical) <= distance(physical.next_down())
+        let bits = physical.to_bits();
+        let mantissa = i128::from(bits & ((1 << 52) - 1) | 1 << 52);
+        // The distance between doubles here, in parts of `below` and of 2⁸⁰.
+        let places = (bits >> 52 & 0x7FF) as u32;
+        let Some(ulp) = places.checked_sub(1075 - FINENESS).map(|places| below << places) else { return exact == 0 };
+        let distance = (mantissa * ulp - (exact.abs() << FINENESS)).abs();
+        2 * distance <= ulp
     }
-}
-
-/// Returns how far a double lies from `exact / below`, in parts of `below` and of 2⁶⁴.
-fn over(double: f64, exact: i128, below: i128) -> u128 {
-    let bits = double.to_bits();
-    let exponent = i64::try_from(bits >> 52 & 0x7FF).expect("eleven bits") - 1075 + 64;
-    let mantissa = i128::from(bits & ((1 << 52) - 1) | 1 << 52);
-    let places = u32::try_from(exponent.unsigned_abs()).expect("eleven bits");
-    let product = mantissa * below;
-    let scaled = if exponent < 0 { product.checked_shr(places).unwrap_or(0) } else { product << places };
-    (scaled - (exact.abs() << 64)).unsigned_abs()
 }
