@@ -58,11 +58,11 @@ impl<P: Protocol> Received<P> {
         let id = own_id::<P>(frame)?;
         let is_request = is_to_module::<P>(id)?;
         let frame = Frame::copied(id, P::FRAME.is_extended(), P::LENGTH, frame)?;
-        let recognised = if is_request { P::request(&frame, model) } else { P::reply(&frame, model) };
-        let Recognised { exchange, kind, message: content } = recognised?;
-        if P::LENGTH.is_none() && usize::from(exchange.data_length()) != frame.length() {
+        let recognised = if is_request { P::request(&frame, model) } else { P::reply(&frame, model) }?;
+        if P::LENGTH.is_none() && !recognised.has_length_of(&frame) {
             return None;
         }
+        let Recognised { exchange, kind, message: content } = recognised;
         Some(Self { content, exchange, frame, id, model, kind, is_other: false })
     }
 
