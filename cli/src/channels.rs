@@ -4,8 +4,7 @@ use std::collections::BTreeSet;
 
 use clap::Args;
 
-/// A hint lists no more names.
-const MOST_NAMES: usize = 20;
+use crate::failure::MOST_NAMES;
 
 /// Chooses channels of a log.
 #[derive(Args)]

@@ -9,7 +9,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{self, Decoded, Frame, Unrecognised};
-use canspec_codegen::model::{ModelId, Protocol};
+use canspec_codegen::model::Protocol;
 use clap::{Args, ValueEnum};
 
 use crate::capture::{self, Capture};
@@ -18,7 +18,7 @@ use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::{Input, Line};
 use crate::line::{self, Outcome};
 use crate::log::{Entry, Reader};
-use crate::model::Model;
+use crate::model::{Device, Model};
 use crate::output::output;
 use crate::protocols::{self, Several};
 use crate::table::Table;
@@ -278,9 +278,6 @@ impl Printer {
         }
     }
 }
-
-/// A protocol, and the device model if one of its models is chosen.
-type Device<'a> = (&'a Protocol, Option<ModelId>);
 
 /// What a protocol says of a frame.
 type Answer<'a> = (&'a Protocol, Result<Decoded, Unrecognised>);

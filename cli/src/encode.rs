@@ -11,7 +11,7 @@ use crate::failure::{Failure, Finish};
 use crate::input::Input;
 use crate::line::{Content, Line, Message};
 use crate::log;
-use crate::model::Model;
+use crate::model::{Device, Model};
 use crate::output::output;
 use crate::protocols::{self, Several};
 
@@ -138,9 +138,6 @@ fn pairs(words: &[String]) -> Result<Vec<(String, String)>, Failure> {
     let pair = |word: &String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
     Ok(words.iter().filter_map(pair).collect())
 }
-
-/// A protocol, and the device model if one of its models is chosen.
-type Device<'a> = (&'a Protocol, Option<ModelId>);
 
 /// Turns a decoded line into one of a log.
 pub fn line(devices: &[Device<'_>], text: &str) -> Result<Option<String>, String> {

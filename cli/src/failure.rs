@@ -8,6 +8,9 @@ use std::process::ExitCode;
 use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::source::forbidden;
 
+/// A complaint lists no more names.
+pub const MOST_NAMES: usize = 20;
+
 /// How a command ends if it was carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {

@@ -6,6 +6,9 @@ use clap::Args;
 use crate::failure::Failure;
 use crate::settings::Settings;
 
+/// A protocol, and the device model if one of its models is chosen.
+pub type Device<'a> = (&'a Protocol, Option<ModelId>);
+
 /// Chooses a device model.
 #[derive(Args)]
 pub struct Model {

@@ -5,12 +5,9 @@ use canspec_codegen::model::{Message, Protocol, Signal};
 use canspec_codegen::nearest;
 use clap::Args;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, MOST_NAMES};
 use crate::line::set_bits;
 use crate::severity::Severity;
-
-/// A complaint lists no more names.
-const MOST_NAMES: usize = 20;
 
 /// Chooses what is shown of a log.
 #[derive(Args)]
