@@ -11,7 +11,18 @@ const PREFIXES: [(&str, i128, i128); 6] =
 const TIMES: [(&str, i128, i128); 4] = [("ms", 1, 1_000), ("s", 1, 1), ("min", 60, 1), ("h", 3_600, 1)];
 
 /// Other spellings of units of the language.
-const SPELLINGS: [(&str, &str); 5] = [("C", "°C"), ("degC", "°C"), ("deg C", "°C"), ("℃", "°C"), ("r/min", "rpm")];
+const SPELLINGS: [(&str, &str); 9] = [
+    ("C", "°C"),
+    ("degC", "°C"),
+    ("deg C", "°C"),
+    ("℃", "°C"),
+    ("r/min", "rpm"),
+    // The sign for ohms, which looks like the Greek letter.
+    ("\u{2126}", "Ω"),
+    ("ohm", "Ω"),
+    ("Ohm", "Ω"),
+    ("VAr", "var"),
+];
 
 /// Returns the unit whose other spelling is `symbol`.
 pub fn respelled(symbol: &str) -> Option<Unit> {
@@ -27,15 +38,34 @@ pub fn prefixed(symbol: &str) -> Option<(Unit, Rational)> {
     })
 }
 
-/// Returns how many `unit` one `symbol` is, if both measure the same quantity.
+/// Returns how many `unit` one `symbol` is, if both measure the same quantity. The symbol may be
+/// spelled in another way.
 pub fn factor(symbol: &str, unit: Unit) -> Option<Rational> {
-    if respelled(symbol).or_else(|| Unit::find(symbol)) == Some(unit) {
+    if respelled(symbol) == Some(unit) { Some(Rational::ONE) } else { exact_factor(symbol, unit) }
+}
+
+/// Returns how many `unit` one `symbol` of the language is, with or without a prefix.
+pub fn exact_factor(symbol: &str, unit: Unit) -> Option<Rational> {
+    if Unit::find(symbol) == Some(unit) {
         return Some(Rational::ONE);
     }
     if let (Some(one), Some(other)) = (seconds(symbol), seconds(unit.symbol)) {
         return one.over(other);
     }
     prefixed(symbol).filter(|(known, _)| *known == unit).map(|(_, factor)| factor)
+}
+
+/// Reads a number with a symbol, in steps of `unit`: `750 V`, `750V` or `0.75 kV`.
+///
+/// `factor_of` says which symbols count. A hexadecimal number needs a blank before the symbol, which
+/// may look like one more digit.
+pub fn read(text: &str, unit: Unit, factor_of: impl Fn(&str, Unit) -> Option<Rational>) -> Option<Rational> {
+    let splits = text.char_indices().map(|(at, _)| text.split_at(at));
+    splits.skip(1).find_map(|(number, symbol)| {
+        let factor = factor_of(symbol.trim_start(), unit)?;
+        let is_apart = symbol.starts_with(' ') || !number.contains('x');
+        Rational::parse(number).filter(|_| is_apart)?.times(factor)
+    })
 }
 
 fn seconds(symbol: &str) -> Option<Rational> {
@@ -63,6 +93,26 @@ mod tests {
         assert_eq!(factor_text("s", "ms").as_deref(), Some("1000"));
         assert_eq!(factor_text("h", "min").as_deref(), Some("60"));
         assert_eq!(factor_text("min", "h").as_deref(), Some("1/60"));
+    }
+
+    #[test]
+    fn a_number_is_read_in_the_unit_of_its_signal() {
+        let read = |text, unit| Some(read(text, Unit::find(unit)?, factor)?.to_string());
+        for (text, unit, wanted) in [
+            ("750V", "V", "750"),
+            ("53500 mV", "V", "53.5"),
+            ("123456 mAh", "Ah", "123.456"),
+            ("-1/3 kW", "W", "-1000/3"),
+            ("2 min", "s", "120"),
+            ("0x1A A", "A", "26"),
+            ("25 C", "°C", "25"),
+        ] {
+            assert_eq!(read(text, unit).as_deref(), Some(wanted), "{text}");
+        }
+        // The last letter of the first is a digit.
+        for (text, unit) in [("0x1A", "A"), ("5", "V"), ("5 A", "V"), ("V", "V"), ("5 mm", "s")] {
+            assert_eq!(read(text, unit), None, "{text}");
+        }
     }
 
     #[test]

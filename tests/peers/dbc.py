@@ -16,7 +16,7 @@ from pathlib import Path
 import cantools
 
 COUNT = 10_000
-UNITS = {"°C": "degC"}
+UNITS = {"°C": "degC", "Ω": "Ohm"}
 # Nodes of protocols that have none from 0 to 3.
 NODES = {"reports_only": "256-259", "trio": "224-227"}
 # Why canspec and cantools may differ; anything else is a failure.

@@ -118,13 +118,14 @@ fn each_spec_becomes_a_file_and_a_module_of_the_list() {
 
 #[test]
 fn errors_of_all_specs_are_told_with_their_places_and_nothing_is_written() {
-    let (unit, scale) = (HEATER.replace("unit: °C", "unit: K"), HEATER.replace("1/10", "1/0"));
+    let (unit, scale) = (HEATER.replace("unit: °C", "unit: lx"), HEATER.replace("1/10", "1/0"));
     let root = Crate::new(&[("specs/a.yaml", &unit), ("specs/b.yaml", HEATER), ("specs/c.yaml", &scale)]);
     let refusals = root.refusals(&root.builder().folder(root.path("specs")));
     assert_eq!(
         refusals[0],
-        "cargo::error=specs/a.yaml:19:55: error[unit]: there is no unit `K`; help: the units are V A W Hz °C % s ms min h rpm m; \
-         for another leave `unit` out and say it in `title`"
+        "cargo::error=specs/a.yaml:19:55: error[unit]: there is no unit `lx`; \
+         help: the units are V A W VA var Ah Wh Ω Hz °C K Pa % s ms min h rpm m. \
+         For another leave `unit` out, and say it in `title`"
     );
     assert!(refusals[1].starts_with("cargo::error=specs/c.yaml:19:43: error[number]: "), "{refusals:?}");
     assert_eq!(refusals.len(), 2);

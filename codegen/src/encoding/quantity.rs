@@ -10,8 +10,7 @@ pub fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational
     let Some(unit) = signal.unit.filter(|_| with_unit) else {
         return Rational::parse(text).ok_or_else(|| format!("`{text}` is not a number for `{}`", signal.name).into());
     };
-    let number = text.strip_suffix(unit.symbol).and_then(|number| Rational::parse(number.trim_end()));
-    number.ok_or_else(|| {
+    multiples::read(text, unit, multiples::exact_factor).ok_or_else(|| {
         let why = format!("`{text}` is not a number of {} for `{}`", unit.symbol, signal.name);
         let help =
             converted(text, unit).map_or_else(|| what_fits(signal, unit), |value| format!("write it as `{value}`"));
@@ -19,10 +18,10 @@ pub fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational
     })
 }
 
-/// Reads `750V`, `750 V`, `750` or a name.
+/// Reads `750V`, `750 V`, `0.75 kV`, `750` or a name.
 pub fn typed(signal: &Signal, text: &str) -> Input {
-    let number = signal.unit.and_then(|unit| text.strip_suffix(unit.symbol)).unwrap_or(text).trim();
-    match Rational::parse(number) {
+    let of_unit = |text| signal.unit.and_then(|unit| multiples::read(text, unit, multiples::factor));
+    match of_unit(text).or_else(|| Rational::parse(text.trim())) {
         Some(value) => match value.to_integer() {
             Some(whole) => Input::Integer(whole),
             None => Input::Number(value.to_f64()),

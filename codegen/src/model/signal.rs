@@ -257,12 +257,19 @@ pub struct Unit {
 
 impl Unit {
     /// Every unit of the language.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 19] = [
         Self { symbol: "V", suffix: "v" },
         Self { symbol: "A", suffix: "a" },
         Self { symbol: "W", suffix: "w" },
+        Self { symbol: "VA", suffix: "va" },
+        Self { symbol: "var", suffix: "var" },
+        Self { symbol: "Ah", suffix: "ah" },
+        Self { symbol: "Wh", suffix: "wh" },
+        Self { symbol: "Ω", suffix: "ohm" },
         Self { symbol: "Hz", suffix: "hz" },
         Self { symbol: "°C", suffix: "c" },
+        Self { symbol: "K", suffix: "k" },
+        Self { symbol: "Pa", suffix: "pa" },
         Self { symbol: "%", suffix: "percent" },
         Self { symbol: "s", suffix: "s" },
         Self { symbol: "ms", suffix: "ms" },

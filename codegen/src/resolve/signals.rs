@@ -221,7 +221,7 @@ impl Resolver<'_> {
         let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, Key::Unit), text, field));
         let (range_path, default_path) =
             (merged.path(self.diagnostics, Key::Range), merged.path(self.diagnostics, Key::Default));
-        let range = field.range.as_ref().and_then(|text| self.range(&range_path, text));
+        let range = field.range.as_ref().and_then(|text| self.range_of(&range_path, text, unit));
         let kinds = self.kinds(&merged.path(self.diagnostics, Key::In), &field.kinds);
         let mut signal = Signal {
             name: name.to_owned(),

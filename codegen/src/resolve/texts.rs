@@ -111,6 +111,22 @@ impl Resolver<'_> {
         Some(range)
     }
 
+    /// Reads a range whose numbers may have the unit of their signal: `200..750` or `0.2..0.75 kV`.
+    pub fn range_of(&mut self, path: &Path, text: &str, unit: Option<Unit>) -> Option<Range> {
+        let Some((ends, symbol)) = text.split_once(' ').filter(|_| unit.is_some()) else {
+            return self.range(path, text);
+        };
+        let Range { minimum, maximum } = self.range(path, ends)?;
+        let factor = unit.and_then(|unit| multiples::exact_factor(symbol, unit));
+        let scaled = factor.and_then(|factor| Some(Range { minimum: minimum.times(factor)?, maximum: maximum.times(factor)? }));
+        if scaled.is_none() {
+            let known = unit.map_or("", |unit| unit.symbol);
+            let message = format!("the limits `{text}` are not in {known}, the unit of the signal");
+            self.error_with_help(&rules::RANGE, path.at_value(), message, format!("write `{ends}` or `{ends} {known}`"));
+        }
+        scaled
+    }
+
     /// Reads `high..low` or one number: bits of a word of `width` bits. Bit 0 is the least
     /// significant.
     pub fn bits(&mut self, path: &Path, text: &str, width: u8) -> Option<(u8, u8)> {
@@ -157,7 +173,7 @@ impl Resolver<'_> {
     /// Reads the unit of a field.
     pub fn unit_of_field(&mut self, path: &Path, symbol: &str, field: &Field) -> Option<Unit> {
         self.unit_or(path, symbol, || {
-            let otherwise = || format!("{}; for another leave `unit` out and say it in `title`", known_units());
+            let otherwise = || format!("{}. For another leave `unit` out, and say it in `title`", known_units());
             scaled_unit(symbol, field).unwrap_or_else(otherwise)
         })
     }

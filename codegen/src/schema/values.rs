@@ -18,7 +18,7 @@ pub struct Form {
 }
 
 const NUMBER: Form = Form { pattern: "N", message: "Write a number: `12`, `-40`, `0x1F`, `41.5` or `1/1024`." };
-const RANGE: Form = Form { pattern: r"N\.\.N", message: "Write the limits as `41.5..58.5`." };
+const RANGE: Form = Form { pattern: r"N\.\.N( [^0-9 ]+)?", message: "Write the limits as `41.5..58.5`." };
 /// From the most to the least significant.
 pub const PLACE: Form = Form { pattern: r"N(\.\.N)?", message: "Write `7..4` or one number." };
 

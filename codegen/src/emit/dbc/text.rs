@@ -5,9 +5,13 @@ use std::ops::RangeInclusive;
 use crate::model::{Doc, Protocol, Unit};
 use crate::text::Text;
 
-/// Returns the symbol of a unit.
+/// Returns the symbol of a unit, in ASCII.
 pub fn unit(unit: Unit) -> &'static str {
-    if unit.symbol.is_ascii() { unit.symbol } else { "degC" }
+    match unit.symbol {
+        "°C" => "degC",
+        "Ω" => "Ohm",
+        symbol => symbol,
+    }
 }
 
 /// Returns what the spec says beside an item.

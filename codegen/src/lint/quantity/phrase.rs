@@ -19,16 +19,20 @@ pub enum Reading {
 
 const VOLTAGE: Quantity = Quantity { name: "a voltage", units: &["V"] };
 const CURRENT: Quantity = Quantity { name: "a current", units: &["A"] };
-const POWER: Quantity = Quantity { name: "a power", units: &["W"] };
-const TEMPERATURE: Quantity = Quantity { name: "a temperature", units: &["°C"] };
+const POWER: Quantity = Quantity { name: "a power", units: &["W", "VA", "var"] };
+const TEMPERATURE: Quantity = Quantity { name: "a temperature", units: &["°C", "K"] };
 const FREQUENCY: Quantity = Quantity { name: "a frequency", units: &["Hz"] };
 const SPEED: Quantity = Quantity { name: "a speed", units: &["rpm", "Hz"] };
 const TIME: Quantity = Quantity { name: "a time", units: &["s", "ms", "min", "h"] };
 const PERCENTAGE: Quantity = Quantity { name: "a percentage", units: &["%"] };
 const LENGTH: Quantity = Quantity { name: "a length", units: &["m"] };
+const ENERGY: Quantity = Quantity { name: "an energy", units: &["Wh"] };
+const CHARGE: Quantity = Quantity { name: "a charge or an energy", units: &["Ah", "Wh"] };
+const RESISTANCE: Quantity = Quantity { name: "a resistance", units: &["Ω"] };
+const PRESSURE: Quantity = Quantity { name: "a pressure", units: &["Pa"] };
 
 /// Words and their quantities.
-const QUANTITIES: [(&[&str], Quantity); 9] = [
+const QUANTITIES: [(&[&str], Quantity); 13] = [
     (&["voltage", "volts", "overvoltage", "undervoltage"], VOLTAGE),
     (&["current", "amperes", "amps", "overcurrent"], CURRENT),
     (&["power", "watts"], POWER),
@@ -38,6 +42,10 @@ const QUANTITIES: [(&[&str], Quantity); 9] = [
     (&["time", "interval", "duration", "delay", "timeout", "seconds", "minutes", "hours"], TIME),
     (&["percent", "percentage"], PERCENTAGE),
     (&["altitude", "height", "distance", "metres", "meters"], LENGTH),
+    (&["energy"], ENERGY),
+    (&["capacity"], CHARGE),
+    (&["resistance", "ohms"], RESISTANCE),
+    (&["pressure"], PRESSURE),
 ];
 
 /// Words that do not change the quantity before them.

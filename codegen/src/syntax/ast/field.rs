@@ -130,10 +130,11 @@ keys! {
     Scale "scale": scale: Option<String>, inherited;
     /// Physical value of raw 0 in the field's unit, exact: `-40` or `0xFD`; 0 if absent.
     Offset "offset": offset: Option<String>, inherited;
-    /// Unit of the physical value: `V`, `A`, `W`, `Hz`, `°C`, `%`, `s`, `ms`, `min`, `h`, `rpm` or `m`; none if absent.
+    /// Unit of the physical value; none if absent. It is one of `V`, `A`, `W`, `VA`, `var`, `Ah`,
+    /// `Wh`, `Ω`, `Hz`, `°C`, `K`, `Pa`, `%`, `s`, `ms`, `min`, `h`, `rpm` and `m`.
     Unit "unit": unit: Option<String>, inherited;
-    /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`. If
-    /// absent, all that the bits hold is allowed. An address type must have it, with the addresses
+    /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`. The unit
+    /// may follow, also with a prefix: `0.2..0.75 kV`. If absent, all that the bits hold is allowed. An address type must have it, with the addresses
     /// that the document names: `0x00..0x3B`.
     Range "range": range: Option<String>, inherited;
     /// Names of raw values, before scale and offset: `{0: standby, 1: running}`; none if absent.
