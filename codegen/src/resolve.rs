@@ -14,6 +14,7 @@ pub(crate) mod rules;
 mod sets;
 mod signals;
 mod texts;
+mod status;
 mod types;
 
 use std::collections::{HashMap, HashSet};

@@ -44,6 +44,9 @@ impl Room for Status<'_> {
 
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
         let Value::Status { unknown: unknown @ 1.., .. } = value else { return None };
+        if self.word.bits.is_empty() {
+            return None;
+        }
         let text = || format!("{} has bits {unknown:#X} set that have no name", self.signal.name);
         Some((NoteRule::UnknownBit, text()))
     }

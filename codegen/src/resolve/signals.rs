@@ -326,8 +326,8 @@ impl Resolver<'_> {
     fn encoding(&mut self, name: &str, merged: &Merged, place: Place, doc: &Doc, owner: &str) -> Option<Encoding> {
         let field = &merged.field;
         let otherwise = if owner.is_empty() { name.to_owned() } else { format!("{owner}_{name}") };
-        if !field.status.is_empty() {
-            return Some(Encoding::Status(self.status_word(merged, &otherwise, place.width(), doc)));
+        if field.status.is_some() {
+            return Some(Encoding::Status(self.status_word(merged, &otherwise, place, doc)));
         }
         let numeral = match self.number_format(merged)? {
             NumberFormat::Integer(Numeral::Bcd) => self.decimal(name, merged, place)?,

@@ -1,19 +1,14 @@
-//! Gives fields the keys of their types, and makes types of named values and status words.
+//! Gives fields the keys of their types, and makes types of named values.
 
 use std::collections::HashMap;
 
 use super::Resolver;
-use super::texts::{remarks, text};
+use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::misplaced::{Claim, misplaced};
-use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral, StatusBit, StatusWord, StatusWordId};
+use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
-use crate::words::SEVERITIES;
-
-/// Bits of the widest word.
-const WIDEST: u8 = 64;
 
 /// Largest number of types in a chain, in which each takes keys from the next.
 const CHAIN_LIMIT: usize = 64;
@@ -140,7 +135,7 @@ impl Resolver<'_> {
     }
 
     /// Returns the name of the type that has the key, or else `otherwise`.
-    fn type_name(&self, merged: &Merged, key: Key, otherwise: &str) -> (String, Path) {
+    pub fn type_name(&self, merged: &Merged, key: Key, otherwise: &str) -> (String, Path) {
         let path = merged.path(self.diagnostics, key);
         let own = merged.sources[0].key(key);
         let types = merged.types.iter().zip(&merged.sources[1..]);
@@ -152,7 +147,7 @@ impl Resolver<'_> {
     }
 
     /// Returns the remarks of a type, or those of the field if the type is its own.
-    fn type_doc(&self, name: &str, source: &Path, field: &Doc) -> Doc {
+    pub fn type_doc(&self, name: &str, source: &Path, field: &Doc) -> Doc {
         let known = self.spec.types.get(name).filter(|_| *source == Path::default().key("types").key(name));
         known.map_or_else(|| field.clone(), |known| remarks!(known).doc(source, Some(field)))
     }
@@ -233,92 +228,6 @@ impl Resolver<'_> {
                 name,
                 "names are lower-case letters, digits and `_`, and start with a letter",
             );
-        }
-    }
-
-    /// Finds or makes the status word of a field.
-    pub fn status_word(&mut self, merged: &Merged, otherwise: &str, width: u8, doc: &Doc) -> StatusWordId {
-        let (name, source) = self.type_name(merged, Key::Status, otherwise);
-        let made = |known: &StatusWord| known.name == name && known.doc.path == source;
-        if let Some(index) = self.tables.status_words.position(made) {
-            let known = &mut self.tables.status_words[index];
-            known.width = known.width.max(width);
-            return index;
-        }
-        let doc = self.type_doc(&name, &source, doc);
-        let path = merged.path(self.diagnostics, Key::Status);
-        let widest = if self.holds_bits(merged, width) { width } else { WIDEST };
-        let entries = merged.field.status.iter();
-        let mut bits: Vec<_> =
-            entries.filter_map(|(name, bit)| self.status_bit(&path.key(name), name, bit, widest, &doc)).collect();
-        self.check_status_bits(&bits);
-        bits.sort_by_key(|bit| bit.bit);
-        self.tables.status_words.push(StatusWord { name, doc, width, bits })
-    }
-
-    /// Tests that at most one bit lies beyond the end of the word. If several do, the place of the
-    /// word is probably wrong.
-    fn holds_bits(&mut self, merged: &Merged, width: u8) -> bool {
-        let is_beyond = |bit: &ast::StatusBit| bit.bit.parse::<u8>().is_ok_and(|bit| (width..WIDEST).contains(&bit));
-        let path = merged.path(self.diagnostics, Key::Status);
-        let beyond = merged.field.status.iter().filter(|(_, bit)| is_beyond(bit));
-        let beyond: Vec<_> = beyond.map(|(name, _)| path.key(name).key("bit").at_value()).collect();
-        let [first, _, ..] = beyond.as_slice() else { return true };
-        let key = if merged.field.bytes.is_some() { Key::Bytes } else { Key::Bits };
-        let at = merged.path(self.diagnostics, key);
-        let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
-        let help = "correct the place of the word, or the numbers of the bits";
-        let diagnostic = Diagnostic::error(&rules::NUMBER, at.at_value(), text).help(help);
-        self.diagnostics.push(diagnostic.other(first.clone(), "the first of them"));
-        false
-    }
-
-    fn status_bit(
-        &mut self,
-        path: &Path,
-        name: &str,
-        bit: &ast::StatusBit,
-        width: u8,
-        outer: &Doc,
-    ) -> Option<StatusBit> {
-        self.check_name(path, name);
-        let severity = bit.severity.as_ref().and_then(|text| {
-            self.lookup(&path.key("severity"), "severity", text, SEVERITIES.iter().map(|(name, _)| *name))
-        });
-        Some(StatusBit {
-            name: name.to_owned(),
-            doc: remarks!(bit).doc(path, Some(outer)),
-            bit: self.bit(&path.key("bit"), &bit.bit, width)?,
-            severity: severity.map(|index| SEVERITIES[index].1),
-            set_when: text(bit.set_when.as_ref()),
-            clear_when: text(bit.clear_when.as_ref()),
-            effect: text(bit.effect.as_ref()),
-            led: text(bit.led.as_ref()),
-        })
-    }
-
-    /// Reads the number of a bit of a word.
-    fn bit(&mut self, path: &Path, text: &str, width: u8) -> Option<u8> {
-        let number = self.integer(path, text, 0, u8::MAX)?;
-        if number >= width {
-            let help = format!("its bits are 0 to {}; correct the bit, or the place of the word", width - 1);
-            let message = format!("there is no bit {number} in this word of {width} bits");
-            self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
-            return None;
-        }
-        Some(number)
-    }
-
-    fn check_status_bits(&mut self, bits: &[StatusBit]) {
-        let claims: Vec<_> = bits.iter().map(|bit| Claim { first: bit.bit, last: bit.bit }).collect();
-        for (later, bit) in bits.iter().enumerate() {
-            let Some(earlier) = bits[..later].iter().position(|known| known.bit == bit.bit) else { continue };
-            let wrong = misplaced(&claims, earlier, later);
-            let right = if wrong == later { earlier } else { later };
-            let message = format!("bit {} has two names: `{}` and `{}`", bit.bit, bits[earlier].name, bit.name);
-            let at = |index: usize| bits[index].doc.path.key("bit").at_value();
-            let diagnostic = Diagnostic::error(&rules::STATUS_BIT, at(wrong), message);
-            self.diagnostics.push(diagnostic.other(at(right), "the other name"));
         }
     }
 }

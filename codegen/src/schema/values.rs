@@ -44,6 +44,9 @@ const FORMS: [(&str, &str, Form); 7] = [
     ("StatusBit", "bit", NUMBER),
 ];
 
+    ("StatusBit", "byte", NUMBER),
+    ("StatusBit", "first", NUMBER),
+    ("StatusBit", "repeat", NUMBER),
 /// Returns the keys whose value is one of a few words, with the struct that has the key.
 fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 10] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();

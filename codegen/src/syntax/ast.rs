@@ -117,7 +117,7 @@ pub enum IdentifierEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StatusBit {
-    /// Number of the bit in its word: `3`. Bit 0 is the least significant.
+    /// Number of the bit in its word, or in the `byte`: `3`. Bit 0 is the least significant.
     pub bit: String,
     /// Severity of the set bit: `state` (a condition), `alarm` (the device recovers) or `fault` (a
     /// defect); not stated if absent.
@@ -134,6 +134,12 @@ pub struct StatusBit {
     pub title: Option<String>,
     /// What else a reader must know, in one sentence: `valid on three-phase modules only`.
     pub note: Option<String>,
+    /// Byte of the frame in which `bit` counts, 0 to 7: `5`; if absent, `bit` counts in the word.
+    pub byte: Option<String>,
+    /// How many bits in a row have this name and a number: `48`; one bit without a number if absent.
+    pub repeat: Option<String>,
+    /// Number of the first bit of a row: `0`; 1 if absent.
+    pub first: Option<String>,
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.

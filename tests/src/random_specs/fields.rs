@@ -88,8 +88,23 @@ impl Draft {
             return self.constant(field, count, site);
         }
         self.fill(&mut field, 8 * count);
+        self.count_by_byte(&mut field);
         self.restrict(&mut field, site, has_reply);
         self.with_types(field, &[], 8 * count)
+    }
+
+    /// Numbers some status bits in their byte instead of the word.
+    fn count_by_byte(&mut self, field: &mut Map) {
+        let place: Vec<u8> = field.text("bytes").split("..").filter_map(|end| end.parse().ok()).collect();
+        let (Some(first), Some(last)) = (place.first(), place.last()) else { return };
+        for bit in field.maps_in("status") {
+            let Some(number) = bit.get("bit").and_then(|known| known.as_str()?.parse::<u8>().ok()) else { continue };
+            if self.chance(20) {
+                let byte = if first <= last { last - number / 8 } else { last + number / 8 };
+                bit.insert("byte".into(), byte.to_string().into());
+                bit.insert("bit".into(), (number % 8).to_string().into());
+            }
+        }
     }
 
     fn bytes(&mut self, first: u8, count: u8) -> String {
@@ -193,7 +208,19 @@ impl Draft {
 
     fn status(&mut self, field: &mut Map, bits: u8) {
         let (mut status, mut scope) = (Map::default(), Scope::default());
-        for bit in 0..bits {
+        if self.chance(10) {
+            return field.put("status", status);
+        }
+        let row = if bits > 4 && self.chance(20) { self.random.u8(2..bits) } else { 0 };
+        if row > 0 {
+            let mut known = self.status_bit(0);
+            known.put("repeat", row.to_string());
+            if self.random.bool() {
+                known.put("first", self.one(&["0", "2"]));
+            }
+            status.put("row_of", known);
+        }
+        for bit in row..bits {
             if bit == 0 || (status.0.len() < 6 && self.chance(40)) {
                 let (name, known) = (self.names.name(&mut scope), self.status_bit(bit));
                 status.put(name, known);

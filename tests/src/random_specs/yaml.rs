@@ -24,6 +24,17 @@ impl Map {
         self.0.contains_key(key)
     }
 
+    /// Returns the text of a key, or an empty one.
+    pub fn text(&self, key: &str) -> String {
+        self.0.get(key).and_then(Value::as_str).unwrap_or_default().to_owned()
+    }
+
+    /// Returns the maps in the map of a key.
+    pub fn maps_in(&mut self, key: &str) -> impl Iterator<Item = &mut Mapping> {
+        let inner = self.0.get_mut(key).and_then(Value::as_mapping_mut);
+        inner.into_iter().flat_map(|map| map.iter_mut()).filter_map(|(_, value)| value.as_mapping_mut())
+    }
+
     /// Tells whether no key is set.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()

@@ -189,7 +189,7 @@ function values.status(signal, raw)
       set[bit.bit] = is_set or nil
     end
   end
-  if double(unknown) == 0 then return set end
+  if double(unknown) == 0 or #signal.bits == 0 then return set end
   return set, "unknown_bit", signal.name .. " has bits 0x" .. digits(unknown, 1) .. " set that have no name"
 end
 

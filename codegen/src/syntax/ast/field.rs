@@ -24,6 +24,15 @@ impl Entry for Option<String> {
     }
 }
 
+/// An empty map says that something is there without a name.
+impl<V: Clone> Entry for Option<IndexMap<String, V>> {
+    const CAN_BE_EMPTY: bool = false;
+
+    fn is_written(&self) -> bool {
+        self.is_some()
+    }
+}
+
 impl<V: Clone> Entry for IndexMap<String, V> {
     const CAN_BE_EMPTY: bool = true;
 
@@ -145,7 +154,8 @@ keys! {
     /// `{mode: {bits: 7..4}, stage: {bits: 3..0}}`; none if absent.
     Fields "fields": fields: Map<Field>, inherited;
     /// Bits of a status word by name, in place of `fields`: `{fan_fault: {bit: 3, severity: fault}}`; none if absent.
-    Status "status": status: Map<StatusBit>, inherited;
+    /// `{}` is a word whose bits have no names.
+    Status "status": status: Option<Map<StatusBit>>, inherited;
     /// Text of a packed value, with its parts in braces: `"{letter}-{number:4}"`; none if absent. A
     /// part can state its least number of digits after a colon.
     Format "format": format: Option<String>, inherited;

@@ -1,0 +1,205 @@
+//! Makes status words: which bit has which name.
+
+use canspec_runtime::Place;
+
+use super::Resolver;
+use super::texts::{remarks, text};
+use super::types::Merged;
+use crate::diagnostic::Diagnostic;
+use crate::misplaced::{Claim, misplaced};
+use crate::model::{Doc, StatusBit, StatusWord, StatusWordId};
+use crate::resolve::rules;
+use crate::syntax::ast::{self, Key};
+use crate::syntax::tree::Path;
+use crate::text::Text;
+use crate::words::SEVERITIES;
+
+/// Bits of the widest word.
+const WIDEST: u8 = 64;
+
+/// A word, for the numbers of its bits.
+#[derive(Clone, Copy)]
+struct Word {
+    place: Place,
+    /// How many bits it may have at most.
+    width: u8,
+}
+
+impl Resolver<'_> {
+    /// Finds or makes the status word of a field.
+    pub fn status_word(&mut self, merged: &Merged, otherwise: &str, place: Place, doc: &Doc) -> StatusWordId {
+        let (name, source) = self.type_name(merged, Key::Status, otherwise);
+        let made = |known: &StatusWord| known.name == name && known.doc.path == source;
+        if let Some(index) = self.tables.status_words.position(made) {
+            let known = &mut self.tables.status_words[index];
+            known.width = known.width.max(place.width());
+            self.check_same_bytes(merged, place, index);
+            return index;
+        }
+        let doc = self.type_doc(&name, &source, doc);
+        let width = if self.holds_bits(merged, place.width()) { place.width() } else { WIDEST };
+        let mut bits = self.status_bits(merged, Word { place, width }, &doc);
+        self.check_status_bits(&bits);
+        bits.sort_by_key(|bit| bit.bit);
+        self.tables.status_words.push(StatusWord { name, doc, width: place.width(), bits })
+    }
+
+    /// Tests that bits named by their byte have the same numbers as where the type stands first.
+    fn check_same_bytes(&mut self, merged: &Merged, place: Place, index: StatusWordId) {
+        let path = merged.path(self.diagnostics, Key::Status);
+        for (name, bit) in merged.field.status.iter().flatten().filter(|(_, bit)| bit.byte.is_some()) {
+            let known = self.tables.status_words[index].bits.iter().find(|known| known.doc.path == path.key(name));
+            let number = in_byte(bit, place);
+            if known.is_some_and(|known| Some(known.bit) != number) {
+                let text = format!("`{name}` is another bit here than where its type stands first");
+                let help = "a `byte` counts in the frame; write `bit` alone, which counts in the word";
+                let at = merged.path(self.diagnostics, Key::Bytes).at_value();
+                let problem = Diagnostic::error(&rules::STATUS_BIT, at, text).help(help);
+                self.diagnostics.push(problem.other(path.key(name).key("byte").at_value(), "the bit"));
+            }
+        }
+    }
+
+    /// Tests that at most one bit lies beyond the end of the word. If several do, the place of the
+    /// word is probably wrong.
+    fn holds_bits(&mut self, merged: &Merged, width: u8) -> bool {
+        let is_beyond = |bit: &ast::StatusBit| {
+            bit.byte.is_none() && bit.bit.parse::<u8>().is_ok_and(|bit| (width..WIDEST).contains(&bit))
+        };
+        let path = merged.path(self.diagnostics, Key::Status);
+        let beyond = merged.field.status.iter().flatten().filter(|(_, bit)| is_beyond(bit));
+        let beyond: Vec<_> = beyond.map(|(name, _)| path.key(name).key("bit").at_value()).collect();
+        let [first, _, ..] = beyond.as_slice() else { return true };
+        let key = if merged.field.bytes.is_some() { Key::Bytes } else { Key::Bits };
+        let at = merged.path(self.diagnostics, key);
+        let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
+        let help = "correct the place of the word, or the numbers of the bits";
+        let diagnostic = Diagnostic::error(&rules::NUMBER, at.at_value(), text).help(help);
+        self.diagnostics.push(diagnostic.other(first.clone(), "the first of them"));
+        false
+    }
+
+    fn status_bits(&mut self, merged: &Merged, word: Word, outer: &Doc) -> Vec<StatusBit> {
+        let path = merged.path(self.diagnostics, Key::Status);
+        let entries = merged.field.status.iter().flatten();
+        entries.flat_map(|(name, bit)| self.status_entry(&path.key(name), name, bit, word, outer)).collect()
+    }
+
+    /// Reads one entry, which names a bit or several bits in a row.
+    fn status_entry(
+        &mut self,
+        path: &Path,
+        name: &str,
+        entry: &ast::StatusBit,
+        word: Word,
+        outer: &Doc,
+    ) -> Vec<StatusBit> {
+        let Some(first) = self.status_bit(path, name, entry, word, outer) else { return Vec::new() };
+        let Some(text) = &entry.repeat else {
+            if entry.first.is_some() {
+                let text = "`first` means nothing without `repeat`".to_owned();
+                self.error_with_help(&rules::MISPLACED_KEY, path.key("first").at_key(), text, "take it out");
+            }
+            return vec![first];
+        };
+        let Some(count) = self.integer(&path.key("repeat"), text, 2, WIDEST) else { return Vec::new() };
+        if count > word.width - first.bit {
+            let text = format!("{count} bits from bit {} on are more than this word of {} has", first.bit, word.width);
+            let help = format!("at most {} bits are left; correct the count, or the place", word.width - first.bit);
+            self.error_with_help(&rules::NUMBER, path.key("repeat").at_value(), text, help);
+            return Vec::new();
+        }
+        let start = entry.first.as_ref().map_or(Some(1), |text| self.integer(&path.key("first"), text, 0, u16::MAX));
+        let Some(start) = start else { return Vec::new() };
+        (0..count).map(|index| numbered(&first, index, start + u16::from(index))).collect()
+    }
+
+    fn status_bit(
+        &mut self,
+        path: &Path,
+        name: &str,
+        bit: &ast::StatusBit,
+        word: Word,
+        outer: &Doc,
+    ) -> Option<StatusBit> {
+        self.check_name(path, name);
+        let severity = bit.severity.as_ref().and_then(|text| {
+            self.lookup(&path.key("severity"), "severity", text, SEVERITIES.iter().map(|(name, _)| *name))
+        });
+        Some(StatusBit {
+            name: name.to_owned(),
+            doc: remarks!(bit).doc(path, Some(outer)),
+            bit: self.number_of_bit(path, bit, word)?,
+            severity: severity.map(|index| SEVERITIES[index].1),
+            set_when: text(bit.set_when.as_ref()),
+            clear_when: text(bit.clear_when.as_ref()),
+            effect: text(bit.effect.as_ref()),
+            led: text(bit.led.as_ref()),
+        })
+    }
+
+    /// Reads the number of a bit in its word. With a `byte` it is written as the number in that byte.
+    fn number_of_bit(&mut self, path: &Path, bit: &ast::StatusBit, word: Word) -> Option<u8> {
+        let Some(byte) = &bit.byte else { return self.bit(&path.key("bit"), &bit.bit, word.width) };
+        let byte = self.integer(&path.key("byte"), byte, 0, 7)?;
+        self.integer(&path.key("bit"), &bit.bit, 0, 7)?;
+        let number = in_byte(bit, word.place);
+        if number.is_none() {
+            let text = format!("byte {byte} is not in this word");
+            let help = "a `byte` counts in the frame, from 0; correct it, or the place of the word";
+            self.error_with_help(&rules::NUMBER, path.key("byte").at_value(), text, help);
+        }
+        number
+    }
+
+    /// Reads the number of a bit of a word.
+    fn bit(&mut self, path: &Path, text: &str, width: u8) -> Option<u8> {
+        let number = self.integer(path, text, 0, u8::MAX)?;
+        if number >= width {
+            let help = format!("its bits are 0 to {}; correct the bit, or the place of the word", width - 1);
+            let message = format!("there is no bit {number} in this word of {width} bits");
+            self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
+            return None;
+        }
+        Some(number)
+    }
+
+    fn check_status_bits(&mut self, bits: &[StatusBit]) {
+        let claims: Vec<_> = bits.iter().map(|bit| Claim { first: bit.bit, last: bit.bit }).collect();
+        for (later, bit) in bits.iter().enumerate() {
+            let find = |is_alike: &dyn Fn(&StatusBit) -> bool| bits[..later].iter().position(is_alike);
+            if let Some(earlier) = find(&|known| known.bit == bit.bit) {
+                let wrong = misplaced(&claims, earlier, later);
+                let right = if wrong == later { earlier } else { later };
+                let message = format!("bit {} has two names: `{}` and `{}`", bit.bit, bits[earlier].name, bit.name);
+                let at = |index: usize| bits[index].doc.path.key("bit").at_value();
+                let diagnostic = Diagnostic::error(&rules::STATUS_BIT, at(wrong), message);
+                self.diagnostics.push(diagnostic.other(at(right), "the other name"));
+            } else if let Some(earlier) = find(&|known| known.name == bit.name) {
+                let message = format!("two bits are called `{}`", bit.name);
+                let diagnostic = Diagnostic::error(&rules::STATUS_BIT, bit.doc.path.at_key(), message);
+                let diagnostic = diagnostic.help("rename one of the two entries");
+                self.diagnostics.push(diagnostic.other(bits[earlier].doc.path.at_key(), "the other one"));
+            }
+        }
+    }
+}
+
+/// Returns the number in its word of a bit that is named by its byte in the frame.
+fn in_byte(bit: &ast::StatusBit, place: Place) -> Option<u8> {
+    let (byte, bit): (usize, u32) = (bit.byte.as_ref()?.parse().ok()?, bit.bit.parse().ok()?);
+    let mut data = [0; 8];
+    *data.get_mut(byte)? = 1_u8.checked_shl(bit)?;
+    u8::try_from(place.get(&data).trailing_zeros()).ok().filter(|number| *number < WIDEST)
+}
+
+/// Returns the bit of a row that comes `index` bits after the first, with its number in name and title.
+fn numbered(first: &StatusBit, index: u8, number: u16) -> StatusBit {
+    let title = first.doc.title.as_ref().map(|title| Text::new(&format!("{} {number}", title.for_people())));
+    StatusBit {
+        name: format!("{}_{number}", first.name),
+        doc: Doc { title, ..first.doc.clone() },
+        bit: first.bit + index,
+        ..first.clone()
+    }
+}
