@@ -28,7 +28,7 @@ pub use id::{
     PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
-pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Travel, Who};
+pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
@@ -132,6 +132,8 @@ impl Protocol {
     pub fn base_identifier(&self, frame: &FrameLayout, pattern: &AddressPattern) -> u32 {
         let fields = self.identifier.fields.iter();
         let id = fields.fold(self.identifier.value, |id, field| field.put(id, field.sent()));
+        let sends = self[frame.message].sends.iter();
+        let id = sends.fold(id, |id, (field, value)| self[*field].put(id, *value));
         let id = frame.identifier().fold(id, |id, (field, value)| self[field].put(id, value));
         id & !pattern.mask | pattern.value
     }

@@ -11,10 +11,11 @@ mod keys;
 mod messages;
 mod patterns;
 pub(crate) mod rules;
+mod sending;
 mod sets;
 mod signals;
-mod texts;
 mod status;
+mod texts;
 mod types;
 
 use std::collections::{HashMap, HashSet};

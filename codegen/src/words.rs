@@ -22,6 +22,9 @@ pub const NUMBER_FORMATS: [(&str, NumberFormat); 5] = [
 /// What may stand after `outside`.
 pub const OUTSIDE: [&str; 1] = ["refused"];
 
+/// What may stand after `expect`, and whether reserved bits are free.
+pub const EXPECTED: [(&str, bool); 2] = [("sent", false), ("any", true)];
+
 /// The severities of a status bit.
 pub const SEVERITIES: [(&str, Severity); 3] =
     [("state", Severity::State), ("alarm", Severity::Alarm), ("fault", Severity::Fault)];

@@ -117,6 +117,12 @@ impl Filter {
         self
     }
 
+    /// Writes 1 to these bits of the data, and accepts any.
+    #[must_use]
+    pub(crate) const fn filled(self, ones: Data) -> Self {
+        Self { data_value: (word(self.data_value) | word(ones)).to_be_bytes(), ..self }
+    }
+
     /// Writes into the selectors without a required value that the reply reports no error.
     #[must_use]
     pub(crate) const fn accepting(mut self) -> Self {
@@ -227,8 +233,8 @@ impl Filter {
         self.id_value
     }
 
-    /// Returns the frame that shows what the filter requires, with zeros elsewhere. A reply reports
-    /// no error.
+    /// Returns the frame that shows what the filter requires. Elsewhere it has what the spec sends,
+    /// or zeros. A reply reports no error.
     pub const fn frame(&self, length: u8) -> Frame {
         Frame::new_raw(self.id_value, self.extended, self.data_value, length)
     }

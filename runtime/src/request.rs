@@ -8,7 +8,7 @@ use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::IdFilter;
 use crate::plumbing::Continuation;
 use crate::protocol::{is_to_module, own_id};
-use crate::{Error, Filter, Frame, Layout, Payload, Protocol, Reply};
+use crate::{Bits, Data, Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
 /// A target that a request of a protocol can address. Generated code implements it.
 pub trait Destination: Copy {
@@ -140,6 +140,26 @@ impl Exchange {
     #[must_use]
     pub const fn report(self, report: Filter) -> Self {
         Self { report: Some(report.accepting()), ..self }
+    }
+
+    /// Sets the value that its frames have in a field of the identifier when they are built. Any is
+    /// accepted.
+    #[must_use]
+    pub const fn send_id(self, bits: Bits, value: u32) -> Self {
+        let Self { request, reply, report, .. } = self;
+        let [request, reply, report] =
+            [sending(request, bits, value), sending(reply, bits, value), sending(report, bits, value)];
+        Self { request, reply, report, ..self }
+    }
+
+    /// Sets data bits that a request has as 1 although nothing names them. Any are accepted.
+    #[must_use]
+    pub const fn fill_request(self, ones: Data) -> Self {
+        let request = match self.request {
+            Some(request) => Some(request.filled(ones)),
+            None => None,
+        };
+        Self { request, ..self }
     }
 
     /// Adds the refusal, which answers a request in place of the reply. It is another message's
@@ -282,6 +302,13 @@ impl Exchange {
 const fn narrowed(filter: Option<Filter>, own: Filter) -> Option<Filter> {
     match filter {
         Some(filter) => Some(filter.and(own)),
+        None => None,
+    }
+}
+
+const fn sending(filter: Option<Filter>, bits: Bits, value: u32) -> Option<Filter> {
+    match filter {
+        Some(filter) => Some(filter.send_id(bits, value)),
         None => None,
     }
 }

@@ -72,6 +72,10 @@ impl Draft {
         if self.chance(20) {
             root.put("bit_rates", self.one(&[list(["125 kbit/s"]), list(["500 kbit/s", "1000 kbit/s"])]));
         }
+        if self.chance(15) {
+            let reserved = self.reserved();
+            root.put("reserved", reserved);
+        }
         let errata = self.all_errata();
         let timing = self.timing();
         self.name_models();

@@ -94,6 +94,8 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
         .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))
         .with("reserved", Value::unsigned_of_64_bits(!frame.covered))
+        .with("filled", Value::unsigned_of_64_bits(frame.filled()))
+        .maybe("free", frame.reserved.are_free.then(|| Value::flag(true)))
         .with("answers", Value::map(answers))
         .maybe("exchange", set.map(|(name, set)| Value::text(&exchange(name, set, message))))
         .maybe(

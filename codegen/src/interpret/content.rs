@@ -23,8 +23,13 @@ fn constants(protocol: &Protocol, message: &Message, example: &Example) -> [u8; 
     frame.map_or([0; 8], constant_data)
 }
 
+/// Returns the data bytes of a kind of frame that is built: its constants, and what is sent where nothing is named.
+pub fn blank_data(frame: &FrameLayout) -> [u8; 8] {
+    (u64::from_be_bytes(constant_data(frame)) | frame.filled()).to_be_bytes()
+}
+
 /// Returns the data bytes of a kind of frame with only its constants set.
-pub fn constant_data(frame: &FrameLayout) -> [u8; 8] {
+fn constant_data(frame: &FrameLayout) -> [u8; 8] {
     let mut data = [0; 8];
     frame.payload().for_each(|(place, value)| place.put(&mut data, value));
     data

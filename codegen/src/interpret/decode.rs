@@ -376,10 +376,7 @@ impl<'a> Decoder<'a> {
         notes.extend(self.address_notes(message, frame, &addressing));
         let note = |reading: &Reading| signal_note(self.protocol, &message[reading.signal], self.model, reading);
         notes.extend(signals.iter().filter_map(note));
-        if reserved != [0; 8] {
-            let bits = hex(&reserved[..self.frame.data.len()]);
-            notes.push(Note { rule: NoteRule::ReservedBit, text: format!("bits are set that no field has: 0x{bits}") });
-        }
+        notes.extend(self.reserved_note(frame, reserved));
         Decoded {
             frame: id,
             message: frame.message,
@@ -399,6 +396,15 @@ impl<'a> Decoder<'a> {
     /// Returns the set bits that neither a signal nor a selector covers.
     fn reserved(&self, frame: &FrameLayout) -> [u8; 8] {
         (u64::from_be_bytes(self.data) & !frame.covered).to_be_bytes()
+    }
+
+    /// Notes bits that nothing covers, if they are not as they are sent.
+    fn reserved_note(&self, frame: &FrameLayout, reserved: [u8; 8]) -> Option<Note> {
+        let odd = u64::from_be_bytes(reserved) ^ frame.filled();
+        let found = if frame.reserved.are_ones { "clear" } else { "set" };
+        let bits = hex(&odd.to_be_bytes()[..self.frame.data.len()]);
+        let text = format!("bits are {found} that no field has: 0x{bits}");
+        (odd != 0 && !frame.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
     }
 
     fn error_notes(&self, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) -> Vec<Note> {

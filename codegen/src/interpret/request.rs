@@ -1,6 +1,6 @@
 //! Makes a request by name: `set_output` to `module:3`.
 
-use super::content::constant_data;
+use super::content::blank_data;
 use super::encode::{find_message, frame, not_of, refuse};
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
@@ -181,7 +181,7 @@ fn made(
     }
     let mode = mode(protocol, message, layout, target)?;
     let id = identifier(protocol, message, layout, mode, target, source)?;
-    let mut data = constant_data(layout);
+    let mut data = blank_data(layout);
     put_signals(protocol, message, layout, signals, model, &mut data)?;
     let frame = frame(protocol, message, id, data);
     decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;

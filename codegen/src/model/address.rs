@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{AddressTypeId, Doc, FieldId, Kind, Who};
+use crate::model::{AddressTypeId, Doc, FieldId, IdentifierField, Kind, Table, Who};
 
 /// A kind of address: a range of numbers in a field of the identifier.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -101,6 +101,14 @@ pub struct AddressPattern {
     pub constants: usize,
     /// Fields that hold addresses.
     pub addresses: Vec<Address>,
+}
+
+impl AddressPattern {
+    /// Tests whether a field of the identifier holds one of the constants or addresses.
+    pub fn fixes(&self, field: &IdentifierField, fields: &Table<FieldId, IdentifierField>) -> bool {
+        let mut addresses = self.addresses.iter();
+        self.mask & field.mask() != 0 || addresses.any(|address| fields[address.field].shift == field.shift)
+    }
 }
 
 /// A field of the identifier that holds an address.

@@ -51,6 +51,11 @@ impl IdentifierField {
         ones << self.shift
     }
 
+    /// Returns the greatest value that fits.
+    pub fn greatest(&self) -> u32 {
+        u32::MAX >> (32 - self.width)
+    }
+
     /// Returns the value that is sent in the field if nothing else chooses one.
     pub fn sent(&self) -> u32 {
         self.constant.or(self.send).or(self.normal).unwrap_or(0)

@@ -77,6 +77,16 @@ pub struct Access {
     pub every: Option<TimingId>,
 }
 
+/// What the bits are that nothing in a frame names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Reserved {
+    /// Whether frames that are built send them as 1, and not as 0.
+    pub are_ones: bool,
+    /// Whether received ones may have any value without a note.
+    pub are_free: bool,
+}
+
 /// A message.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -104,6 +114,10 @@ pub struct Message {
     pub models: Vec<ModelId>,
     /// What it consists of, if it travels as several frames.
     pub set: Option<Set>,
+    /// Fields of the identifier that it sends with a value of its own. Received ones may have any.
+    pub sends: Vec<(FieldId, u32)>,
+    /// What the bits are that nothing names.
+    pub reserved: Reserved,
 }
 
 impl Message {
@@ -183,6 +197,8 @@ pub struct FrameLayout {
     pub signals: Vec<SignalId>,
     /// Payload bits of selectors and signals, byte 0 highest.
     pub covered: u64,
+    /// What the bits are that nothing covers.
+    pub reserved: Reserved,
     /// The addressing modes by which it is sent, and who answers or sends it.
     pub travels: Vec<Travel>,
 }
@@ -196,6 +212,16 @@ impl FrameLayout {
     /// Returns the constants of the payload.
     pub fn payload(&self) -> impl Iterator<Item = (Place, u64)> {
         self.constants.iter().filter_map(Constant::in_payload)
+    }
+
+    /// Returns the payload bits that nothing covers, byte 0 highest.
+    pub fn uncovered(&self) -> u64 {
+        !self.covered & u64::MAX.checked_shl(64 - 8 * u32::from(self.length)).unwrap_or(0)
+    }
+
+    /// Returns the payload bits that are sent as 1 although nothing covers them, byte 0 highest.
+    pub fn filled(&self) -> u64 {
+        if self.reserved.are_ones { self.uncovered() } else { 0 }
     }
 
     /// Tests whether another frame belongs to the same access, alone or of the same set.

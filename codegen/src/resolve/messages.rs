@@ -8,7 +8,7 @@ use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    Message, MessageId, ModelId, SelectorPlace, Signal, SignalId, Table, Travel,
+    Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
 use crate::resolve::rules;
 use crate::syntax::ast;
@@ -17,10 +17,11 @@ use crate::syntax::tree::Path;
 /// The tables that messages refer to.
 pub struct Surroundings<'a> {
     pub identifier: &'a Identifier,
-    modes: &'a Modes,
+    pub modes: &'a Modes,
     pub accesses: &'a Accesses,
     timing: &'a Times,
     length: u8,
+    reserved: Reserved,
 }
 
 /// The accesses of the protocol.
@@ -92,7 +93,8 @@ impl Resolver<'_> {
     ) -> (Table<MessageId, Message>, Table<FrameId, FrameLayout>) {
         let spec = self.spec;
         let length = self.integer(&Path::default().key("length"), &spec.length, 0, 8).unwrap_or(8);
-        let surroundings = Surroundings { identifier, modes, accesses, timing, length };
+        let reserved = self.reserved(&Path::default(), spec.reserved.as_ref(), Reserved::default());
+        let surroundings = Surroundings { identifier, modes, accesses, timing, length, reserved };
         let root = Path::default().key("messages");
         let entries = spec.messages.iter().enumerate();
         let mut drafts: Table<MessageId, Draft> = entries
@@ -145,6 +147,8 @@ impl Resolver<'_> {
             self.misplaced_every(path, "a message", "name an access that has a `report`");
         }
         let models = self.message_models(&path.key("models"), &message.models);
+        let sends = self.own_sends(&path.key("send"), &message.send, &frames, surroundings);
+        let reserved = self.reserved(path, message.reserved.as_ref(), surroundings.reserved);
         let name = name.to_owned();
         let message = Message {
             name,
@@ -158,6 +162,8 @@ impl Resolver<'_> {
             every,
             models,
             set,
+            sends,
+            reserved,
         };
         Draft { message, frames, choice }
     }
@@ -172,6 +178,7 @@ impl Resolver<'_> {
         for Draft { mut message, frames: drafted, .. } in drafts {
             let complete = |frame: FrameLayout| FrameLayout {
                 covered: self.covered(&message, &frame),
+                reserved: message.reserved,
                 travels: travels(modes, frame.kind, &message[frame.exchange].answers),
                 ..frame
             };
@@ -363,6 +370,7 @@ impl Resolver<'_> {
             selectors,
             signals: signals.map(|(id, _)| id).collect(),
             covered: 0,
+            reserved: Reserved::default(),
             travels: Vec::new(),
         }
     }

@@ -6,7 +6,7 @@ use crate::model::NoteRule;
 use crate::model::{Failure, Kind, Unit};
 use crate::rules::RULES;
 use crate::syntax::ast::Key;
-use crate::words::{ANSWERS, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
+use crate::words::{ANSWERS, EXPECTED, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
 
 /// The form of a text. What YAML reads as a number needs none.
 #[derive(Clone, Copy)]
@@ -34,21 +34,23 @@ enum Demand {
 
 /// Keys whose texts have a form, with the struct that has the key. The keys of a field are in
 /// [`of_field`].
-const FORMS: [(&str, &str, Form); 7] = [
+const FORMS: [(&str, &str, Form); 12] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
     ("Access", "report", NUMBER),
     ("Access", "request", NUMBER),
     ("Message", "length", NUMBER),
     ("Message", "match", NUMBER),
+    ("Message", "send", NUMBER),
+    ("Reserved", "send", NUMBER),
     ("StatusBit", "bit", NUMBER),
-];
-
     ("StatusBit", "byte", NUMBER),
     ("StatusBit", "first", NUMBER),
     ("StatusBit", "repeat", NUMBER),
+];
+
 /// Returns the keys whose value is one of a few words, with the struct that has the key.
-fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 10] {
+fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 11] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();
     [
         ("Access", "answers", answers.clone()),
@@ -60,6 +62,7 @@ fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 10] {
         ("Example", "origin", ORIGINS.to_vec()),
         ("Message", "answers", answers),
         ("Message", "in", vec![Kind::Request.name(), Kind::Reply.name()]),
+        ("Reserved", "expect", EXPECTED.map(|(word, _)| word).to_vec()),
         ("StatusBit", "severity", SEVERITIES.map(|(word, _)| word).to_vec()),
     ]
 }

@@ -38,6 +38,9 @@ pub struct Spec {
     /// or 29 bits: `{command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}`.
     #[cfg_attr(feature = "schema", schemars(schema_with = "crate::schema::identifier"))]
     pub identifier: Map<IdentifierEntry>,
+    /// What the bits are that nothing names: `{send: 1, expect: any}`. If absent, they are sent as
+    /// 0, and a received 1 gets a note.
+    pub reserved: Option<Reserved>,
     /// Fields by name, in the data bytes, that choose the message: `{register: {bytes: 2..3}}`;
     /// none if absent. A frame has them if its message or its access names one of them.
     #[serde(default)]
@@ -87,6 +90,18 @@ pub struct Spec {
     pub allow: Vec<Allowance>,
 }
 
+/// What the bits are that nothing names.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Reserved {
+    /// What they are in frames that are built: `0` or `1`; 0 if absent.
+    pub send: Option<String>,
+    /// What they may be in received frames without a note: `sent` (what is sent) or `any`; `sent`
+    /// if absent.
+    pub expect: Option<String>,
+}
+
 /// The vendor document that the spec follows.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -119,6 +134,12 @@ pub enum IdentifierEntry {
 pub struct StatusBit {
     /// Number of the bit in its word, or in the `byte`: `3`. Bit 0 is the least significant.
     pub bit: String,
+    /// Byte of the frame in which `bit` counts, 0 to 7: `5`; if absent, `bit` counts in the word.
+    pub byte: Option<String>,
+    /// How many bits in a row have this name and a number: `48`; one bit without a number if absent.
+    pub repeat: Option<String>,
+    /// Number of the first bit of a row: `0`; 1 if absent.
+    pub first: Option<String>,
     /// Severity of the set bit: `state` (a condition), `alarm` (the device recovers) or `fault` (a
     /// defect); not stated if absent.
     pub severity: Option<String>,
@@ -134,12 +155,6 @@ pub struct StatusBit {
     pub title: Option<String>,
     /// What else a reader must know, in one sentence: `valid on three-phase modules only`.
     pub note: Option<String>,
-    /// Byte of the frame in which `bit` counts, 0 to 7: `5`; if absent, `bit` counts in the word.
-    pub byte: Option<String>,
-    /// How many bits in a row have this name and a number: `48`; one bit without a number if absent.
-    pub repeat: Option<String>,
-    /// Number of the first bit of a row: `0`; 1 if absent.
-    pub first: Option<String>,
     /// Section of the document that says so, in quotes: `"2.4"`; if absent, that of the item around it.
     pub section: Option<String>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.

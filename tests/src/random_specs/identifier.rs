@@ -26,6 +26,8 @@ pub struct Bus {
     pub register: Option<Chooser>,
     /// A field that replies can show by the type of a value.
     pub spare: Option<String>,
+    /// A field that messages can send with a value of their own.
+    pub priority: Option<String>,
     /// Whether a field says that more frames of a set follow.
     pub continues: bool,
     /// Data bytes that the header takes.
@@ -89,7 +91,7 @@ impl Draft {
     fn above(&mut self, bus: &mut Bus, filling: &mut Filling, below: u8) {
         if filling.next - below >= 14 {
             self.fixed(filling);
-            self.priority(filling);
+            self.priority(bus, filling);
         }
         if filling.next - below >= 12 && self.random.bool() {
             let (name, field) = (self.field_name(filling), self.selector(3));
@@ -134,7 +136,7 @@ impl Draft {
         }
     }
 
-    fn priority(&mut self, filling: &mut Filling) {
+    fn priority(&mut self, bus: &mut Bus, filling: &mut Filling) {
         let (name, mut field) = (self.field_name(filling), self.selector(3));
         for key in ["send", "normal"] {
             if self.chance(35) {
@@ -145,6 +147,7 @@ impl Draft {
         }
         let field = self.with_types(field, &["bits"], 0);
         filling.add(&name, field, 3);
+        bus.priority = Some(name);
     }
 
     /// Returns what a field that tells frames apart can have beside its place.

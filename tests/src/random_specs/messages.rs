@@ -189,9 +189,25 @@ impl Draft {
             let models = self.models.clone();
             message.put("models", list(self.some(&models)));
         }
+        if let Some(priority) = bus.priority.as_ref().filter(|_| self.random.u8(..100) < 20) {
+            let value = self.random.u8(..8);
+            message.put("send", Map::of([(priority.clone(), self.number(value))]));
+        }
+        if self.chance(10) {
+            let reserved = self.reserved();
+            message.put("reserved", reserved);
+        }
         self.content(bus, &mut message, &kinds, false);
         self.remark(&mut message);
         self.add_message(traffic, message);
+    }
+
+    /// Says what the bits are that nothing names.
+    pub fn reserved(&mut self) -> Map {
+        let (send, expect) = (self.one(&["0", "1"]), self.one(&["sent", "any"]));
+        let (send, expect) = (Map::of([("send", send)]), Map::of([("expect", expect)]));
+        let both = Map(send.0.iter().chain(expect.0.iter()).map(|(key, value)| (key.clone(), value.clone())).collect());
+        self.one(&[send, expect, both])
     }
 
     fn add_message(&mut self, traffic: &mut Traffic, message: Map) -> String {

@@ -529,9 +529,11 @@ local function decode(frame)
     if known.rule then note(known.rule, known.text) end
   end
   local reserved = frame.big:band(layout.reserved):tohex(-16):sub(1, 2 * frame.length)
-  if reserved:find("[^0]") then
-    decoded.reserved = reserved
-    note("reserved_bit", "bits are set that no field has: 0x" .. reserved)
+  if reserved:find("[^0]") then decoded.reserved = reserved end
+  local odd = frame.big:band(layout.reserved):bxor(layout.filled):tohex(-16):sub(1, 2 * frame.length)
+  if odd:find("[^0]") and not layout.free then
+    local found = layout.filled == UInt64(0) and "set" or "clear"
+    note("reserved_bit", "bits are " .. found .. " that no field has: 0x" .. odd)
   end
   if other_model then note("model_dependent", other_model) end
   return decoded

@@ -36,12 +36,7 @@ fn member(Signal { coding, member: Member { name, comment, kind, .. }, .. }: &Si
 fn constants(message: &Message, own: &Struct) -> TokenStream {
     let Struct { name, is_home, reserved, requests, within, .. } = own;
     let signals = message.signals.iter().filter(|_| *is_home).map(signal);
-    let reserved = reserved.iter().map(|reserved| {
-        quote! {
-            /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
-            pub const RESERVED: Data = #reserved;
-        }
-    });
+    let reserved = reserved.iter().map(|(comment, bits)| quote!(#comment pub const RESERVED: Data = #bits;));
     let exchanges = message.exchanges.iter().filter(|_| *is_home).map(exchange);
     let requests = requests.iter().map(request);
     let of_model = within.as_ref().map(|Within { requests, .. }| {

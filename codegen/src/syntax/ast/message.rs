@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Field, Map, Names, Pattern};
+use super::{Field, Map, Names, Pattern, Reserved};
 
 /// A message: what chooses it, how it travels, and what it carries.
 #[derive(Clone, Debug, Deserialize)]
@@ -24,6 +24,13 @@ pub struct Message {
     /// Number of data bytes of its frames, 0 to 8: `4`; the protocol's `length` if absent. It never
     /// chooses the message.
     pub length: Option<String>,
+    /// Raw values that fields of the identifier have in frames that are built, in place of their own
+    /// `send`: `{priority: 4}`. Received frames may have any. None if absent.
+    #[serde(default)]
+    pub send: Pattern,
+    /// What the bits are that nothing names, in place of the protocol's `reserved`:
+    /// `{send: 1, expect: any}`.
+    pub reserved: Option<Reserved>,
     /// List of the only device models that have the message: `[SM_750]`; every model has it if
     /// absent.
     #[serde(default)]

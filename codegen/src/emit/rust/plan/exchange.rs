@@ -6,9 +6,9 @@ use indexmap::{IndexMap, IndexSet};
 use proc_macro2::{Ident, TokenStream};
 
 use super::doc::{self, Comment};
-use super::literal::decimal;
+use super::literal::{data, decimal, hexadecimal};
 use super::models::Models;
-use super::naming::{Pool, ident};
+use super::naming::{Pool, ident, screaming};
 use super::selector::{Filter, Selectors};
 use crate::model::{
     AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
@@ -58,6 +58,10 @@ pub struct Exchange {
     pub length: Option<TokenStream>,
     /// Variants of the only device models that have it; empty if all have.
     pub models: Vec<Ident>,
+    /// Fields of the identifier that it sends with a value of its own.
+    pub sends: Vec<(Ident, TokenStream)>,
+    /// The bits of the data that its request has as 1 although nothing names them.
+    pub filled: Option<TokenStream>,
     /// What a frame that refuses its request shows.
     pub refusal: Option<Filter>,
 }
@@ -199,6 +203,12 @@ pub fn membership(protocol: &Protocol, set: Option<MessageId>) -> String {
     set.map_or_else(String::new, |set| format!(" in the set `{}`", protocol[set].name))
 }
 
+/// Returns the fields of the identifier that a message sends with a value of its own.
+fn sends(protocol: &Protocol, message: &Message) -> Vec<(Ident, TokenStream)> {
+    let sends = message.sends.iter().map(|(id, value)| (&protocol[*id], *value));
+    sends.map(|(field, value)| (screaming(&field.name), hexadecimal(value, field.width))).collect()
+}
+
 impl Exchange {
     /// Plans how a message travels; `constant` and `shared` are those of the exchange.
     pub fn new(
@@ -211,6 +221,9 @@ impl Exchange {
         let exchange = &message[id];
         let known = &protocol[exchange.access];
         let set = membership(protocol, exchange.set);
+        let frames = protocol.frames_of(message).filter(|frame| frame.exchange == id);
+        let mut requests = frames.filter(|frame| frame.kind == Kind::Request);
+        let filled = requests.next().map(FrameLayout::filled).filter(|ones| *ones != 0);
         let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
         Self {
             constant: constant.clone(),
@@ -221,6 +234,8 @@ impl Exchange {
             answers: (exchange.answers != known.answers).then(|| exchange.answers.to_vec()),
             length: (message.length != 8).then(|| decimal(message.length)),
             models: message.models.iter().map(|model| models.variant(*model).clone()).collect(),
+            sends: sends(protocol, message),
+            filled: filled.map(|ones| data(ones.to_be_bytes())),
             refusal: refusal.map(|refusal| Filter::new(selectors, &refusal.selectors, &refusal.constants)),
         }
     }

@@ -45,8 +45,8 @@ pub struct Struct {
     pub signals: Vec<SignalId>,
     /// Whether equality is exact.
     pub is_exact: bool,
-    /// The bits that the document reserves, if it has signals.
-    pub reserved: Option<TokenStream>,
+    /// The bits that the document reserves and their comment, if it has signals.
+    pub reserved: Option<(Comment, TokenStream)>,
     /// The methods that build requests.
     pub requests: Vec<Request>,
     /// The values within the limits of a device model.
@@ -243,7 +243,8 @@ struct Host<'a> {
 }
 
 /// Writes the bits of the data that neither signals nor selectors cover.
-fn reserved(frame: &FrameLayout) -> TokenStream {
-    let present = u64::MAX.checked_shl(64 - 8 * u32::from(frame.length)).unwrap_or(0);
-    literal::data((!frame.covered & present).to_be_bytes())
+fn reserved(frame: &FrameLayout) -> (Comment, TokenStream) {
+    let sent = u8::from(frame.reserved.are_ones);
+    let comment = Comment::line(format!("The data bits that the document reserves; requests send them as {sent}."));
+    (comment, literal::data(frame.uncovered().to_be_bytes()))
 }
