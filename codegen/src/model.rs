@@ -28,6 +28,7 @@ pub use id::{
     PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
+pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;

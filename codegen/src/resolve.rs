@@ -1,6 +1,7 @@
 //! Turns what is written into what is meant: names become references, places masks, and texts
 //! numbers.
 
+mod absent;
 mod access;
 mod addressing;
 mod data;
@@ -72,6 +73,8 @@ struct Tables {
     models: Table<ModelId, model::DeviceModel>,
     /// Number of fields in the current message so far.
     fields: usize,
+    /// Whether all ones mean that there is no value, unless a field says otherwise.
+    absent_are_ones: bool,
 }
 
 impl Resolver<'_> {
@@ -83,6 +86,7 @@ impl Resolver<'_> {
         self.tables.models = self.models();
         let procedures = self.procedures();
         let errata = self.errata();
+        self.tables.absent_are_ones = self.absent_of_protocol();
         let identifier = self.identifier()?;
         self.header_selectors();
         let address_types = self.address_types();

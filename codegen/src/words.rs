@@ -19,6 +19,9 @@ pub const NUMBER_FORMATS: [(&str, NumberFormat); 5] = [
     ("text", NumberFormat::Text),
 ];
 
+/// What may stand after `absent`, and whether all ones mean that there is no value.
+pub const ABSENT: [(&str, bool); 2] = [("none", false), ("ones", true)];
+
 /// What may stand after `outside`.
 pub const OUTSIDE: [&str; 1] = ["refused"];
 

@@ -52,6 +52,14 @@ pub enum Error {
         /// Name of the signal.
         signal: &'static str,
     },
+    /// An optional signal has no value, but the frame is long enough for it: a value behind it is
+    /// given.
+    Missing {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the signal.
+        signal: &'static str,
+    },
     /// The device model does not have the message.
     Model {
         /// Name of the message.
@@ -102,6 +110,9 @@ impl fmt::Display for Error {
             }
             Self::NotFinite { message, signal } => write!(formatter, "`{signal}` of `{message}` is no finite number"),
             Self::Meaning { message, signal } => write!(formatter, "`{signal}` of `{message}` has no such value"),
+            Self::Missing { message, signal } => {
+                write!(formatter, "`{signal}` of `{message}` is left out, but what stands behind it is not")
+            }
             Self::Model { message } => write!(formatter, "the device model has no `{message}`"),
             Self::Mode { message, access, mode: Some(mode) } => {
                 write!(formatter, "`{message}` has no `{access}` with the addressing mode `{mode}`")

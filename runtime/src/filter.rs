@@ -29,12 +29,6 @@ impl Selector {
     pub(crate) fn is_normal(&self, raw: u64) -> bool {
         self.normal.is_none_or(|normal| raw == normal)
     }
-
-    /// Tests whether the first `length` data bytes contain the field.
-    #[inline]
-    pub(crate) fn is_within(&self, length: usize) -> bool {
-        self.place.mask().iter().skip(length).all(|byte| *byte == 0)
-    }
 }
 
 /// What identifiers of a protocol must show. Generated code builds it from constants and addresses.

@@ -72,6 +72,11 @@ impl Frame {
     pub(crate) fn length(&self) -> usize {
         self.length.into()
     }
+
+    #[inline]
+    pub(crate) const fn byte_count(&self) -> u8 {
+        self.length
+    }
 }
 
 impl embedded_can::Frame for Frame {

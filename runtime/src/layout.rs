@@ -1,6 +1,6 @@
 //! Layouts: the structs that messages decode to.
 
-use crate::{AnySignal, Data, Error, Payload};
+use crate::{AnySignal, Data, Error, Frame, Payload};
 
 /// The values that a kind of frame carries.
 pub trait Layout: Sized + 'static {
@@ -10,6 +10,21 @@ pub trait Layout: Sized + 'static {
     const DECODE: Decode<Self>;
     /// Writes the values to the data.
     const ENCODE: Encode<Self>;
+
+    /// The numbers of data bytes that such a frame can have, if there are several.
+    const LENGTHS: &'static [u8] = &[];
+
+    /// Reads the values from a frame, which may lack those that are optional.
+    #[inline(always)]
+    fn read(frame: &Frame) -> Self {
+        Self::read_some(&frame.bytes(), frame.length())
+    }
+
+    /// Reads the values from the data of a frame of `length` bytes.
+    #[inline(always)]
+    fn read_some(data: &Data, _length: usize) -> Self {
+        Self::decode(data)
+    }
 
     /// Reads the values from the data of such a frame.
     #[inline(always)]

@@ -9,19 +9,21 @@ pub struct Payload {
     data: Data,
     keeps_limits: bool,
     model: Option<u8>,
+    length: Option<u8>,
+    received: u8,
 }
 
 impl Payload {
     /// Returns the bytes of a message that takes all values that fit its signals, as in a reply.
     #[inline(always)]
     pub const fn new(message: &'static str, data: Data) -> Self {
-        Self { message, data, keeps_limits: false, model: None }
+        Self { message, data, keeps_limits: false, model: None, length: None, received: 0 }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
     #[inline(always)]
     pub const fn within_limits(message: &'static str, data: Data) -> Self {
-        Self { message, data, keeps_limits: true, model: None }
+        Self { message, data, keeps_limits: true, model: None, length: None, received: 0 }
     }
 
     /// Returns the same bytes for a device model, by its number. The model's limits then replace
@@ -30,6 +32,31 @@ impl Payload {
     #[inline(always)]
     pub const fn for_model(self, model: Option<u8>) -> Self {
         Self { model, ..self }
+    }
+
+    /// Says how many data bytes the frame had from which the bytes are.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) const fn received_with(self, received: u8) -> Self {
+        Self { received, ..self }
+    }
+
+    /// Tests whether the bytes are from a frame with at least `length` data bytes.
+    #[inline(always)]
+    pub const fn had(&self, length: u8) -> bool {
+        self.received >= length
+    }
+
+    /// Sets the number of data bytes, of a message that can have several.
+    #[inline(always)]
+    pub const fn end_after(&mut self, length: u8) {
+        self.length = Some(length);
+    }
+
+    /// Returns the number of data bytes, if the message can have several.
+    #[inline(always)]
+    pub(crate) const fn length(&self) -> Option<u8> {
+        self.length
     }
 
     /// Returns the bytes written so far.

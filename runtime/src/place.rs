@@ -205,6 +205,13 @@ impl Place {
         self.order.store(self.bits.mask())
     }
 
+    /// Tests whether the first `length` data bytes contain all of it.
+    #[expect(clippy::cast_possible_truncation, reason = "it is below 8")]
+    #[inline(always)]
+    pub const fn is_within(self, length: usize) -> bool {
+        length >= 8 || u64::from_be_bytes(self.mask()) & u64::MAX.wrapping_shr(8 * length as u32) == 0
+    }
+
     /// Returns the number at this place.
     #[inline(always)]
     pub const fn get(self, data: &Data) -> u64 {

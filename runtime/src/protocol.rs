@@ -80,25 +80,34 @@ pub struct Recognised<M> {
     pub(crate) exchange: &'static Exchange,
     pub(crate) kind: Kind,
     pub(crate) message: M,
+    /// The numbers of data bytes, if there are several.
+    lengths: &'static [u8],
 }
 
 impl<M: Protocol> Recognised<M> {
     /// Returns the message of a request.
     #[inline(always)]
     pub const fn request(exchange: &'static Exchange, message: M) -> Self {
-        Self { exchange, kind: Kind::Request, message }
+        Self { exchange, kind: Kind::Request, message, lengths: &[] }
     }
 
     /// Returns the message of a reply.
     #[inline(always)]
     pub const fn reply(exchange: &'static Exchange, message: M) -> Self {
-        Self { exchange, kind: Kind::Reply, message }
+        Self { exchange, kind: Kind::Reply, message, lengths: &[] }
     }
 
     /// Returns the message of a report.
     #[inline(always)]
     pub const fn report(exchange: &'static Exchange, message: M) -> Self {
-        Self { exchange, kind: Kind::Report, message }
+        Self { exchange, kind: Kind::Report, message, lengths: &[] }
+    }
+
+    /// Sets the numbers of data bytes that the frame can have.
+    #[must_use]
+    #[inline(always)]
+    pub const fn of_lengths(self, lengths: &'static [u8]) -> Self {
+        Self { lengths, ..self }
     }
 
     /// Returns `other` if it fits the frame better: first by length, then by device model, then by
@@ -116,8 +125,18 @@ impl<M: Protocol> Recognised<M> {
 
     #[inline(always)]
     pub(crate) fn has_length_of(&self, frame: &Frame) -> bool {
-        usize::from(self.exchange.data_length()) == frame.length()
+        if self.lengths.is_empty() {
+            usize::from(self.exchange.data_length()) == frame.length()
+        } else {
+            has(self.lengths, frame)
+        }
     }
+}
+
+/// Tests whether a frame has one of these numbers of data bytes.
+#[inline(always)]
+pub fn has(lengths: &[u8], frame: &Frame) -> bool {
+    lengths.iter().any(|length| usize::from(*length) == frame.length())
 }
 
 /// Why a frame is not recognised, in the order of the tests.

@@ -62,7 +62,7 @@ impl<P: Protocol> Received<P> {
         if P::LENGTH.is_none() && !recognised.has_length_of(&frame) {
             return None;
         }
-        let Recognised { exchange, kind, message: content } = recognised;
+        let Recognised { exchange, kind, message: content, .. } = recognised;
         Some(Self { content, exchange, frame, id, model, kind, is_other: false })
     }
 
@@ -154,7 +154,8 @@ impl<P: Protocol> Received<P> {
     /// no value as a text.
     pub fn visit(&self, mut visitor: impl FnMut(Reading<'_>)) {
         let is_of_error_reply = self.is_error_reply();
-        for signal in self.signals() {
+        let signals = self.signals().iter().filter(|signal| signal.place().is_within(self.frame.length()));
+        for signal in signals {
             signal.read(&self.frame.bytes(), &mut |reading| visitor(Reading { is_of_error_reply, ..reading }));
         }
     }
@@ -178,7 +179,9 @@ impl<P: Protocol> Received<P> {
     /// - addressing modes that the message does not have,
     /// - addresses that the document does not name.
     pub fn encode(&self) -> Result<Frame, Error> {
-        let frame = Frame::new_raw(self.id, P::FRAME.is_extended(), self.data()?, self.exchange.data_length());
+        let payload = self.payload()?;
+        let length = payload.length().unwrap_or(self.exchange.data_length());
+        let frame = Frame::new_raw(self.id, P::FRAME.is_extended(), *payload.data(), length);
         if self.is_other || self.id != self.frame.raw_id() {
             self.check_recognised(&frame)?;
         }
@@ -205,11 +208,12 @@ impl<P: Protocol> Received<P> {
     }
 
     /// Writes the signals over the received data.
-    fn data(&self) -> Result<Data, Error> {
+    fn payload(&self) -> Result<Payload, Error> {
         let new = if self.kind.is_to_module() { Payload::within_limits } else { Payload::new };
-        let mut payload = new(self.exchange().message(), self.frame.bytes()).for_model(self.model);
+        let payload = new(self.exchange().message(), self.frame.bytes()).for_model(self.model);
+        let mut payload = payload.received_with(self.frame.byte_count());
         self.content.run(&mut payload)?;
-        Ok(*payload.data())
+        Ok(payload)
     }
 
     /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message

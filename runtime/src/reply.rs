@@ -3,6 +3,7 @@
 use core::fmt;
 use core::marker::PhantomData;
 
+use crate::protocol::has;
 use crate::{Frame, IdentifierFields, Layout, Protocol, Selector};
 
 /// A frame that answers a request.
@@ -31,12 +32,13 @@ impl<P: Protocol, R> Reply<P, R> {
 }
 
 impl<P: Protocol, R: Layout> Reply<P, R> {
-    /// Decodes a reply, which should have `length` data bytes.
+    /// Decodes a reply, which should have `length` data bytes, or one of those of its layout.
     #[inline(always)]
     pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
-        let values = match failure::<P>(selectors, length, &frame) {
+        let is_right = if R::LENGTHS.is_empty() { frame.length() == length } else { has(R::LENGTHS, &frame) };
+        let values = match failure::<P>(selectors, is_right, &frame) {
             Some(failure) => Err(failure),
-            None => Ok(R::decode(&frame.bytes())),
+            None => Ok(R::read(&frame)),
         };
         Self { values, selectors, frame, protocol: PhantomData }
     }
@@ -82,14 +84,10 @@ impl fmt::Display for Failure {
 
 impl core::error::Error for Failure {}
 
-/// Says why a reply of `length` bytes has no values.
+/// Says why a reply, which has a right length or not, has no values.
 #[inline(always)]
-fn failure<P: Protocol>(selectors: &'static [Selector], length: usize, frame: &Frame) -> Option<Failure> {
-    if has_error::<P>(selectors, frame) {
-        Some(Failure::Error)
-    } else {
-        (frame.length() != length).then_some(Failure::Length)
-    }
+fn failure<P: Protocol>(selectors: &'static [Selector], has_right_length: bool, frame: &Frame) -> Option<Failure> {
+    if has_error::<P>(selectors, frame) { Some(Failure::Error) } else { (!has_right_length).then_some(Failure::Length) }
 }
 
 /// Tests whether identifier or selectors show an error code.
@@ -100,6 +98,6 @@ pub fn has_error<P: Protocol>(selectors: &'static [Selector], frame: &Frame) -> 
 
 /// Returns the selectors that a frame is long enough to have, each with its raw value.
 pub fn selected(selectors: &'static [Selector], frame: Frame) -> impl Iterator<Item = (&'static Selector, u64)> {
-    let known = selectors.iter().filter(move |selector| selector.is_within(frame.length()));
+    let known = selectors.iter().filter(move |selector| selector.place.is_within(frame.length()));
     known.map(move |selector| (selector, selector.place.get(&frame.bytes())))
 }

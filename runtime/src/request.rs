@@ -179,7 +179,7 @@ impl Exchange {
         self.set
     }
 
-    /// Returns the number of data bytes.
+    /// Returns the number of data bytes, or the least one if there are several.
     pub const fn data_length(&self) -> u8 {
         self.length
     }
@@ -289,7 +289,8 @@ impl Exchange {
         let filter = request.narrowed(target.request(sender)?);
         let mut payload = Payload::within_limits(self.message, filter.data_value()).for_model(model);
         message.encode(&mut payload)?;
-        let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), self.length);
+        let length = payload.length().unwrap_or(self.length);
+        let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), length);
         Ok(Request { frame, exchange: self, who, replies: target.replies(who, sender), carried: PhantomData })
     }
 
@@ -394,7 +395,7 @@ impl<P: Protocol, R> Request<P, R> {
         R: Layout,
     {
         Some(match self.answer(frame)? {
-            (Answer::Values(reply), frame) => Reply::decode(reply.data_selectors(), self.frame.length(), frame),
+            (Answer::Values(reply), frame) => Reply::decode(reply.data_selectors(), self.exchange.length.into(), frame),
             (Answer::Refusal(refusal), frame) => Reply::refused(refusal.data_selectors(), frame),
         })
     }

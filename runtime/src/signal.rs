@@ -44,13 +44,24 @@ pub struct Signal<R: 'static, F: 'static = R> {
     limits: Option<(F, F)>,
     model_limits: &'static [(u8, Option<(F, F)>)],
     specials: &'static [(i64, &'static str)],
+    has_absent: bool,
     raw: PhantomData<R>,
 }
 
 impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns a signal whose physical value is its raw value.
     pub const fn new(name: &'static str, place: Place) -> Self {
-        Self { name, place, unit: None, scale: None, limits: None, model_limits: &[], specials: &[], raw: PhantomData }
+        Self {
+            name,
+            place,
+            unit: None,
+            scale: None,
+            limits: None,
+            model_limits: &[],
+            specials: &[],
+            has_absent: false,
+            raw: PhantomData,
+        }
     }
 
     /// Adds the unit of the physical value.
@@ -77,6 +88,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     #[must_use]
     pub const fn specials(self, specials: &'static [(i64, &'static str)]) -> Self {
         Self { specials, ..self }
+    }
+
+    /// Says that all ones, or the greatest signed number, mean that there is no value.
+    #[must_use]
+    pub const fn absent(self) -> Self {
+        Self { has_absent: true, ..self }
     }
 
     /// Returns the place in the data.
@@ -118,6 +135,52 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             self.check(self.physical(raw), payload)?;
         }
         if self.store(raw.to_bits(), payload) { Ok(()) } else { Err(self.too_wide(self.physical(raw), payload)) }
+    }
+
+    /// Returns the raw value, if a frame of `length` data bytes has it.
+    #[inline(always)]
+    pub fn get_some(&self, data: &Data, length: usize) -> Option<R> {
+        self.is_there(data, length).then(|| self.get(data))
+    }
+
+    /// Tests whether a frame of `length` data bytes has a value.
+    #[inline(always)]
+    fn is_there(&self, data: &Data, length: usize) -> bool {
+        self.place.is_within(length) && !(self.has_absent && self.place.get(data) == self.absent_bits())
+    }
+
+    /// Returns the bits that say that there is no value.
+    #[inline(always)]
+    const fn absent_bits(&self) -> u64 {
+        if R::SIGNED { self.place.max() >> 1 } else { self.place.max() }
+    }
+
+    /// Writes a raw value, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`put`](Self::put). It also refuses to leave out what the frame is long enough
+    /// for, if no bits say that there is no value.
+    #[inline(always)]
+    pub fn put_some(&self, raw: Option<R>, payload: &mut Payload) -> Result<(), Error> {
+        match raw {
+            Some(raw) => self.put(raw, payload),
+            None => self.left_out(payload),
+        }
+    }
+
+    /// Writes that there is no value, unless the frame ends before it.
+    fn left_out(&self, payload: &mut Payload) -> Result<(), Error> {
+        match payload.length() {
+            Some(length) if !self.place.is_within(length.into()) => Ok(()),
+            _ if self.has_absent => {
+                let mut data = *payload.data();
+                self.place.put(&mut data, self.absent_bits());
+                payload.replace(data);
+                Ok(())
+            }
+            _ => Err(Error::Missing { message: payload.message(), signal: self.name }),
+        }
     }
 
     #[inline(always)]
@@ -262,6 +325,26 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
             Some(bits) if self.store(bits, payload) => Ok(()),
             _ if physical.is_nan() => Err(self.not_finite(payload)),
             _ => Err(self.too_wide(physical, payload)),
+        }
+    }
+
+    /// Returns the physical value, if a frame of `length` data bytes has it.
+    #[inline(always)]
+    pub fn decode_some(&self, data: &Data, length: usize) -> Option<F> {
+        self.is_there(data, length).then(|| self.decode(data))
+    }
+
+    /// Writes the raw value nearest to a physical value, if the frame has it.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`encode`](Self::encode). It also refuses to leave out what the frame is long
+    /// enough for.
+    #[inline(always)]
+    pub fn encode_some(&self, physical: Option<F>, payload: &mut Payload) -> Result<(), Error> {
+        match physical {
+            Some(physical) => self.encode(physical, payload),
+            None => self.left_out(payload),
         }
     }
 

@@ -17,6 +17,7 @@
 mod bcd;
 pub mod float;
 mod frame;
+pub mod optional_float;
 mod text;
 
 use core::fmt;

@@ -183,7 +183,7 @@ impl<'a> Frames<'a> {
         for (place, value) in layout.payload() {
             place.put(&mut data, value);
         }
-        (id, data, message.length.into())
+        (id, data, layout.lengths[self.random.usize(..layout.lengths.len())].into())
     }
 
     /// Returns one of the kinds of frames of a message; a set whose requests are split too has none of its own.

@@ -76,6 +76,9 @@ impl Draft {
             let reserved = self.reserved();
             root.put("reserved", reserved);
         }
+        if self.chance(15) {
+            root.put("absent", "none");
+        }
         let errata = self.all_errata();
         let timing = self.timing();
         self.name_models();

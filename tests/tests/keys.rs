@@ -138,6 +138,7 @@ fn samples(key: Key) -> Vec<&'static str> {
         // The second one lies in the range of the controllers.
         Key::Send => &["1", "0xF1"],
         Key::Default => &["11", "5", "bright", "busy", "x"],
+        Key::Absent => return words(key),
         Key::Outside => &["refused"],
         Key::Reply => &["{priority: 5}"],
         Key::In => &["[request]", "[reply]"],

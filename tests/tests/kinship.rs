@@ -127,7 +127,7 @@ impl Words<'_> {
         let answers = message.exchanges.iter().flat_map(|exchange| self.answers(&name, &exchange.answers));
         let signals = message.signals.entries();
         let signals = signals.flat_map(|(id, signal)| self.signal(&name, message, id, signal));
-        let length = Fact::new([&name], format!("{name}, length"), message.length.to_string());
+        let length = Fact::new([&name], format!("{name}, length"), format!("{:?}", message.lengths));
         std::iter::once(length).chain(answers).chain(signals).collect()
     }
 

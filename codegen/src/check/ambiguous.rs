@@ -133,7 +133,7 @@ fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path,
 /// Tests whether models, lengths and addresses allow a frame that is both.
 fn both_fit(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
     !protocol[one.message].is_apart_from(&protocol[other.message])
-        && one.length == other.length
+        && one.lengths.iter().any(|length| other.lengths.contains(length))
         && protocol
             .patterns_of(one)
             .any(|(_, pattern)| protocol.patterns_of(other).any(|(_, opposite)| intersect(protocol, pattern, opposite)))

@@ -1,7 +1,9 @@
 #![doc = include_str!("../rules/outside_frame.md")]
 
+use canspec_runtime::Place;
+
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::model::Protocol;
+use crate::model::{Message, Protocol, Selector, SelectorPlace, Signal};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
 
@@ -12,21 +14,56 @@ rules! {
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         for signal in &message.signals {
-            let used = 8 - signal.place.mask().iter().rev().take_while(|byte| **byte == 0).count();
-            if used > message.length.into() {
-                let text = format!(
-                    "`{}.{}` reaches byte {}, but the message has {}",
-                    message.name,
-                    signal.name,
-                    used - 1,
-                    bytes(message.length)
-                );
+            if let Some(text) = outside(message, signal) {
                 let help = "correct the place, or the `length` of the message";
                 let at = place(&signal.doc.path, diagnostics);
                 diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at, text).help(help));
             }
         }
+        check_lengths(protocol, message, diagnostics);
     }
+}
+
+/// Says that a signal lies beyond the longest frame, or that a shorter one has only a part of it.
+fn outside(message: &Message, signal: &Signal) -> Option<String> {
+    let (name, end) = (format!("`{}.{}`", message.name, signal.name), signal.end());
+    if end > message.longest() {
+        return Some(format!("{name} reaches byte {}, but the message has {}", end - 1, bytes(message.longest())));
+    }
+    let start = signal.start();
+    let cut = message.lengths.iter().find(|length| (start + 1..end).contains(length))?;
+    Some(format!("{name} takes bytes {start} to {}, but a frame can have {}", end - 1, bytes(*cut)))
+}
+
+/// Tests that what chooses a message is in its shortest frame, and that each longer frame carries
+/// more.
+fn check_lengths(protocol: &Protocol, message: &Message, diagnostics: &mut Diagnostics) {
+    let at = message.doc.path.key("length");
+    let mut report = |text: String, help: &str| {
+        diagnostics.push_first(Diagnostic::error(&OUTSIDE_FRAME, at.at_value(), text).help(help));
+    };
+    let selectors = protocol.frames_of(message).flat_map(|frame| &frame.selectors).map(|id| &protocol[*id]);
+    let beyond = |selector: &&Selector| match selector.place {
+        SelectorPlace::Payload(place) => last_byte(place) >= message.shortest(),
+        SelectorPlace::Identifier(_) => false,
+    };
+    if let Some(selector) = selectors.into_iter().find(beyond).filter(|_| message.lengths.len() > 1) {
+        let text =
+            format!("`{}` chooses the message, and a frame of {} lacks it", selector.name, bytes(message.shortest()));
+        return report(text, "take the shortest length out, or correct the place");
+    }
+    for pair in message.lengths.windows(2) {
+        let [shorter, longer] = pair else { continue };
+        if !message.signals.iter().any(|signal| (shorter + 1..=*longer).contains(&signal.end())) {
+            let text = format!("no field of `{}` ends between the lengths {shorter} and {longer}", message.name);
+            return report(text, "name the field that only the longer frame has, or take one of the two out");
+        }
+    }
+}
+
+/// Returns the last byte of the frame in which a place has bits.
+fn last_byte(place: Place) -> u8 {
+    u8::try_from(7 - u64::from_be_bytes(place.mask()).trailing_zeros() / 8).unwrap_or(7)
 }
 
 /// Names the bytes of a frame, counted from 0 as `bytes` does.

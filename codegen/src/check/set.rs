@@ -165,10 +165,14 @@ impl Checker<'_> {
     fn check_length(&self, diagnostics: &mut Diagnostics) {
         let members =
             self.set.members.iter().enumerate().map(|(position, member)| (position, &self.protocol.messages[*member]));
-        let mut other = members.filter(|(_, member)| member.length != self.message.length);
+        let mut other = members.filter(|(_, member)| member.lengths != self.message.lengths);
         let Some((position, first)) = other.next() else { return };
-        let (set, length) = (&self.message.name, self.message.length);
-        let text = format!("the set `{set}` has {length} data bytes, its member `{}` has {}", first.name, first.length);
+        let [of_set, of_member] = [self.message, first].map(|message| {
+            let lengths: Vec<_> = message.lengths.iter().map(u8::to_string).collect();
+            lengths.join(" or ")
+        });
+        let (set, member) = (&self.message.name, &first.name);
+        let text = format!("the set `{set}` has {of_set} data bytes, its member `{member}` has {of_member}");
         let help = "give the set and its members the same `length`";
         let diagnostic = wrong(self.key("length").at_value(), text).help(help);
         let at = |position: usize| self.key("members").index(position).at_value();

@@ -30,7 +30,12 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 } else {
                     "them out of the range, or their names"
                 };
-                let help = format!("take {what} out of `values`");
+                let help = match names.len() {
+                    1 if signal.absent().is_some_and(|absent| signal.is_inside(range, absent.raw)) => {
+                        "take it out of the range, or write `absent: none`".to_owned()
+                    }
+                    _ => format!("take {what} out of `values`"),
+                };
                 diagnostics.push_first(Diagnostic::error(&SPECIAL_VALUE, path.at_value(), text).help(help));
             }
         }
@@ -39,8 +44,6 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Returns the names of special values inside the range.
 fn names_inside(signal: &Signal, range: Range) -> Vec<String> {
-    let inside =
-        |raw| signal.encoding.value_of(raw).is_some_and(|value| range.minimum <= value && value <= range.maximum);
-    let specials = signal.specials.iter().filter(|special| inside(special.raw));
+    let specials = signal.specials.iter().filter(|special| signal.is_inside(range, special.raw));
     specials.map(|special| format!("`{}` ({})", special.name, special.raw)).collect()
 }

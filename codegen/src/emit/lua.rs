@@ -77,7 +77,6 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
     let models = (!message.models.is_empty()).then(|| Value::list(&message.models, |model| Value::id(*model)));
     Value::record()
         .with("name", Value::text(&message.name))
-        .with("length", Value::number(message.length))
         .maybe("models", models)
         .with("signals", Value::list(&message.signals, |known| signal(protocol, known)))
         .with("layouts", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
@@ -91,6 +90,7 @@ fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
     Value::record()
         .with("access", Value::text(&protocol[frame.access].name))
         .with("kind", Value::text(frame.kind.name()))
+        .with("lengths", Value::map(frame.lengths.iter().map(|length| (Value::number(*length), Value::flag(true)))))
         .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))
         .with("reserved", Value::unsigned_of_64_bits(!frame.covered))

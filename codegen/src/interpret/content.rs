@@ -9,7 +9,7 @@ impl Frame {
     pub fn of(protocol: &Protocol, example: &Example) -> Self {
         let message = example.message.map(|id| &protocol[id]);
         let data = example.data.clone().unwrap_or_else(|| {
-            let length = message.map_or(8, |message| message.length);
+            let length = message.map_or(8, Message::shortest);
             let constants = message.map_or([0; 8], |message| constants(protocol, message, example));
             constants.into_iter().take(length.into()).collect()
         });

@@ -8,7 +8,7 @@ use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, h
 use crate::encoding::Words;
 use crate::model::{
     AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Kind, Message, ModelId,
-    NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
+    NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who, first_bytes,
 };
 
 /// Decodes a frame that goes to or comes from a device model.
@@ -205,9 +205,12 @@ impl<'a> Decoder<'a> {
         let all = || group.choice.iter().flat_map(Choice::ends).collect();
         let frames: Vec<_> = by_constants.map_or_else(all, |frames| vec![frames]);
         let frames = frames.into_iter().flatten().map(|id| &self.protocol[*id]);
-        let far = |frame: &FrameLayout| frame.length.abs_diff(u8::try_from(self.frame.data.len()).unwrap_or(u8::MAX));
-        let rank = |frame: &&FrameLayout| (self.addressing(frame).fit, far(frame), Reverse(frame.length));
-        frames.min_by_key(rank).map_or(8, |frame| frame.length)
+        let found = u8::try_from(self.frame.data.len()).unwrap_or(u8::MAX);
+        let lengths = frames.flat_map(|frame| frame.lengths.iter().map(move |length| (frame, *length)));
+        let rank = |(frame, length): &(&FrameLayout, u8)| {
+            (self.addressing(frame).fit, length.abs_diff(found), Reverse(*length))
+        };
+        lengths.min_by_key(rank).map_or(8, |(_, length)| length)
     }
 
     /// Returns the kind of frame that fits best, and all that have the frame's constants.
@@ -232,7 +235,7 @@ impl<'a> Decoder<'a> {
         let protocol = self.protocol;
         let length = self.frame.data.len();
         let known = frames.iter().map(move |id| (*id, &protocol[*id]));
-        known.filter(move |(_, layout)| usize::from(layout.length) == length)
+        known.filter(move |(_, layout)| layout.has_length(length))
     }
 
     /// Ranks candidates: first those that the device model has, then those whose addresses fit
@@ -365,7 +368,9 @@ impl<'a> Decoder<'a> {
     fn decoded(&self, (id, frame): Candidate) -> Decoded {
         let message = self.message((id, frame));
         let addressing = self.addressing(frame);
-        let readings = self.protocol.signals_of(frame).map(|(id, signal)| {
+        let known = self.protocol.signals_of(frame);
+        let present = known.filter(|(_, signal)| usize::from(signal.end()) <= self.frame.data.len());
+        let readings = present.map(|(id, signal)| {
             let bits = signal.place.get(&self.data);
             Reading { signal: id, bits, value: physical(self.protocol, signal, bits) }
         });
@@ -400,7 +405,8 @@ impl<'a> Decoder<'a> {
 
     /// Notes bits that nothing covers, if they are not as they are sent.
     fn reserved_note(&self, frame: &FrameLayout, reserved: [u8; 8]) -> Option<Note> {
-        let odd = u64::from_be_bytes(reserved) ^ frame.filled();
+        let present = first_bytes(u8::try_from(self.frame.data.len()).unwrap_or(8));
+        let odd = u64::from_be_bytes(reserved) ^ frame.filled() & present;
         let found = if frame.reserved.are_ones { "clear" } else { "set" };
         let bits = hex(&odd.to_be_bytes()[..self.frame.data.len()]);
         let text = format!("bits are {found} that no field has: 0x{bits}");

@@ -2,7 +2,7 @@
 
 use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
-use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace};
+use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace, Signal};
 use crate::nearest;
 
 /// Notes that no request may get. It is refused instead.
@@ -22,7 +22,7 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
     let layout = layout(protocol, message, content, id)?;
     let limits = Limits::of(layout.kind, model);
     let data = payload(protocol, message, layout, content, limits)?;
-    let frame = frame(protocol, message, id, data);
+    let frame = frame(protocol, id, data);
     let one_that_has_it = model.or_else(|| message.models.first().copied());
     let decoded = decode(protocol, one_that_has_it, &frame).map_err(|problem| refuse(message, &problem.text))?;
     confirm(protocol, message, layout, &decoded, model)?;
@@ -47,11 +47,17 @@ pub fn not_of(protocol: &Protocol, message: &Message, model: ModelId) -> Refusal
     refuse(message, &format!("{} has no such message", protocol[model].name))
 }
 
-/// Returns a frame of a message.
-pub fn frame(protocol: &Protocol, message: &Message, id: u32, data: [u8; 8]) -> Frame {
-    let length = usize::from(message.length);
-    let data = data.into_iter().take(length).collect();
+/// Returns a data frame.
+pub fn frame(protocol: &Protocol, id: u32, data: Vec<u8>) -> Frame {
     Frame { id, extended: protocol.identifier.extended, data, form: Form::Data }
+}
+
+/// Returns how many data bytes a frame has if it carries the signals that are given.
+pub fn length_with(message: &Message, layout: &FrameLayout, is_given: impl Fn(&str) -> bool) -> usize {
+    let given = layout.signals.iter().map(|id| &message[*id]).filter(|signal| is_given(&signal.name));
+    let needed = given.map(Signal::end).max().unwrap_or(0);
+    let fitting = layout.lengths.iter().copied().find(|length| *length >= needed);
+    fitting.unwrap_or(layout.longest()).into()
 }
 
 /// Builds the identifier from its named fields.
@@ -107,8 +113,7 @@ fn layout<'a>(
     if content.kind.is_some() {
         return Ok(first);
     }
-    let bare =
-        Frame { id, extended: protocol.identifier.extended, data: vec![0; message.length.into()], form: Form::Data };
+    let bare = frame(protocol, id, vec![0; message.shortest().into()]);
     let kind = decode(protocol, None, &bare).map(|decoded| decoded.kind);
     let all = std::iter::once(first).chain(fitting).collect::<Vec<_>>();
     Ok(all.iter().find(|frame| Ok(frame.kind) == kind).copied().unwrap_or(first))
@@ -120,12 +125,14 @@ fn payload(
     layout: &FrameLayout,
     content: &Content,
     limits: Limits,
-) -> Result<[u8; 8], Refusal> {
+) -> Result<Vec<u8>, Refusal> {
     let mut data = [0; 8];
+    let is_given = |name: &str| content.signals.iter().any(|(given, _)| given == name);
+    let length = length_with(message, layout, is_given);
     put_selectors(protocol, message, layout, content, &mut data)?;
-    put_signals(protocol, message, layout, content, limits, &mut data)?;
-    put_reserved(message, layout, content, &mut data)?;
-    Ok(data)
+    put_signals(protocol, message, (layout, length), content, limits, &mut data)?;
+    put_reserved(message, (layout, length), content, &mut data)?;
+    Ok(data[..length].to_vec())
 }
 
 fn put_selectors(
@@ -157,7 +164,7 @@ fn put_selectors(
 fn put_signals(
     protocol: &Protocol,
     message: &Message,
-    layout: &FrameLayout,
+    (layout, length): (&FrameLayout, usize),
     content: &Content,
     limits: Limits,
     data: &mut [u8; 8],
@@ -166,8 +173,8 @@ fn put_signals(
     if let Some((name, _)) = content.signals.iter().find(|(name, _)| !carried(name)) {
         return Err(refuse(message, &format!("a {} has no signal `{name}`", layout.kind.name())));
     }
-    for id in &layout.signals {
-        let signal = &message[*id];
+    let signals = layout.signals.iter().map(|id| &message[*id]);
+    for signal in signals.filter(|signal| usize::from(signal.end()) <= length) {
         let given = content.signals.iter().find(|(name, _)| *name == signal.name);
         let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;
         let bits = raw_of(protocol, message, signal, input, limits)?;
@@ -176,12 +183,17 @@ fn put_signals(
     Ok(())
 }
 
-fn put_reserved(message: &Message, layout: &FrameLayout, content: &Content, data: &mut [u8; 8]) -> Result<(), Refusal> {
+fn put_reserved(
+    message: &Message,
+    (layout, length): (&FrameLayout, usize),
+    content: &Content,
+    data: &mut [u8; 8],
+) -> Result<(), Refusal> {
     if content.reserved.is_empty() {
         return Ok(());
     }
-    if content.reserved.len() != usize::from(message.length) {
-        let text = format!("`reserved` has {} bytes instead of {}", content.reserved.len(), message.length);
+    if content.reserved.len() != length {
+        let text = format!("`reserved` has {} bytes instead of {length}", content.reserved.len());
         return Err(refuse(message, &text));
     }
     let bytes = padded(&content.reserved);

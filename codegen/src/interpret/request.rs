@@ -1,7 +1,7 @@
 //! Makes a request by name: `set_output` to `module:3`.
 
 use super::content::blank_data;
-use super::encode::{find_message, frame, not_of, refuse};
+use super::encode::{find_message, frame, length_with, not_of, refuse};
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
 use crate::encoding::Words;
@@ -182,8 +182,9 @@ fn made(
     let mode = mode(protocol, message, layout, target)?;
     let id = identifier(protocol, message, layout, mode, target, source)?;
     let mut data = blank_data(layout);
-    put_signals(protocol, message, layout, signals, model, &mut data)?;
-    let frame = frame(protocol, message, id, data);
+    let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
+    put_signals(protocol, message, (layout, length), signals, model, &mut data)?;
+    let frame = frame(protocol, id, data[..length].to_vec());
     decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
     Ok(frame)
 }
@@ -272,7 +273,7 @@ fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64
 fn put_signals(
     protocol: &Protocol,
     message: &Message,
-    layout: &FrameLayout,
+    (layout, length): (&FrameLayout, usize),
     given: &[(String, String)],
     model: Option<ModelId>,
     data: &mut [u8; 8],
@@ -286,7 +287,7 @@ fn put_signals(
             return Err(refuse(message, &format!("the signal `{name}` is given twice")));
         }
     }
-    for signal in carried {
+    for signal in carried.into_iter().filter(|signal| usize::from(signal.end()) <= length) {
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
             Some((_, text)) => Words::from(protocol).with(signal, |room| room.typed(text)),
             None => Input::Raw(

@@ -95,8 +95,8 @@ pub struct Message {
     pub name: String,
     /// What the spec says beside it.
     pub doc: Doc,
-    /// Data bytes of its frames.
-    pub length: u8,
+    /// The numbers of data bytes that its frames can have, the least first.
+    pub lengths: Vec<u8>,
     /// Signals by first byte, then as written.
     pub signals: Table<SignalId, Signal>,
     /// What chooses each of its frames, whatever the access.
@@ -121,6 +121,21 @@ pub struct Message {
 }
 
 impl Message {
+    /// Returns the least number of data bytes.
+    pub fn shortest(&self) -> u8 {
+        self.lengths.first().copied().unwrap_or(8)
+    }
+
+    /// Returns the greatest number of data bytes.
+    pub fn longest(&self) -> u8 {
+        self.lengths.last().copied().unwrap_or(8)
+    }
+
+    /// Tests whether a frame can lack a signal because it is short.
+    pub fn is_optional(&self, signal: &Signal) -> bool {
+        signal.end() > self.shortest()
+    }
+
     /// Tests whether a device model has the message.
     pub fn is_of(&self, model: ModelId) -> bool {
         self.models.is_empty() || self.models.contains(&model)
@@ -187,8 +202,9 @@ pub struct FrameLayout {
     pub set: Option<MessageId>,
     /// What the frame is for.
     pub kind: Kind,
-    /// Number of data bytes.
-    pub length: u8,
+    /// The numbers of data bytes that it can have, the least first. Signals that end beyond the least
+    /// are optional.
+    pub lengths: Vec<u8>,
     /// What chooses this frame, in identifier and payload.
     pub constants: Vec<Constant>,
     /// Payload selectors that this frame has, constants included.
@@ -214,9 +230,24 @@ impl FrameLayout {
         self.constants.iter().filter_map(Constant::in_payload)
     }
 
+    /// Returns the least number of data bytes.
+    pub fn shortest(&self) -> u8 {
+        self.lengths.first().copied().unwrap_or(8)
+    }
+
+    /// Returns the greatest number of data bytes.
+    pub fn longest(&self) -> u8 {
+        self.lengths.last().copied().unwrap_or(8)
+    }
+
+    /// Tests whether it can have `length` data bytes.
+    pub fn has_length(&self, length: usize) -> bool {
+        self.lengths.iter().any(|known| usize::from(*known) == length)
+    }
+
     /// Returns the payload bits that nothing covers, byte 0 highest.
     pub fn uncovered(&self) -> u64 {
-        !self.covered & u64::MAX.checked_shl(64 - 8 * u32::from(self.length)).unwrap_or(0)
+        !self.covered & first_bytes(self.longest())
     }
 
     /// Returns the payload bits that are sent as 1 although nothing covers them, byte 0 highest.
@@ -228,6 +259,11 @@ impl FrameLayout {
     pub fn is_exchanged_with(&self, other: &Self) -> bool {
         (self.access, self.set) == (other.access, other.set)
     }
+}
+
+/// Returns the bits of the first data bytes, byte 0 highest.
+pub(crate) fn first_bytes(count: u8) -> u64 {
+    u64::MAX.checked_shl(64 - 8 * u32::from(count)).unwrap_or(0)
 }
 
 /// A way in which a frame is sent.

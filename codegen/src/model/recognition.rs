@@ -180,9 +180,10 @@ impl Planner<'_> {
 
     fn group(&mut self, frames: Vec<FrameId>) -> Group {
         let all = self.scope(&frames);
-        let lengths: BTreeSet<u8> = frames.iter().map(|frame| self.frames[*frame].length).collect();
+        let lengths: BTreeSet<u8> = frames.iter().flat_map(|frame| &self.frames[*frame].lengths).copied().collect();
         let of_length = |length: u8| {
-            let frames: Vec<_> = frames.iter().copied().filter(|frame| self.frames[*frame].length == length).collect();
+            let has = |frame: &FrameId| self.frames[*frame].lengths.contains(&length);
+            let frames: Vec<_> = frames.iter().copied().filter(has).collect();
             (length, self.scope(&frames))
         };
         let lengths = lengths.into_iter().map(of_length).collect();

@@ -118,6 +118,8 @@ pub struct Signal {
     pub range_path: Path,
     /// Named raw values that are legal outside the range.
     pub specials: Vec<NamedValue>,
+    /// Whether the last of the special values says that there is no value.
+    pub has_absent: bool,
     /// Raw value that the device starts with.
     pub default: Option<i128>,
     /// Place of that value in the spec.
@@ -170,6 +172,16 @@ impl Signal {
         Some(Range { minimum: one.min(other), maximum: one.max(other) })
     }
 
+    /// Tests whether a raw value stands for a number inside a range.
+    pub fn is_inside(&self, range: Range, raw: i128) -> bool {
+        self.encoding.value_of(raw).is_some_and(|value| range.minimum <= value && value <= range.maximum)
+    }
+
+    /// Returns the raw value that says that there is no value.
+    pub fn absent(&self) -> Option<&NamedValue> {
+        self.specials.last().filter(|_| self.has_absent)
+    }
+
     /// Tests a physical value against limits. For a float, the floats nearest to the limits are
     /// legal too.
     pub fn is_within(&self, limits: &Range, value: f64) -> bool {
@@ -178,6 +190,17 @@ impl Signal {
         let nearest = |limit: f64| f64::from(limit as f32);
         let (minimum, maximum) = (limits.minimum.to_f64(), limits.maximum.to_f64());
         is_within(minimum, maximum) || (self.encoding.is_single() && is_within(nearest(minimum), nearest(maximum)))
+    }
+
+    /// Returns the first data byte in which it has bits.
+    pub fn start(&self) -> u8 {
+        u8::try_from(u64::from_be_bytes(self.place.mask()).leading_zeros() / 8).unwrap_or(7)
+    }
+
+    /// Returns how many data bytes a frame with the signal has at least.
+    pub fn end(&self) -> u8 {
+        let last = u64::from_be_bytes(self.place.mask()).trailing_zeros() / 8;
+        u8::try_from(8 - last).unwrap_or(8)
     }
 
     /// Returns the least and the greatest raw value.

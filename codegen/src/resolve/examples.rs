@@ -4,7 +4,6 @@ use canspec_runtime::Place;
 use indexmap::IndexSet;
 
 use super::Resolver;
-use super::signals::first_byte;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
 use crate::model::{
@@ -304,7 +303,7 @@ impl Resolver<'_> {
         let doc = remarks.doc(path, Some(outer));
         let signal = self.signal(name, &merged, Place::bytes(0, last), outer.clone(), "")?;
         let raw = self.words().with(&signal, |room| room.parse(&example.means, true));
-        debug_assert_eq!(first_byte(signal.place), 0);
+        debug_assert_eq!(signal.start(), 0);
         let meaning = Meaning { signal: SignalId::new(0), text: example.means.clone(), raw, path: path.key("means") };
         Some(ValueExample { doc, signal, data, meaning })
     }

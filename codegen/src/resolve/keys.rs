@@ -101,6 +101,7 @@ impl Role {
             Key::Values => {
                 among(IDENTIFIER) || among(&[Self::Header, Self::Constant, Self::Number, Self::Decimal, Self::Named])
             }
+            Key::Absent => among(&[Self::Number, Self::Decimal, Self::Named]),
             Key::Fields => among(WORDS) || self == Self::Packed,
             Key::Status => self == Self::Status,
             Key::Format => self == Self::Packed,
@@ -180,6 +181,7 @@ fn is_of_values(key: Key) -> bool {
         | Key::Offset
         | Key::Unit
         | Key::Values
+        | Key::Absent
         | Key::Fields
         | Key::Format
         | Key::Const => true,

@@ -10,6 +10,7 @@ use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
     Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
+use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -39,7 +40,7 @@ pub struct Owner<'a> {
     pub message: MessageId,
     pub id: ExchangeId,
     pub exchange: &'a Exchange,
-    pub length: u8,
+    pub lengths: &'a [u8],
     pub signals: &'a Table<SignalId, Signal>,
 }
 
@@ -92,7 +93,7 @@ impl Resolver<'_> {
         timing: &Times,
     ) -> (Table<MessageId, Message>, Table<FrameId, FrameLayout>) {
         let spec = self.spec;
-        let length = self.integer(&Path::default().key("length"), &spec.length, 0, 8).unwrap_or(8);
+        let length = self.length(&Path::default().key("length"), &spec.length).unwrap_or(8);
         let reserved = self.reserved(&Path::default(), spec.reserved.as_ref(), Reserved::default());
         let surroundings = Surroundings { identifier, modes, accesses, timing, length, reserved };
         let root = Path::default().key("messages");
@@ -120,8 +121,7 @@ impl Resolver<'_> {
         self.check_not_empty(path, &["answers", "models", "members", "in"]);
         let doc = remarks!(message).doc(path, None);
         let leaves = self.contents(path, name, message, &doc);
-        let length = message.length.as_ref().and_then(|text| self.integer(&path.key("length"), text, 0, 8));
-        let length = length.unwrap_or(surroundings.length);
+        let lengths = self.lengths(&path.key("length"), &message.length.0, surroundings.length);
         let exchanges = self.exchanges(path, message, surroundings);
         let choice = self.choice(path, message, leaves.constants, &leaves.replies, surroundings.identifier);
         let set = self.set(path, message);
@@ -130,7 +130,7 @@ impl Resolver<'_> {
         let signals = leaves.signals.into_iter().collect();
         let (mut frames, mut refusals) = (Vec::new(), Vec::new());
         for (exchange_id, exchange) in exchanges.entries() {
-            let owner = Owner { message: id, id: exchange_id, exchange, length, signals: &signals };
+            let owner = Owner { message: id, id: exchange_id, exchange, lengths: &lengths, signals: &signals };
             for kind in surroundings.accesses[exchange.access].kinds.iter().filter(|kind| !split.contains(kind)) {
                 let travel = self.access_constants(exchange.access, *kind, surroundings);
                 let frame = self.layout(&owner, *kind, &choice, &travel, surroundings);
@@ -153,7 +153,7 @@ impl Resolver<'_> {
         let message = Message {
             name,
             doc,
-            length,
+            lengths,
             signals,
             constants,
             exchanges,
@@ -335,6 +335,40 @@ impl Resolver<'_> {
         self.constants(&path, pattern, surroundings.identifier)
     }
 
+    /// Reads a number of data bytes.
+    fn length(&mut self, path: &Path, text: &str) -> Option<u8> {
+        let is_longer = Rational::parse(text).is_some_and(|number| number > Rational::integer(8));
+        if !is_longer {
+            return self.integer(path, text, 0, 8);
+        }
+        let message = format!("a frame has at most 8 data bytes, not {text}");
+        let help = "frames of CAN FD are not there yet; split what is longer into messages of its frames";
+        self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
+        None
+    }
+
+    /// Reads the numbers of data bytes that frames of a message can have, the least first.
+    fn lengths(&mut self, path: &Path, written: &[String], otherwise: u8) -> Vec<u8> {
+        let mut lengths: Vec<u8> = Vec::new();
+        for (index, text) in written.iter().enumerate() {
+            let at = if self.diagnostics.has(&path.index(index)) { path.index(index) } else { path.clone() };
+            let Some(length) = self.length(&at, text) else { continue };
+            match lengths.last().filter(|shorter| **shorter >= length) {
+                None => lengths.push(length),
+                Some(shorter) => {
+                    let text = format!("the length {length} stands after {shorter}");
+                    self.error_with_help(
+                        &rules::NUMBER,
+                        at.at_value(),
+                        text,
+                        "write each length once, the least first",
+                    );
+                }
+            }
+        }
+        if lengths.is_empty() { vec![otherwise] } else { lengths }
+    }
+
     /// Makes the frame of one kind of a message. `travel` has the constants of its access.
     pub fn layout(
         &self,
@@ -359,16 +393,17 @@ impl Resolver<'_> {
         selectors.sort_unstable();
         selectors.dedup();
         let signals = owner.signals.entries().filter(|(_, signal)| present(&signal.kinds));
+        let signals: Vec<_> = signals.map(|(id, _)| id).collect();
         FrameLayout {
             message: owner.message,
             exchange: owner.id,
             access: owner.exchange.access,
             set: owner.exchange.set,
             kind,
-            length: owner.length,
+            lengths: lengths_with(owner.lengths, signals.iter().map(|id| owner.signals[*id].end())),
             constants,
             selectors,
-            signals: signals.map(|(id, _)| id).collect(),
+            signals,
             covered: 0,
             reserved: Reserved::default(),
             travels: Vec::new(),
@@ -428,6 +463,16 @@ impl Resolver<'_> {
         let diagnostic = Diagnostic::error(&rules::MATCH, first.1, text).help(help);
         self.diagnostics.push(diagnostic.other(second.1, second.0.name()));
     }
+}
+
+/// Returns the lengths of a kind of frame: the shortest, and those at which more of its signals end.
+fn lengths_with(lengths: &[u8], ends: impl Iterator<Item = u8> + Clone) -> Vec<u8> {
+    let mut shorter = None;
+    let adds = |length: &&u8| {
+        let shorter = shorter.replace(**length);
+        shorter.is_none_or(|shorter| ends.clone().any(|end| (shorter + 1..=**length).contains(&end)))
+    };
+    lengths.iter().filter(adds).copied().collect()
 }
 
 /// Returns the ways in which a kind of frame is sent.

@@ -1,5 +1,5 @@
-//! Resolves what frames show beside their values: bits that nothing names, and fields of the
-//! identifier that one message sends with a value of its own.
+//! Resolves what frames show beside their values. These are bits that nothing names, and fields of
+//! the identifier that one message sends with a value of its own.
 
 use super::Resolver;
 use super::messages::Surroundings;

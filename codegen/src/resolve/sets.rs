@@ -98,7 +98,7 @@ impl Resolver<'_> {
             let travel = [&drafts[set].choice.matched, &travel[..]].concat();
             let Draft { message: known, choice, .. } = &drafts[member];
             let owner =
-                Owner { message: member, id, exchange: &exchange, length: known.length, signals: &known.signals };
+                Owner { message: member, id, exchange: &exchange, lengths: &known.lengths, signals: &known.signals };
             let mut frame = self.layout(&owner, *kind, choice, &travel, surroundings);
             self.check_member(&drafts[set].message, &known.name, &frame.constants);
             frame.constants = distinct(frame.constants);

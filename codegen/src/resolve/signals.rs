@@ -76,7 +76,7 @@ impl Resolver<'_> {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
         self.leaves(path, fields, Outer { site: Site::Message, word: None, doc, owner, around: &[] }, &mut leaves);
-        leaves.signals.sort_by_key(|signal| first_byte(signal.place));
+        leaves.signals.sort_by_key(|signal| signal.start());
         leaves
     }
 
@@ -97,7 +97,7 @@ impl Resolver<'_> {
             Outer { site: Site::Message, word: None, doc, owner, around: &[] },
             &mut leaves,
         );
-        leaves.signals.sort_by_key(|signal| first_byte(signal.place));
+        leaves.signals.sort_by_key(|signal| signal.start());
         leaves
     }
 
@@ -215,8 +215,11 @@ impl Resolver<'_> {
         let encoding = self.encoding(name, merged, place, &doc, owner)?;
         let values = merged.path(self.diagnostics, Key::Values);
         let named = encoding.enumeration().is_some();
-        let specials =
+        let mut specials =
             if named { Vec::new() } else { self.values(&values, &field.values, place.width(), encoding.numeral()) };
+        let absent = encoding.linear().and_then(|linear| self.absent(merged, linear.numeral, place.width(), &specials));
+        let has_absent = absent.is_some();
+        specials.extend(absent);
         let unit = field.unit.as_ref();
         let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, Key::Unit), text, field));
         let (range_path, default_path) =
@@ -232,8 +235,9 @@ impl Resolver<'_> {
             unit,
             range,
             range_path,
+            default: specials.last().filter(|_| has_absent).map(|absent| absent.raw),
             specials,
-            default: None,
+            has_absent,
             default_path: default_path.clone(),
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
@@ -412,6 +416,7 @@ impl Resolver<'_> {
             range: None,
             range_path,
             specials: Vec::new(),
+            has_absent: false,
             default: None,
             default_path,
             model_ranges: Vec::new(),
@@ -439,9 +444,4 @@ fn give_up(name: &str, field: &Field, leaves: &mut Leaves) {
     for (name, field) in &field.fields {
         give_up(name, field, leaves);
     }
-}
-
-/// Returns the first byte of the frame in which a place has bits.
-pub fn first_byte(place: Place) -> u32 {
-    u64::from_be_bytes(place.mask()).leading_zeros() / 8
 }

@@ -118,11 +118,17 @@ impl Resolver<'_> {
         };
         let Range { minimum, maximum } = self.range(path, ends)?;
         let factor = unit.and_then(|unit| multiples::exact_factor(symbol, unit));
-        let scaled = factor.and_then(|factor| Some(Range { minimum: minimum.times(factor)?, maximum: maximum.times(factor)? }));
+        let scaled =
+            factor.and_then(|factor| Some(Range { minimum: minimum.times(factor)?, maximum: maximum.times(factor)? }));
         if scaled.is_none() {
             let known = unit.map_or("", |unit| unit.symbol);
             let message = format!("the limits `{text}` are not in {known}, the unit of the signal");
-            self.error_with_help(&rules::RANGE, path.at_value(), message, format!("write `{ends}` or `{ends} {known}`"));
+            self.error_with_help(
+                &rules::RANGE,
+                path.at_value(),
+                message,
+                format!("write `{ends}` or `{ends} {known}`"),
+            );
         }
         scaled
     }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::Resolver;
+use super::absent::NOT_AVAILABLE;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
@@ -158,16 +159,33 @@ impl Resolver<'_> {
             return None;
         }
         let (name, source) = self.type_name(merged, Key::Values, otherwise);
+        self.check_beside_values(merged, &source);
         let made = |known: &Enumeration| known.name == name && known.doc.path == source;
         if let Some(index) = self.tables.enumerations.position(made) {
+            self.check_same_width(merged, width, index);
             let known = &mut self.tables.enumerations[index];
             known.width = known.width.max(width);
             return Some(index);
         }
-        let values =
+        let mut values =
             self.values(&merged.path(self.diagnostics, Key::Values), &merged.field.values, width, Numeral::Unsigned);
+        let absent = self.absent(merged, Numeral::Unsigned, width, &values);
+        values.extend(absent);
         let doc = self.type_doc(&name, &source, doc);
         Some(self.tables.enumerations.push(Enumeration { name, doc, width, values }))
+    }
+
+    /// Tests that named values with one for "not available" have one width, since it has all ones.
+    fn check_same_width(&mut self, merged: &Merged, width: u8, index: EnumerationId) {
+        let known = &self.tables.enumerations[index];
+        let has_absent = known.values.last().is_some_and(|value| value.name == NOT_AVAILABLE);
+        if has_absent && known.width != width {
+            let text = format!("`{}` has {} bits elsewhere, and here {width}", known.name, known.width);
+            let help =
+                "all ones are another number in each width; write `absent: none` into the type, and name the value";
+            let at = merged.sources[0].key("type").at_value();
+            self.error_with_help(&rules::TYPE, at, text, help);
+        }
     }
 
     /// Reads `{raw: name}`.

@@ -6,7 +6,7 @@ use crate::model::NoteRule;
 use crate::model::{Failure, Kind, Unit};
 use crate::rules::RULES;
 use crate::syntax::ast::Key;
-use crate::words::{ANSWERS, EXPECTED, ERRATUM_KINDS, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
+use crate::words::{ABSENT, ANSWERS, ERRATUM_KINDS, EXPECTED, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
 
 /// The form of a text. What YAML reads as a number needs none.
 #[derive(Clone, Copy)]
@@ -82,6 +82,7 @@ fn of_field(key: Key) -> Demand {
         Key::Range => Demand::Form(RANGE),
         Key::As => Demand::Choice(NUMBER_FORMATS.map(|(word, _)| word).to_vec()),
         Key::In => Demand::Choice(kinds()),
+        Key::Absent => Demand::Choice(ABSENT.map(|(word, _)| word).to_vec()),
         Key::Outside => Demand::Choice(OUTSIDE.to_vec()),
         Key::Unit => Demand::Choice(Unit::ALL.map(|unit| unit.symbol).to_vec()),
         Key::Type

@@ -41,6 +41,9 @@ pub struct Spec {
     /// What the bits are that nothing names: `{send: 1, expect: any}`. If absent, they are sent as
     /// 0, and a received 1 gets a note.
     pub reserved: Option<Reserved>,
+    /// What stands for a value that the device does not have, unless a field says otherwise: `ones`
+    /// or `none`; `none` if absent. `ones` are bits that are all 1, and the greatest signed number.
+    pub absent: Option<String>,
     /// Fields by name, in the data bytes, that choose the message: `{register: {bytes: 2..3}}`;
     /// none if absent. A frame has them if its message or its access names one of them.
     #[serde(default)]

@@ -282,6 +282,9 @@ impl Draft {
         if has_range {
             field.put("range", grid.range(first, last));
         }
+        if !has_range && bits > 1 && self.chance(15) {
+            field.put("absent", "ones");
+        }
         let is_number = ["unit", "scale", "offset", "range"].iter().any(|key| field.has(key));
         let edges = [grid.highest, grid.lowest, grid.highest - 1, grid.lowest + 1];
         let special: Vec<_> = edges.into_iter().filter(|raw| !has_range || !(first..=last).contains(raw)).collect();

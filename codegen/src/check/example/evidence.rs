@@ -129,7 +129,7 @@ impl<'a> Field<'a> {
         let signal = &message[id];
         let carrying = protocol.frames_of(message).filter(|frame| frame.signals.contains(&id));
         let others = carrying.map(|frame| frame.covered & !u64::from_be_bytes(signal.place.mask()));
-        let behind = u64::MAX.checked_shr(8 * u32::from(message.length)).unwrap_or(0);
+        let behind = u64::MAX.checked_shr(8 * u32::from(message.longest())).unwrap_or(0);
         let taken = others.fold(behind, |taken, bits| taken | bits);
         Self { name: format!("{}.{}", message.name, signal.name), signal, evidence, taken }
     }

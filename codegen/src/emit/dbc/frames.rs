@@ -116,9 +116,9 @@ fn group<'a>(protocol: &Protocol, sent: Vec<&'a Sent<'a>>) -> Group<'a> {
         }
     }
     let with_signals = candidates.iter().find(|candidate| !tree::is_empty(candidate));
-    let length = with_signals.unwrap_or(&candidates[0]).layout.length;
+    let length = with_signals.unwrap_or(&candidates[0]).layout.longest();
     let (candidates, others): (Vec<_>, Vec<_>) =
-        candidates.into_iter().partition(|candidate| candidate.layout.length == length);
+        candidates.into_iter().partition(|candidate| candidate.layout.longest() == length);
     let tree = tree::tree(protocol, candidates);
     let (sent, lost) = sent.into_iter().partition(|sent| tree.has(sent.id_of_layout));
     Group { sent, lost, others, tree }
@@ -134,7 +134,7 @@ struct Lost {
 
 /// Returns what a frame lacks.
 fn lost(protocol: &Protocol, group: &Group) -> Vec<Lost> {
-    let length = group.sent[0].message.length;
+    let length = group.sent[0].message.longest();
     let dropped = |candidate: &Candidate, missing: String, why: String| {
         let mut lost = group.lost.iter().filter(|sent| sent.id_of_layout == candidate.id);
         let has_own_identifier = lost.all(|lost| group.sent.iter().all(|sent| sent.id != lost.id));
@@ -190,7 +190,7 @@ fn frame(protocol: &Protocol, group: Group, name: String) -> DbcMessage {
         id: sent[0].id,
         extended: protocol.identifier.extended,
         name,
-        length: sent[0].message.length,
+        length: sent[0].message.longest(),
         sender,
         receivers,
         comment: comment(protocol, sent),

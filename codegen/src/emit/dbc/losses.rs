@@ -18,6 +18,7 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
         let is_beyond = named.iter().any(|value| !is_writable(value.raw));
         is_beyond.then_some("names raw values from 2^63 on")
     }));
+    losses.extend(protocol.messages.iter().filter_map(lengths));
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
         losses.push("which request a reply answers, and who answers it".to_owned());
     }
@@ -25,6 +26,14 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
         losses.push("times and procedures of the document, but for the cycles of reports".to_owned());
     }
     losses
+}
+
+/// Names the shorter frames of a message.
+fn lengths(message: &Message) -> Option<String> {
+    let (_, shorter) = message.lengths.split_last()?;
+    let shorter: Vec<_> = shorter.iter().map(u8::to_string).collect();
+    let text = || format!("`{}` can also have {} bytes", message.name, shorter.join(" or "));
+    (!shorter.is_empty()).then(text)
 }
 
 /// Tests whether readers of a DBC can hold a named raw value, as a signed number of 64 bits.

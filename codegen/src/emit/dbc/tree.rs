@@ -124,7 +124,7 @@ impl<'a> Grower<'_, 'a> {
     /// Adds a reserved byte. Programs only know a multiplexor's value if a signal depends on it.
     fn reserved(&mut self, Candidate { layout, .. }: Candidate<'a>, branch: &Branch) {
         let covered = layout.covered.to_be_bytes();
-        let free = covered.iter().take(layout.length.into()).rposition(|byte| *byte == 0);
+        let free = covered.iter().take(layout.longest().into()).rposition(|byte| *byte == 0);
         if let Some(byte) = free.and_then(|byte| u8::try_from(byte).ok()) {
             let plain = Signal::new(format!("{}_reserved", branch.label), Place::byte(byte));
             let comment = "Reserved, and sent as 0".to_owned();

@@ -427,7 +427,7 @@ local function candidates(frame)
   local found, chosen = find(frame, group.choice), {}
   for _, index in ipairs(found and found.frames or {}) do
     local layout = kinds_of_frames[index]
-    if layout.message.length == frame.length then chosen[#chosen + 1] = layout end
+    if layout.lengths[frame.length] then chosen[#chosen + 1] = layout end
   end
   if #chosen == 0 then return nil, problem("unknown_message", "no message has these data bytes", frame, of_length) end
   return chosen
@@ -524,9 +524,12 @@ local function decode(frame)
   error_notes(frame, decoded, note)
   address_notes(frame, decoded, note)
   for _, index in ipairs(layout.signals) do
-    local known = reading(frame, layout.message.signals[index])
-    table.insert(decoded.readings, known)
-    if known.rule then note(known.rule, known.text) end
+    local signal = layout.message.signals[index]
+    if signal.place.first + signal.place.count <= frame.length then
+      local known = reading(frame, signal)
+      table.insert(decoded.readings, known)
+      if known.rule then note(known.rule, known.text) end
+    end
   end
   local reserved = frame.big:band(layout.reserved):tohex(-16):sub(1, 2 * frame.length)
   if reserved:find("[^0]") then decoded.reserved = reserved end

@@ -70,6 +70,11 @@ impl<'a> Derives<'a> {
         attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::float"))])
     }
 
+    /// Emits the same of a field that can also be missing.
+    pub fn optional_float(self) -> TokenStream {
+        attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::optional_float"))])
+    }
+
     /// Emits the traits of a word, by its legend.
     pub fn word(self, name: &Ident) -> TokenStream {
         let serialize = quote! {

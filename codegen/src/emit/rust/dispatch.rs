@@ -40,7 +40,7 @@ fn function(name: &Ident, reads: Reads, goes_on: bool, found: &TokenStream) -> T
     let asks = reads.model || goes_on;
     let id = reads.id.then(|| quote!(let id = frame.raw_id();));
     let data = reads.data.then(|| quote!(let data = &frame.bytes();));
-    let frame = if asks || reads.id || reads.data { quote!(frame) } else { quote!(_) };
+    let frame = if asks || reads.id || reads.data || reads.frame { quote!(frame) } else { quote!(_) };
     let model = if asks { quote!(model) } else { quote!(_) };
     quote!(fn #name(#frame: &Frame, #model: Option<u8>) -> Option<Recognised<Self>> { #id #data #found })
 }
@@ -75,9 +75,11 @@ fn decoded(outcome: &Outcome) -> TokenStream {
 }
 
 /// Decodes the message of a kind of frame from the data.
-fn recognised(Recognised { kind, home, exchange, variant, carries }: &Recognised) -> TokenStream {
-    let carried = carries.then(|| quote!((Layout::decode(data))));
-    quote!(Recognised::#kind(&#home::#exchange, Self::#variant #carried))
+fn recognised(Recognised { kind, home, exchange, variant, carries, sized }: &Recognised) -> TokenStream {
+    let read = if sized.is_some() { quote!(Layout::read(frame)) } else { quote!(Layout::decode(data)) };
+    let carried = carries.then(|| quote!((#read)));
+    let lengths = sized.iter().map(|own| quote!(.of_lengths(#own::LENGTHS)));
+    quote!(Recognised::#kind(&#home::#exchange, Self::#variant #carried) #(#lengths)*)
 }
 
 /// Emits the functions that return the lengths of frames by the constants of the identifier.

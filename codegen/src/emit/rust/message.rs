@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::derives::Derives;
 use super::exchange::exchange;
-use super::plan::message::{Message, Request, Struct, Within};
+use super::plan::message::{Length, Message, Request, Struct, Within};
 use super::plan::signal::{Member, Signal, Special};
 
 /// Emits every struct of a message.
@@ -28,8 +28,10 @@ fn definition(message: &Message, own: &Struct, derives: Derives) -> TokenStream 
     quote!(#comment #attributes pub struct #name #body)
 }
 
-fn member(Signal { coding, member: Member { name, comment, kind, .. }, .. }: &Signal, derives: Derives) -> TokenStream {
-    let float = coding.is_float.then(|| derives.float());
+fn member(Signal { coding, member, .. }: &Signal, derives: Derives) -> TokenStream {
+    let Member { name, comment, kind, is_optional, .. } = member;
+    let float = coding.is_float.then(|| if *is_optional { derives.optional_float() } else { derives.float() });
+    let kind = if *is_optional { quote!(Option<#kind>) } else { kind.clone() };
     quote!(#comment #float pub #name: #kind)
 }
 
@@ -48,7 +50,20 @@ fn constants(message: &Message, own: &Struct) -> TokenStream {
 }
 
 fn signal(signal: &Signal) -> TokenStream {
-    let Signal { constant, comment, name, place, unit, coding, physical, limits, model_limits, specials, .. } = signal;
+    let Signal {
+        constant,
+        comment,
+        name,
+        place,
+        unit,
+        coding,
+        physical,
+        limits,
+        model_limits,
+        specials,
+        has_absent,
+        ..
+    } = signal;
     let (raw, physical) = (&coding.raw, physical.iter());
     let unit = unit.iter().map(|unit| quote!(.unit(#unit)));
     let offset = coding.offset.iter().map(|[above, below]| quote!(.offset(#above, #below)));
@@ -57,11 +72,13 @@ fn signal(signal: &Signal) -> TokenStream {
     let model_limits = model_limits.iter().map(|table| quote!(.model_limits(#table)));
     let rows = specials.iter().map(|Special { raw, name, .. }| quote!((#raw, #name)));
     let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
-    let values = specials.iter().map(|special| special_value(special, signal));
+    let absent = has_absent.then(|| quote!(.absent()));
+    let named = specials.len() - usize::from(*has_absent);
+    let values = specials.iter().take(named).map(|special| special_value(special, signal));
     quote! {
         #comment
         pub const #constant: Signal<#raw #(, #physical)*> = Signal::new(#name, #place)
-            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed;
+            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent;
         #(#values)*
     }
 }
@@ -108,26 +125,61 @@ fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request) 
 }
 
 /// Emits how values are read and written.
-fn layout(message: &Message, Struct { name, is_home, signals, .. }: &Struct) -> Option<TokenStream> {
+fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
+    let Struct { name, is_home, signals, lengths, .. } = own;
     let home = &message.home;
     let owner = if *is_home { quote!(Self) } else { quote!(#home) };
     let signals: Vec<_> = signals.iter().map(|id| &message.signals[*id]).collect();
     let constants = signals.iter().map(|signal| &signal.constant);
-    let reads = signals
-        .iter()
-        .map(|Signal { constant, member: Member { name, get, .. }, .. }| quote!(#name: #owner::#constant.#get(data)));
-    let decode = quote!(Self { #(#reads),* });
+    let reads =
+        signals.iter().map(|Signal { constant, member: Member { name, get, is_optional, is_at_end, .. }, .. }| {
+            let length = match (is_optional, is_at_end) {
+                (false, _) => quote!(),
+                (true, false) => quote!(, 8),
+                (true, true) => quote!(, length),
+            };
+            quote!(#name: #owner::#constant.#get(data #length))
+        });
+    let values = quote!(Self { #(#reads),* });
+    let sized = (!lengths.is_empty()).then(|| sized(lengths, &values));
+    let decode = if sized.is_some() { quote!(<Self as Layout>::read_some(data, 8)) } else { values };
     let writes = signals.iter().map(|Signal { constant, member: Member { name, put, .. }, .. }| {
         quote!(#owner::#constant.#put(message.#name, payload))
     });
     let writes: Vec<_> = writes.collect();
     let (last, others) = writes.split_last()?;
-    let encode = if others.is_empty() { quote!(#last) } else { quote!({ #(#others?;)* #last }) };
+    let end = (!lengths.is_empty()).then(|| end(message, lengths));
+    let is_short = others.is_empty() && end.is_none();
+    let encode = if is_short { quote!(#last) } else { quote!({ #end #(#others?;)* #last }) };
     Some(quote! {
         impl Layout for #name {
             const SIGNALS: &'static [&'static dyn AnySignal] = &[#(&#owner::#constants),*];
             const DECODE: Decode<Self> = |data| #decode;
             const ENCODE: Encode<Self> = |message, payload| #encode;
+            #sized
         }
     })
+}
+
+/// Emits how values are read from frames of several lengths.
+fn sized(lengths: &[Length], values: &TokenStream) -> TokenStream {
+    let bytes = lengths.iter().map(|length| &length.bytes);
+    quote! {
+        const LENGTHS: &'static [u8] = &[#(#bytes),*];
+        #[inline]
+        fn read_some(data: &Data, length: usize) -> Self { #values }
+    }
+}
+
+/// Emits how long the frame is that has the values which are there.
+fn end(message: &Message, lengths: &[Length]) -> TokenStream {
+    let (shortest, longer) = (&lengths[0].bytes, &lengths[1..]);
+    let cases = longer.iter().map(|Length { bytes, added }| {
+        let signals = || added.iter().map(|id| &message.signals[*id]);
+        let members = signals().map(|signal| &signal.member.name);
+        // Nobody sees from its values whether a frame ended before them, or said that there are none.
+        let had = signals().all(|signal| signal.has_absent).then(|| quote!(|| payload.had(#bytes)));
+        quote!(if #(message.#members.is_some())||* #had { payload.end_after(#bytes); })
+    });
+    quote!(payload.end_after(#shortest); #(#cases)*)
 }

@@ -150,6 +150,9 @@ keys! {
     /// Beside `unit`, `scale`, `offset` or `range` these are special values, and lie outside the
     /// range.
     Values "values": values: Map<String>, inherited;
+    /// What stands for a value that the device does not have: `ones` or `none`; the protocol's
+    /// `absent` if absent. `ones` are bits that are all 1, and the greatest signed number.
+    Absent "absent": absent: Option<String>, inherited;
     /// The parts of a word, or of a text with a `format`, by name:
     /// `{mode: {bits: 7..4}, stage: {bits: 3..0}}`; none if absent.
     Fields "fields": fields: Map<Field>, inherited;

@@ -21,9 +21,11 @@ pub struct Message {
     /// the `answers` of the accesses, which hold if absent.
     #[serde(default)]
     pub answers: Map<String>,
-    /// Number of data bytes of its frames, 0 to 8: `4`; the protocol's `length` if absent. It never
-    /// chooses the message.
-    pub length: Option<String>,
+    /// Number of data bytes of its frames, 0 to 8, or a list of several: `4` or `[7, 8]`; the
+    /// protocol's `length` if absent. It never chooses the message. Fields beyond the shortest length
+    /// are optional.
+    #[serde(default)]
+    pub length: Names,
     /// Raw values that fields of the identifier have in frames that are built, in place of their own
     /// `send`: `{priority: 4}`. Received frames may have any. None if absent.
     #[serde(default)]

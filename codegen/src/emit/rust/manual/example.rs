@@ -57,6 +57,8 @@ impl Manual<'_> {
             let signal = &message.signals[reading.signal];
             let value = literal(self, signal, &protocol[decoded.message][reading.signal], reading.bits)?;
             names.extend(value.split_once("::").map(|(kind, _)| kind.to_owned()));
+            let is_some = signal.member.is_optional && value != "None";
+            let value = if is_some { format!("Some({value})") } else { value };
             values.push(format!("{}: {value}", signal.member.name));
         }
         let call = format!("{}({argument})?;", message.methods[layout.exchange]);

@@ -232,7 +232,7 @@ impl Exchange {
             message: message.name.clone(),
             filter: Filter::new(selectors, &[], &message.constants),
             answers: (exchange.answers != known.answers).then(|| exchange.answers.to_vec()),
-            length: (message.length != 8).then(|| decimal(message.length)),
+            length: (message.shortest() != 8).then(|| decimal(message.shortest())),
             models: message.models.iter().map(|model| models.variant(*model).clone()).collect(),
             sends: sends(protocol, message),
             filled: filled.map(|ones| data(ones.to_be_bytes())),

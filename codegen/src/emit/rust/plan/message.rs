@@ -43,6 +43,8 @@ pub struct Struct {
     pub is_home: bool,
     /// The signals whose values it has.
     pub signals: Vec<SignalId>,
+    /// The numbers of data bytes that its frame can have, if there are several.
+    pub lengths: Vec<Length>,
     /// Whether equality is exact.
     pub is_exact: bool,
     /// The bits that the document reserves and their comment, if it has signals.
@@ -51,6 +53,14 @@ pub struct Struct {
     pub requests: Vec<Request>,
     /// The values within the limits of a device model.
     pub within: Option<Within>,
+}
+
+/// A number of data bytes that a frame can have.
+pub struct Length {
+    /// The number.
+    pub bytes: TokenStream,
+    /// The signals that shorter frames lack.
+    pub added: Vec<SignalId>,
 }
 
 /// A method that builds a request.
@@ -135,6 +145,7 @@ impl Planner<'_> {
             is_home: host.is_home,
             is_exact: own.signals.iter().all(|signal| signals[*signal].coding.is_exact()),
             signals: own.signals.clone(),
+            lengths: frame.map(|frame| lengths(&protocol[id], frame)).unwrap_or_default(),
             reserved: frame.map(reserved),
             requests: hosted.iter().map(|frame| self.request(&host, ways, frame)).collect(),
             within: dependent.first().map(|first| Within {
@@ -240,6 +251,19 @@ struct Host<'a> {
     id: MessageId,
     name: &'a Ident,
     is_home: bool,
+}
+
+/// Returns the numbers of data bytes that a frame can have, if there are several.
+fn lengths(message: &model::Message, frame: &FrameLayout) -> Vec<Length> {
+    if frame.lengths.len() < 2 {
+        return Vec::new();
+    }
+    let shorter = std::iter::once(0).chain(frame.lengths.iter().copied());
+    let steps = shorter.zip(&frame.lengths).map(|(shorter, length)| {
+        let ends_here = |id: &&SignalId| (shorter + 1..=*length).contains(&message[**id].end());
+        Length { bytes: literal::decimal(*length), added: frame.signals.iter().filter(ends_here).copied().collect() }
+    });
+    steps.collect()
 }
 
 /// Writes the bits of the data that neither signals nor selectors cover.

@@ -52,6 +52,8 @@ pub struct Recognised {
     pub variant: Ident,
     /// Whether it carries values.
     pub carries: bool,
+    /// The struct of its values, if the number of data bytes says which of them are there.
+    pub sized: Option<Ident>,
 }
 
 /// What code reads: parts of the frame, and the device model.
@@ -61,6 +63,8 @@ pub struct Reads {
     pub id: bool,
     /// The data.
     pub data: bool,
+    /// The frame as a whole.
+    pub frame: bool,
     /// The frame as a whole, and the device model.
     pub model: bool,
 }
@@ -68,7 +72,12 @@ pub struct Reads {
 impl Reads {
     /// Returns what two pieces of code read together.
     pub fn or(self, other: Self) -> Self {
-        Self { id: self.id || other.id, data: self.data || other.data, model: self.model || other.model }
+        Self {
+            id: self.id || other.id,
+            data: self.data || other.data,
+            frame: self.frame || other.frame,
+            model: self.model || other.model,
+        }
     }
 }
 
@@ -103,7 +112,8 @@ impl Planner<'_> {
         let sources = || row.constants.keys().map(|selector| &self.selectors[*selector].source);
         let id = sources().any(|source| matches!(source, Source::Identifier(_)));
         let data = sources().any(|source| matches!(source, Source::Data(_)));
-        let reads = Reads { id, data: data || frames.iter().any(|frame| frame.carries), model: frames.len() > 1 };
+        let carries = |is_sized: bool| frames.iter().any(|frame| frame.carries && frame.sized.is_some() == is_sized);
+        let reads = Reads { id, data: data || carries(false), frame: carries(true), model: frames.len() > 1 };
         Outcome { frames, reads }
     }
 
@@ -116,6 +126,7 @@ impl Planner<'_> {
             exchange: message.exchanges[layout.exchange].constant.clone(),
             variant: frame.variant.clone(),
             carries: frame.carried.is_some(),
+            sized: frame.carried.clone().filter(|_| layout.lengths.len() > 1),
         }
     }
 }

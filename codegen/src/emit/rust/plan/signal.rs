@@ -1,7 +1,7 @@
 //! Signals: their constants, and the members of the structs that carry their values.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::doc::{self, Comment};
 use super::encoding::Coding;
@@ -36,6 +36,8 @@ pub struct Signal {
     pub model_limits: Option<Ident>,
     /// Raw values that are legal outside the limits.
     pub specials: Vec<Special>,
+    /// Whether the last of them says that there is no value.
+    pub has_absent: bool,
     /// The member of structs.
     pub member: Member,
 }
@@ -62,6 +64,10 @@ pub struct Member {
     pub comment: Comment,
     /// Its type.
     pub kind: TokenStream,
+    /// Whether a frame can lack it, because the frame is short or says so.
+    pub is_optional: bool,
+    /// Whether short frames lack it.
+    pub is_at_end: bool,
     /// The signal's method that reads it.
     pub get: Ident,
     /// The signal's method that writes it.
@@ -126,6 +132,7 @@ impl Context<'_> {
             limits: range.map(|range| coding.ends(range, self.float)),
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),
             specials: signal.specials.iter().zip(specials).map(special).collect(),
+            has_absent: signal.has_absent,
             member: self.member(message, signal, field, &coding, range),
             constant,
             coding,
@@ -140,11 +147,13 @@ impl Context<'_> {
         coding: &Coding,
         range: Option<Range>,
     ) -> Member {
-        let sentence = sentence(self.protocol, signal, coding, range);
+        let is_at_end = message.is_optional(signal);
+        let is_optional = is_at_end || signal.has_absent;
+        let sentence = sentence(self.protocol, (message, signal), coding, range);
         let paragraphs = doc::paragraphs(self.protocol, &signal.doc, &sentence, Some(&message.doc));
         let comment = Comment::new(paragraphs.into_iter().chain(type_notes(self.protocol, signal, coding)));
-        let [get, put] = coding.methods();
-        Member { name, comment, kind: coding.value(self.float), get, put }
+        let [get, put] = coding.methods().map(|name| if is_optional { format_ident!("{name}_some") } else { name });
+        Member { name, comment, kind: coding.value(self.float), is_optional, is_at_end, get, put }
     }
 }
 
@@ -169,14 +178,27 @@ fn as_signed(raw: i128) -> TokenStream {
     quote!(u64::cast_signed(#bits))
 }
 
-fn sentence(protocol: &Protocol, signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
+fn sentence(
+    protocol: &Protocol,
+    (message, signal): (&Message, &model::Signal),
+    coding: &Coding,
+    range: Option<Range>,
+) -> String {
     let title = doc::title(&signal.doc, &signal.name);
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
     let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
-    let facts = [Some(Written::new(signal.place).text()), coding.step.clone(), range, specials(signal)];
+    let place = Some(Written::new(signal.place).text());
+    let optional = message.is_optional(signal).then(|| format!("only in frames of {} bytes", least(message, signal)));
+    let facts = [place, optional, coding.step.clone(), range, specials(signal)];
     let facts: Vec<_> = facts.into_iter().flatten().collect();
     let models = models(protocol, signal);
     format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
+}
+
+/// Returns the numbers of data bytes with which a message's frame has a signal.
+fn least(message: &Message, signal: &model::Signal) -> String {
+    let lengths = message.lengths.iter().filter(|length| **length >= signal.end());
+    lengths.map(u8::to_string).collect::<Vec<_>>().join(" or ")
 }
 
 /// Says that limits depend on the device model, and which models have none.

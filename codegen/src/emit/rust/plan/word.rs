@@ -236,13 +236,9 @@ impl PackedPart {
             comment: Comment::item(protocol, &part.doc, &sentence, Some(&signal.doc)),
             kind,
             constant: screaming(&part.name),
-            place: Written::new(part.place).counted_from(first_byte(signal)),
+            place: Written::new(part.place).counted_from(signal.start()),
         }
     }
-}
-
-fn first_byte(signal: &Signal) -> u8 {
-    u8::try_from(u64::from_be_bytes(signal.place.mask()).leading_zeros() / 8).unwrap_or(0)
 }
 
 impl Piece {

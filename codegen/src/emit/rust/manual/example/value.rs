@@ -11,6 +11,9 @@ use crate::model::{Encoding, Id, Signal};
 /// Writes the value of a struct's field; `None` of one that has no short literal.
 pub fn literal(manual: &Manual, planned: &plan::signal::Signal, signal: &Signal, bits: u64) -> Option<String> {
     let raw = signal.raw_of(bits);
+    if signal.absent().is_some_and(|absent| absent.raw == raw) {
+        return Some("None".to_owned());
+    }
     match signal.encoding {
         Encoding::Number { .. } => Some(squeezed(&planned.coding.value_of(signal, raw, manual.float))),
         Encoding::Float => Some(format!("{:?}", f32::from_bits(u32::try_from(bits).ok()?))),
