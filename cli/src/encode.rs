@@ -1,9 +1,11 @@
 //! `canspec encode`.
 
+mod access;
+
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use canspec_codegen::interpret::{self, Frame, Target, Targets};
+use canspec_codegen::interpret::{self, Frame, Refusal, Target, Targets};
 use canspec_codegen::model::{ModelId, Protocol};
 use clap::{Args, ValueEnum};
 
@@ -102,9 +104,13 @@ impl Encode {
                 return Err(Failure::Call(why.to_owned()));
             }
         };
+        let refused = |refusal: Refusal| Failure::Call(refusal.to_string());
+        if access.is_none() {
+            access::refuse_several(message, &interpret::accesses(protocol, message, &signals).map_err(refused)?)?;
+        }
         let target = self.target(protocol, access, message)?;
         let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
-        let frames = frames.map_err(|refusal| Failure::Call(refusal.to_string()))?;
+        let frames = frames.map_err(refused)?;
         let mut out = output()?;
         frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
         Ok(Finish::Done)

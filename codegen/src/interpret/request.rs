@@ -71,6 +71,40 @@ pub fn targets(protocol: &Protocol, access: Option<&str>, message: &str) -> Resu
     }
 }
 
+/// Returns the accesses by which a message can be requested. First comes the one whose request carries these signals and
+/// fewest others.
+///
+/// # Errors
+///
+/// There is no such message.
+pub fn accesses<'a>(
+    protocol: &'a Protocol,
+    message: &str,
+    signals: &[(String, String)],
+) -> Result<Vec<&'a str>, Refusal> {
+    let (_, message) = find_message(protocol, message)?;
+    let mut requests = requests_of(protocol, message, |_| true);
+    requests.sort_by_key(|frame| {
+        let carried: Vec<_> = protocol.signals_of(frame).map(|(_, signal)| signal.name.as_str()).collect();
+        let missing = signals.iter().filter(|(name, _)| !carried.contains(&name.as_str())).count();
+        (missing, carried.len())
+    });
+    let mut names: Vec<_> = requests.into_iter().map(|frame| protocol[frame.access].name.as_str()).collect();
+    names.dedup();
+    Ok(names)
+}
+
+/// Returns the requests of a message. Those by the accesses of its sets count if none of its own is meant.
+fn requests_of<'a>(
+    protocol: &'a Protocol,
+    message: &'a Message,
+    is_meant: impl Fn(&FrameLayout) -> bool,
+) -> Vec<&'a FrameLayout> {
+    let requests = protocol.frames_of(message).filter(|frame| frame.kind == Kind::Request);
+    let has_own = requests.clone().any(|frame| frame.set.is_none() && is_meant(frame));
+    requests.filter(|frame| frame.set.is_none() || !has_own).collect()
+}
+
 /// Returns the request of a member by the access of its set.
 fn layout_of_member<'a>(
     protocol: &'a Protocol,
@@ -195,10 +229,8 @@ fn request_layout<'a>(
     access: Option<&str>,
 ) -> Result<&'a FrameLayout, Refusal> {
     let name = |frame: &FrameLayout| protocol[frame.access].name.as_str();
-    let requests = protocol.frames_of(message).filter(|frame| frame.kind == Kind::Request);
     let is_meant = |frame: &FrameLayout| access.is_none_or(|access| name(frame) == access);
-    let has_own = requests.clone().any(|frame| frame.set.is_none() && is_meant(frame));
-    let requests: Vec<_> = requests.filter(|frame| frame.set.is_none() || !has_own).collect();
+    let requests = requests_of(protocol, message, is_meant);
     let names: Vec<_> = requests.iter().map(|frame| format!("`{}`", name(frame))).collect();
     let fitting: Vec<_> = requests.into_iter().filter(|frame| is_meant(frame)).collect();
     match (fitting.as_slice(), access) {
