@@ -2,6 +2,7 @@
 //!
 //! They apply before names are resolved, so a slip in a definition is shown at the definition.
 
+mod comment;
 mod order;
 mod quantity;
 mod spelling;
@@ -13,11 +14,19 @@ use crate::rule::Rule;
 use crate::syntax::tree::Node;
 use table::Table;
 
-/// Looks for breaches of one rule in a spec and its tables.
-type Lint = fn(&Node, &[Table]) -> Vec<Diagnostic>;
+/// A spec as it is written.
+pub(crate) struct Written<'a> {
+    text: &'a str,
+    tree: &'a Node,
+    tables: Vec<Table<'a>>,
+}
+
+/// Looks for breaches of one rule.
+type Lint = fn(&Written) -> Vec<Diagnostic>;
 
 /// The rules on how a spec is written, in order, each with its test.
-pub(crate) const RULES: [(&Rule, Lint); 4] = [
+pub(crate) const RULES: [(&Rule, Lint); 5] = [
+    (&comment::COMMENT, comment::lint),
     (&quantity::QUANTITY, quantity::lint),
     (&spelling::SPELLING, spelling::lint),
     (&order::ORDER, order::lint),
@@ -27,8 +36,8 @@ pub(crate) const RULES: [(&Rule, Lint); 4] = [
 /// Applies every rule to a spec that could be read.
 pub fn lint(diagnostics: &mut Diagnostics) {
     let Some(tree) = diagnostics.tree() else { return };
-    let tables = table::tables(tree);
-    let found: Vec<_> = RULES.iter().flat_map(|(_, lint)| lint(tree, &tables)).collect();
+    let written = Written { text: diagnostics.source().text(), tree, tables: table::tables(tree) };
+    let found: Vec<_> = RULES.iter().flat_map(|(_, lint)| lint(&written)).collect();
     for item in found {
         diagnostics.push(item);
     }

@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 
+use super::Written;
 use super::table::Table;
 use crate::diagnostic::{At, Diagnostic};
 use crate::number::Rational;
@@ -41,8 +42,8 @@ impl<'a> Step<'a> {
     }
 }
 
-pub fn lint(_: &Node, tables: &[Table]) -> Vec<Diagnostic> {
-    let sequences = tables.iter().filter(|table| table.is_definition()).flat_map(sequences);
+pub fn lint(written: &Written) -> Vec<Diagnostic> {
+    let sequences = written.tables.iter().filter(|table| table.is_definition()).flat_map(sequences);
     sequences.filter_map(|sequence| misplaced(&sequence)).collect()
 }
 

@@ -2,6 +2,7 @@
 
 mod phrase;
 
+use super::Written;
 use super::table::Table;
 use crate::diagnostic::Diagnostic;
 use crate::model::Unit;
@@ -25,8 +26,8 @@ struct Measured<'a> {
     path: Path,
 }
 
-pub fn lint(_: &Node, tables: &[Table]) -> Vec<Diagnostic> {
-    let definitions = tables.iter().filter(|table| table.is_definition());
+pub fn lint(written: &Written) -> Vec<Diagnostic> {
+    let definitions = written.tables.iter().filter(|table| table.is_definition());
     definitions.flat_map(measured).filter_map(|measured| contradiction(&measured)).collect()
 }
 

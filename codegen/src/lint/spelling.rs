@@ -4,10 +4,11 @@ mod words;
 
 use std::ops::RangeInclusive;
 
+use super::Written;
 use super::table::{Name, Table};
 use crate::diagnostic::Diagnostic;
 use crate::rule::rules;
-use crate::syntax::tree::{Node, Path};
+use crate::syntax::tree::Path;
 use words::{Vocabulary, words};
 
 rules! {
@@ -30,7 +31,7 @@ const TO: [&str; 6] = ["to", "..", "...", "…", "-", "–"];
 /// Largest number of strange names that are tested, so that large files take no longer.
 const MOST: usize = 500;
 
-pub fn lint(tree: &Node, tables: &[Table]) -> Vec<Diagnostic> {
+pub fn lint(Written { tree, tables, .. }: &Written) -> Vec<Diagnostic> {
     let vocabulary = Vocabulary::new(tree, tables);
     let protocol = tree.text_at("protocol").map(|text| Name {
         text,

@@ -2,10 +2,11 @@
 
 use indexmap::IndexMap;
 
+use super::Written;
 use super::table::Table;
 use crate::diagnostic::Diagnostic;
 use crate::rule::rules;
-use crate::syntax::tree::{Entry, Node, Path};
+use crate::syntax::tree::{Entry, Path};
 
 rules! {
     UNEVEN "uneven" Lint WARNING;
@@ -33,8 +34,8 @@ struct Sibling<'a> {
     entries: &'a IndexMap<String, Entry>,
 }
 
-pub fn lint(_: &Node, tables: &[Table]) -> Vec<Diagnostic> {
-    tables.iter().flat_map(uneven).collect()
+pub fn lint(written: &Written) -> Vec<Diagnostic> {
+    written.tables.iter().flat_map(uneven).collect()
 }
 
 fn uneven(table: &Table) -> Vec<Diagnostic> {
