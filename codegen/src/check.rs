@@ -20,6 +20,7 @@ mod reply;
 pub(crate) mod rust_name;
 mod section;
 mod set;
+mod shared_address;
 mod special_value;
 mod stale_allowance;
 mod unreachable;
@@ -37,7 +38,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 24] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 25] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -50,6 +51,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 24] = [
     (&default_value::DEFAULT_VALUE, Some(default_value::check)),
     (&rules::SET, Some(set::check)),
     (&direction::DIRECTION, Some(direction::check)),
+    (&shared_address::SHARED_ADDRESS, Some(shared_address::check)),
     (&ambiguous::AMBIGUOUS, Some(ambiguous::check)),
     (&refusal::REFUSAL, Some(refusal::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),

@@ -1,0 +1,72 @@
+#![doc = include_str!("../rules/shared_address.md")]
+
+use std::collections::HashSet;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Kind, Mode, ModeId, Protocol};
+use crate::rule::rules;
+
+rules! {
+    SHARED_ADDRESS "shared_address" Check WARNING;
+}
+
+/// A mode, and what the identifier of its requests shows.
+type Asked<'a> = (ModeId, &'a AddressPattern);
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let mut known = HashSet::new();
+    for frame in protocol.frames.iter().filter(|frame| frame.kind == Kind::Request) {
+        let modes: Vec<Asked> = protocol.patterns_of(frame).collect();
+        if !known.insert(modes.iter().map(|(mode, _)| *mode).collect::<Vec<_>>()) {
+            continue;
+        }
+        for (place, one) in modes.iter().enumerate() {
+            if let Some(found) = modes[place + 1..].iter().find_map(|other| shared(protocol, frame, *one, *other)) {
+                diagnostics.push(found);
+            }
+        }
+    }
+}
+
+/// Finds an identifier that a request shows in both modes.
+fn shared(protocol: &Protocol, frame: &FrameLayout, one: Asked, other: Asked) -> Option<Diagnostic> {
+    let mut identifier = 0;
+    for (id, field) in protocol.identifier.fields.entries() {
+        let [(first, last), (start, end)] = [one, other].map(|(_, pattern)| sent(protocol, frame, pattern, id));
+        let lowest = first.max(start);
+        if lowest > last.min(end) {
+            return None;
+        }
+        identifier = field.put(identifier, lowest);
+    }
+    Some(report(protocol, identifier, [one, other].map(|(mode, _)| &protocol[mode])))
+}
+
+/// Returns the least and the greatest value of a field that the document names for a request.
+fn sent(protocol: &Protocol, frame: &FrameLayout, pattern: &AddressPattern, field: FieldId) -> (u32, u32) {
+    let value = protocol[field].get(protocol.base_identifier(frame, pattern));
+    let address = pattern.addresses.iter().find(|address| address.field == field);
+    address.map_or((value, value), |address| protocol[address.address_type].raw_range())
+}
+
+fn report(protocol: &Protocol, identifier: u32, [one, other]: [&Mode; 2]) -> Diagnostic {
+    let at = |mode: &Mode| mode.doc.path.key("request").at_key();
+    let open = [(one, other), (other, one)].into_iter().find_map(|(mode, other)| Some((mode, other, open(mode)?)));
+    let Some((mode, second, address)) = open else {
+        let text = format!("a request in the mode `{}` is also one in the mode `{}`", one.name, other.name);
+        let help = "give one of the two another constant, or leave it out of `answers`";
+        return Diagnostic::warning(&SHARED_ADDRESS, at(other), text).help(help).other(at(one), "the other mode");
+    };
+    let known = &protocol[address.address_type];
+    let (name, number) = (&known.name, known.number(protocol[address.field].get(identifier)));
+    let text = format!("a request to `{name}` {number} is also one in the mode `{}`", second.name);
+    let help = format!("if no `{name}` has the address {number}, take it out of the range of `{name}`");
+    let diagnostic = Diagnostic::warning(&SHARED_ADDRESS, at(second), text).help(help);
+    let diagnostic = diagnostic.other(at(mode), format!("here `{name}` is addressed"));
+    diagnostic.other(known.doc.path.key("range").at_value(), "the range")
+}
+
+/// Returns the address that requests of a mode leave to the caller.
+fn open(mode: &Mode) -> Option<&Address> {
+    mode.request.as_ref()?.addresses.iter().find(|address| Some(address.address_type) == mode.target)
+}
