@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeSet, HashSet};
 
+use indexmap::IndexMap;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Mode, ModeId, Protocol, Who, exclude};
 use crate::rule::rules;
@@ -19,8 +21,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Names the requests and replies that look alike, each with its own way out. A pattern is named
-/// once, as one change may tell it from all others.
+/// Names all requests and replies that look alike. Those with one way out stand together.
 fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let (requests, replies): (Vec<_>, Vec<_>) = patterns(protocol).partition(Known::is_request);
     let pairs = || requests.iter().flat_map(|request| replies.iter().map(move |reply| Pair { request, reply }));
@@ -30,20 +31,30 @@ fn report(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let close = pairs().filter(|pair| pair.common(protocol, |address, _| !is_strict(protocol, address)).is_some());
         alike = close.map(|pair| (pair, None)).collect();
     }
-    if alike.is_empty() {
-        let at = Path::default().key("addressing").at_key();
-        let text = "nothing in the identifier tells a request from a reply";
-        diagnostics.push(Diagnostic::error(&DIRECTION, at, text).help(ELSE));
+    let mut by_way: IndexMap<String, Vec<Alike>> = IndexMap::new();
+    for known in alike {
+        let mut ways = known.0.ways_out(protocol);
+        let place = ways.iter().position(|way| by_way.contains_key(way)).unwrap_or(0);
+        by_way.entry(ways.swap_remove(place)).or_default().push(known);
     }
-    let (mut given, mut named) = (HashSet::new(), HashSet::new());
-    for (pair, identifier) in alike {
-        let help = pair.way_out(protocol);
-        let paths = [pair.request.path(), pair.reply.path()];
-        if !paths.iter().any(|path| named.contains(path)) && given.insert(help.clone()) {
-            named.extend(paths);
-            diagnostics.push(pair.report(protocol, identifier).help(help));
-        }
-    }
+    let together = by_way.into_iter().filter_map(|(way, alike)| Some(together(protocol, &alike)?.help(way)));
+    together.for_each(|diagnostic| diagnostics.push(diagnostic));
+}
+
+/// A request and a reply that look alike, and an identifier that fits both, if one was found.
+type Alike<'a> = (Pair<'a>, Option<u32>);
+
+/// Reports the first pair, with the patterns of the others beside it.
+fn together(protocol: &Protocol, alike: &[Alike]) -> Option<Diagnostic> {
+    let ((first, identifier), others) = alike.split_first()?;
+    let mut named = HashSet::from([first.request.path(), first.reply.path()]);
+    let patterns =
+        others.iter().flat_map(|(pair, _)| [(pair.request, "another request"), (pair.reply, "another reply")]);
+    let others = patterns.filter(|(known, _)| named.insert(known.path()));
+    Some(
+        others
+            .fold(first.report(protocol, *identifier), |known, (other, what)| known.other(other.path().at_key(), what)),
+    )
 }
 
 /// What always tells the direction.
@@ -165,15 +176,16 @@ impl Pair<'_> {
         diagnostic.other(self.request.path().at_key(), "the request")
     }
 
-    /// Says what could tell the two apart. What the accesses hold comes first, then addresses, which
-    /// one may refuse.
-    fn way_out(&self, protocol: &Protocol) -> String {
+    /// Says what could tell the two apart, the best first. What the accesses hold comes before addresses, which one may
+    /// refuse. There is always one.
+    fn ways_out(&self, protocol: &Protocol) -> Vec<String> {
         let each = |way: fn(&Self, &Protocol, FieldId) -> Option<String>| {
-            protocol.identifier.fields.ids().find_map(|field| way(self, protocol, field))
+            protocol.identifier.fields.ids().filter_map(move |field| way(self, protocol, field))
         };
         let ways =
             [Self::by_access, Self::by_controller, Self::by_module, Self::by_constant, Self::by_type, Self::by_other];
-        ways.into_iter().find_map(each).unwrap_or_else(|| ELSE.to_owned())
+        let found: Vec<_> = ways.into_iter().flat_map(each).collect();
+        if found.is_empty() { vec![ELSE.to_owned()] } else { found }
     }
 
     /// Returns the pattern that says nothing of a field, and the other one.
