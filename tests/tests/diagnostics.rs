@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use canspec_codegen::compile_with_examples;
 use canspec_codegen::diagnostic::{Diagnostics, Severity};
+use canspec_codegen::model::NoteRule;
 use canspec_codegen::rules::{self, RULES};
 use canspec_codegen::source::Source;
 
@@ -75,6 +76,15 @@ fn every_rule_has_a_document_with_its_summary_and_examples() {
         assert!(paragraphs >= 2, "{}: the document says why", rule.name);
         let has_examples = rule.document.contains("```yaml fails\n") && rule.document.contains("\n```yaml\n");
         assert!(has_examples || WITHOUT_EXAMPLE.contains(&rule.name), "{}: two blocks of YAML", rule.name);
+    }
+}
+
+#[test]
+fn every_note_says_what_it_means_and_what_to_do() {
+    for (note, name) in NoteRule::ALL {
+        let (summary, rest) = note.document().split_once("\n\n").unwrap_or_default();
+        assert!(summary.starts_with("A note: ") && summary.ends_with('.'), "{name}");
+        assert!(rest.ends_with(".\n"), "{name}");
     }
 }
 
