@@ -147,8 +147,9 @@ impl Decode {
             counts.frames += u64::from(entry.is_some());
             entry.map_or(Ok(Ok(())), |entry| capture.frame(out, &entry))
         });
-        self.suggest(&counts);
-        finish
+        let finish = finish?;
+        self.suggest(&counts, finish);
+        Ok(finish)
     }
 
     fn print(&self) -> Result<Finish, Failure> {
@@ -171,7 +172,7 @@ impl Decode {
         };
         state.printer.end(&mut out)?;
         out.flush()?;
-        self.suggest(&counts);
+        self.suggest(&counts, finish);
         if counts.frames > 0 && counts.recognised == 0 {
             self.suggest_identify();
         }
@@ -196,9 +197,11 @@ impl Decode {
         Ok(decoded.map_or(Ok(()), |decoded| self.show(&mut state.printer, out, line.number, &entry, decoded)))
     }
 
-    /// Says which channels there are, if no frame is of a chosen one.
-    fn suggest(&self, counts: &Counts) {
-        if let Some(hint) = self.channels.hint(counts.frames, &counts.others) {
+    /// Says why nothing is shown: no frame is of a chosen channel, or there is none. A summary counts none itself.
+    fn suggest(&self, counts: &Counts, finish: Finish) {
+        let is_empty = counts.frames == 0 && finish == Finish::Done && !self.summary;
+        let hint = self.channels.hint(counts.frames, &counts.others);
+        if let Some(hint) = hint.or_else(|| is_empty.then(|| "the log has no frame".to_owned())) {
             tell(format_args!("canspec: {hint}"));
         }
     }

@@ -39,7 +39,7 @@ enum Format {
     Asc(asc::Base),
     Csv(Box<csv::Columns>),
     Trc(trc::Columns),
-    /// A table without a column that it needs, and the complaint if nobody has heard it.
+    /// A table without a column or a separator that it needs, and the complaint if nobody has heard it.
     Incomplete(Option<String>),
 }
 
@@ -106,7 +106,8 @@ fn head(line: &str) -> Option<Format> {
 /// Returns the format of a first line that has less than it should.
 fn uncertain(line: &str) -> Option<Format> {
     let stamped = compact::has_stamp(line).then_some(Format::Compact);
-    stamped.or_else(|| csv::Columns::lack(line).map(|why| Format::Incomplete(Some(why))))
+    let complaint = || csv::Columns::lack(line).or_else(|| csv::Columns::aligned(line));
+    stamped.or_else(|| complaint().map(|why| Format::Incomplete(Some(why))))
 }
 
 /// Returns the format that has frames in such a line.
@@ -148,7 +149,7 @@ mod tests {
 
     #[test]
     fn each_format_is_told_by_its_own_lines() {
-        let logs: [&[&str]; 12] = [
+        let logs: [&[&str]; 13] = [
             &["(1.5) can0 123#1122"],
             &["  can0  123   [2]  11 22"],
             &["  can0  123   [2]  11 22   '#['"],
@@ -157,6 +158,7 @@ mod tests {
             &["0.5 1  123  Rx   d 2 11 22"],
             &["timestamp,arbitration_id,extended,remote,error,dlc,data", "0.5,0x123,0,0,0,2,ESI="],
             &["Time [s];ID;DLC;Data", "0.5;123;2;11 22"],
+            &["seconds,identifier,data", "0.5,123,1122"],
             &["#,Time,ID,Data", "7,0.5,123,1122"],
             &["", ";$FILEVERSION=1.1", ";   |  time, id | data", "  1)  0.5  Rx  0123  2  11 22"],
             &[";##########", ";    |     |", "     1)       5  0123  2 11 22"],
@@ -173,6 +175,26 @@ mod tests {
         assert!(reader.read("time,id,value").expect_err("there are no data").contains("no column for the data"));
         assert!(reader.read("0.5,123,7").is_ok_and(|entry| entry.is_none()));
         assert!(reader.read("(1.5) can0 123#1122").is_ok_and(|entry| entry.is_some()));
+    }
+
+    #[test]
+    fn columns_of_varying_width_are_read_if_something_parts_them() {
+        let heading = "  TIME ;ID       ;DLC;DATA            ";
+        for row in ["   0.5; 123     ; 2 ; 11 22", "123456.5;123;2;1122", "123456.5;  00000123;2;11 22   "] {
+            let read = last(&[heading, row]).map(|entry| entry.map(|(_, data)| data));
+            assert_eq!(read, Ok(Some("1122".to_owned())), "{row}");
+        }
+    }
+
+    #[test]
+    fn a_table_whose_columns_only_blanks_or_bars_part_is_complained_about_once() {
+        for heading in ["TIME   ID   DLC  DATA", "Time | ID | D0 | D1", "TIME  CHANNEL  IDENTIFIER  MESSAGE"] {
+            let mut reader = Reader::default();
+            assert!(reader.read(heading).expect_err("nothing parts the cells").contains("comma"), "{heading}");
+            assert!(reader.read("0.5    123  2    11 22").is_ok_and(|entry| entry.is_none()), "{heading}");
+            assert!(reader.read("(1.5) can0 123#1122").is_ok_and(|entry| entry.is_some()), "{heading}");
+        }
+        assert!(last(&["a sentence with an id"]).expect_err("it is no heading").contains("no known log"));
     }
 
     #[test]

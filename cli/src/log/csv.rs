@@ -90,12 +90,12 @@ fn time_unit(name: &str) -> Option<usize> {
 /// Returns how the identifiers of a column are written, `None` of a column of something else.
 fn base(name: &str) -> Option<Base> {
     let names = ["id", "canid", "identifier", "arbitrationid", "arbid", "messageid", "msgid", "frameid"];
-    match names.into_iter().find_map(|start| name.strip_prefix(start))? {
+    names.into_iter().find_map(|start| match name.strip_prefix(start)? {
         "" => Some(Base::Usual),
         "hex" => Some(Base::Hexadecimal),
         "dec" | "decimal" => Some(Base::Decimal),
         _ => None,
-    }
+    })
 }
 
 /// Tests for `d0`, `data1`, `byte2` and the like.
@@ -139,6 +139,18 @@ impl Columns {
         })?;
         let heading = quoted(line.trim());
         Some(format!("the heading {heading} has no column for {what}, such as {names}; no row below it is read"))
+    }
+
+    /// Refuses a heading whose columns are parted by blanks or bars. Blanks also stand inside of cells.
+    pub fn aligned(line: &str) -> Option<String> {
+        let kinds: Vec<_> = line.split([' ', '|']).filter(|name| !name.is_empty()).map(Column::named).collect();
+        let has = |is_it: fn(&Column) -> bool| kinds.iter().any(is_it);
+        let is_heading = has(|column| matches!(column, Column::Identifier(_)))
+            && has(|column| matches!(column, Column::Time(_) | Column::Data | Column::Byte));
+        is_heading.then(|| {
+            let (heading, help) = (quoted(line.trim()), "put a comma, a semicolon or a tab between them");
+            format!("only blanks or bars part the columns of {heading}; {help}; no row below it is read")
+        })
     }
 
     /// Parts a line by each separator that it has.
