@@ -13,7 +13,7 @@ mod yaml;
 
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -35,7 +35,7 @@ pub struct Dbc {
     /// Name of the protocol, in place of the file's name.
     #[arg(long, value_name = "NAME", value_parser = protocol)]
     protocol: Option<String>,
-    /// A new file for the spec; standard output without it.
+    /// A new file for the spec; standard output without it, or for `-`.
     #[arg(short, long, value_name = "SPEC")]
     out: Option<PathBuf>,
 }
@@ -59,7 +59,9 @@ impl Dbc {
 
     /// Writes the spec. It leaves an existing file alone, because somebody may have worked on it.
     fn write(&self, text: &str) -> Result<(), Failure> {
-        let Some(path) = &self.out else { return Ok(output()?.write_all(text.as_bytes())?) };
+        let Some(path) = self.out.as_deref().filter(|path| *path != Path::new("-")) else {
+            return Ok(output()?.write_all(text.as_bytes())?);
+        };
         let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
         written.map_err(|error| {
             if error.kind() == io::ErrorKind::AlreadyExists {

@@ -149,9 +149,10 @@ impl<'a> Importer<'a> {
         let signal = &source.signals[index].name;
         let named = self.index.values(source.id, signal);
         let known = named.iter().find(|named| u64::try_from(named.id) == Ok(value));
+        let numbered = format!("{}_{value}", snake_case(signal, "multiplexor"));
         match known.map(|known| one_line(&known.description)).filter(|text| !text.is_empty()) {
-            Some(text) => (format!("{signal} = {value} ({text})"), snake_case(&text, &value.to_string())),
-            None => (format!("{signal} = {value}"), value.to_string()),
+            Some(text) => (format!("{signal} = {value} ({text})"), snake_case(&text, &numbered)),
+            None => (format!("{signal} = {value}"), numbered),
         }
     }
 
