@@ -15,7 +15,8 @@ use crate::protocols::One;
 /// Export a protocol as a DBC.
 ///
 /// Addresses vary, so each message stands for a layout of the identifier, which a mask compares.
-/// Tools without masks need the identifiers of the nodes on the bus.
+/// Tools without masks need the identifiers of the nodes on the bus. The DBC has the messages of all
+/// device models, with the widest limits.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = EXAMPLES)]
 pub struct Dbc {

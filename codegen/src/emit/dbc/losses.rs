@@ -11,7 +11,7 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     losses.extend(models(protocol));
     losses.extend(about(protocol, |signal| written(protocol, signal, &signal.name).loss));
     losses.extend(about(protocol, |signal| {
-        (!signal.model_ranges.is_empty()).then_some("has limits that depend on the device model")
+        (!signal.model_ranges.is_empty()).then_some("has limits that depend on the device model; the widest are given")
     }));
     losses.extend(about(protocol, |signal| {
         let named = signal.encoding.enumeration().map_or(&signal.specials, |known| &protocol[known].values);
@@ -55,7 +55,7 @@ fn foreign(protocol: &Protocol) -> Option<String> {
 
 fn models(protocol: &Protocol) -> Option<String> {
     let names: Vec<_> = protocol.models.iter().map(|model| model.name.as_str()).collect();
-    (!names.is_empty()).then(|| format!("the device models {}", names.join(", ")))
+    (!names.is_empty()).then(|| format!("the device models {}; it has the messages of all models", names.join(", ")))
 }
 
 /// Lists signals with a loss, and says what it is.
