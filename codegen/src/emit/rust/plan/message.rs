@@ -269,6 +269,8 @@ fn lengths(message: &model::Message, frame: &FrameLayout) -> Vec<Length> {
 /// Writes the bits of the data that neither signals nor selectors cover.
 fn reserved(frame: &FrameLayout) -> (Comment, TokenStream) {
     let sent = u8::from(frame.reserved.are_ones);
-    let comment = Comment::line(format!("The data bits that the document reserves; requests send them as {sent}."));
+    let comment = Comment::line(format!(
+        "The data bits that the document reserves. Requests send {sent}; `Received::reserved` shows those that are set."
+    ));
     (comment, literal::data(frame.uncovered().to_be_bytes()))
 }
