@@ -23,6 +23,8 @@ use crate::severity::Severity;
 const VALUE: &str = "value";
 
 /// List the built-in protocols, or the messages of one.
+///
+/// Constants that choose a message are in hexadecimal: `0x55` is what some documents print as `55h`.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = "Example:\n  canspec list --protocol NAME")]
 pub struct List {
