@@ -194,7 +194,7 @@ impl Delay {
         Signal::new("value", Place::bytes(1, 0)).unit("min").limits(1.0, 500.0).specials(&[(65_535, "none")]);
     /// The value of `value` that stands for `none`.
     pub const VALUE_NONE: Bcd<u16> = Bcd::from_raw(65_535);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("delay", FRAME.id(Identifier::COMMAND, 0x01));
@@ -226,7 +226,7 @@ pub struct Month {
 impl Month {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<MonthValue> = Signal::new("value", Place::bytes(0, 1));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("month", FRAME.id(Identifier::COMMAND, 0x02));

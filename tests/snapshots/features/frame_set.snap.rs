@@ -210,7 +210,7 @@ pub struct Heat {
 impl Heat {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i16> = Signal::new("value", Place::bytes(1, 2)).unit("°C");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `scan` in the set `all`, for filters and blank frames of it.
     pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("heat", FRAME.data(SIGNAL_SELECTOR.place, 0x01));
@@ -234,7 +234,7 @@ pub struct Power {
 impl Power {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(1, 2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `scan` in the set `all`, for filters and blank frames of it.
     pub const SCAN_ALL: Exchange = SCAN_ALL_ACCESS.of("power", FRAME.data(SIGNAL_SELECTOR.place, 0x02));

@@ -121,7 +121,7 @@ impl Measurement {
     pub const MODE: Signal<u8> = Signal::new("mode", Place::byte(6).bits(3, 1));
     /// The signal `counter`, to read or write it alone, or to ask for its limits.
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF0, 0x00];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("measurement", FRAME.id(Identifier::FUNCTION, 0x1));

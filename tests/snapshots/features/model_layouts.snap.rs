@@ -146,7 +146,7 @@ pub struct SupplyAc {
 impl SupplyAc {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange =
@@ -171,7 +171,7 @@ pub struct SupplyDc {
 impl SupplyDc {
     /// The signal `voltage`, to read or write it alone, or to ask for its limits.
     pub const VOLTAGE: Signal<u16, f64> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 100);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange =

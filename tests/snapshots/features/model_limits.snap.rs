@@ -174,7 +174,7 @@ impl SetSpeed {
     /// The signal `flow`, to read or write it alone, or to ask for its limits.
     pub const FLOW: Signal<i16, f64> =
         Signal::new("flow", Place::bytes(2, 3)).unit("%").scale(1, 10).limits(-30.0, 30.5).model_limits(FLOW_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS

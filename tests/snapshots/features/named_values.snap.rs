@@ -244,7 +244,7 @@ impl Switch {
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
     /// The signal `lamp`, to read or write it alone, or to ask for its limits.
     pub const LAMP: Signal<SwitchLamp> = Signal::new("lamp", Place::bytes(1, 2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch", FRAME.id(Identifier::COMMAND, 0x1A));

@@ -221,7 +221,7 @@ impl Limits {
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(4));
     /// The signal `day`, to read or write it alone, or to ask for its limits.
     pub const DAY: Signal<u8> = Signal::new("day", Place::byte(5)).specials(&[(255, "not_available")]).absent();
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xF8, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x12)).length(5);

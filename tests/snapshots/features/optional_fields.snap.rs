@@ -154,7 +154,7 @@ impl State {
     pub const HOURS: Signal<u16> = Signal::new("hours", Place::bytes(4, 5)).unit("h");
     /// The signal `cycles`, to read or write it alone, or to ask for its limits.
     pub const CYCLES: Signal<u8> = Signal::new("cycles", Place::byte(6));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x12)).length(3);
@@ -209,7 +209,7 @@ impl Limit {
     pub const CURRENT: Signal<u8> = Signal::new("current", Place::byte(0)).unit("A").limits(0, 100);
     /// The signal `ramp`, to read or write it alone, or to ask for its limits.
     pub const RAMP: Signal<u8> = Signal::new("ramp", Place::byte(1)).unit("s");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("limit", FRAME.id(Identifier::COMMAND, 0x13)).length(1);

@@ -196,7 +196,7 @@ pub struct Label {
 impl Label {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<LabelValue> = Signal::new("value", Place::bytes(1, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));

@@ -130,7 +130,7 @@ pub struct Speed {
 impl Speed {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3)).unit("rpm").limits(300, 3000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS.of("speed", FRAME.data(INDEX_SELECTOR.place, 0x07)).refusal(
@@ -167,7 +167,7 @@ pub struct Refusal {
 impl Refusal {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u8> = Signal::new("value", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     /// The access `refuse`, for filters and blank frames of it.
     pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);

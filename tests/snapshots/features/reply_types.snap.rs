@@ -134,7 +134,7 @@ pub struct Voltage {
 impl Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
@@ -171,7 +171,7 @@ impl Revision {
     pub const HARDWARE: Signal<u16> = Signal::new("hardware", Place::bytes(4, 5));
     /// The signal `software`, to read or write it alone, or to ask for its limits.
     pub const SOFTWARE: Signal<u16> = Signal::new("software", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("revision", FRAME.data(REGISTER_SELECTOR.place, 0x0056));

@@ -77,7 +77,7 @@ pub struct Voltage {
 impl Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(0, 1)).unit("V").scale(1, 100);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("voltage", FRAME).length(2);

@@ -163,7 +163,7 @@ pub struct SetCurrent {
 impl SetCurrent {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u16, f64> = Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS
@@ -199,7 +199,7 @@ pub struct Stop {
 impl Stop {
     /// The signal `reason`, to read or write it alone, or to ask for its limits.
     pub const REASON: Signal<u8> = Signal::new("reason", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 1; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS

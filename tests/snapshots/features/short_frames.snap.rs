@@ -159,7 +159,7 @@ pub struct KeepAlive {
 impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<u8> = Signal::new("outputs", Place::byte(1));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `tell`, for filters and blank frames of it.
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
@@ -196,7 +196,7 @@ impl Drift {
     pub const DRIFT: Signal<i32, f64> = Signal::new("drift", Place::bytes(3, 1)).unit("V").scale(1, 1024);
     /// The signal `turns`, to read or write it alone, or to ask for its limits.
     pub const TURNS: Signal<i16> = Signal::new("turns", Place::bytes(5, 4)).unit("rpm");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `ask`, for filters and blank frames of it.
     pub const ASK: Exchange = ASK_ACCESS.of("drift", FRAME).length(6);

@@ -242,7 +242,7 @@ impl Failures {
     pub const FAILURE: Signal<FailuresFailure> = Signal::new("failure", Place::bytes(2, 0));
     /// The signal `maker`, to read or write it alone, or to ask for its limits.
     pub const MAKER: Signal<FailuresMaker> = Signal::new("maker", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("failures", FRAME.id(Identifier::COMMAND, 0x18));

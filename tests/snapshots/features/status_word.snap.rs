@@ -199,7 +199,7 @@ impl Status {
     pub const RED: Signal<u8> = Signal::new("red", Place::byte(5).bits(5, 4));
     /// The signal `green`, to read or write it alone, or to ask for its limits.
     pub const GREEN: Signal<u8> = Signal::new("green", Place::byte(5).bits(1, 0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0x00, 0xFF, 0xCC, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("status", FRAME.id(Identifier::COMMAND, 0x04));

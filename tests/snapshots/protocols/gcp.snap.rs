@@ -989,7 +989,7 @@ impl SystemOutput {
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
@@ -1028,7 +1028,7 @@ pub struct ModuleCount {
 impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
@@ -1069,7 +1069,7 @@ impl ModuleOutput {
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
@@ -1131,7 +1131,7 @@ impl ModuleStatus {
     pub const STATUS_1: Signal<Status1> = Signal::new("status_1", Place::byte(6));
     /// The signal `status_0`, to read or write it alone, or to ask for its limits.
     pub const STATUS_0: Signal<Status0> = Signal::new("status_0", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
@@ -1199,7 +1199,7 @@ impl InputVoltage {
     pub const BC: Signal<u16, f64> = Signal::new("bc", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `ca`, to read or write it alone, or to ask for its limits.
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06)).models(&[
@@ -1265,7 +1265,7 @@ impl InputVoltageDc {
     pub const PLUS_PE: Signal<u16, f64> = Signal::new("plus_pe", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `minus_pe`, to read or write it alone, or to ask for its limits.
     pub const MINUS_PE: Signal<u16, f64> = Signal::new("minus_pe", Place::bytes(4, 5)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS
@@ -1323,7 +1323,7 @@ impl ExternalVoltage {
     /// The signal `allowed_current`, to read or write it alone, or to ask for its limits.
     pub const ALLOWED_CURRENT: Signal<u16, f64> =
         Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
@@ -1365,7 +1365,7 @@ pub struct LimitInputCurrent {
 impl LimitInputCurrent {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
@@ -1446,7 +1446,7 @@ pub struct SetOperatingMode {
 impl SetOperatingMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<OperatingMode> = Signal::new("mode", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00];
     /// The access `set_unanswered`, for filters and blank frames of it.
     pub const SET_UNANSWERED: Exchange = SET_UNANSWERED_ACCESS
@@ -1538,7 +1538,7 @@ impl SetWalkIn {
         .specials(&[(0, "unspecified")]);
     /// The value of `interval` that stands for `unspecified`.
     pub const INTERVAL_UNSPECIFIED: f64 = 0.0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
@@ -1570,7 +1570,7 @@ pub struct SetWalkInReply {
 }
 
 impl SetWalkInReply {
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
 }
 
@@ -1608,7 +1608,7 @@ pub struct SetLed {
 impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
@@ -1649,7 +1649,7 @@ pub struct SwitchModules {
 impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A));
@@ -1694,7 +1694,7 @@ impl SetTotalOutput {
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set_total`, for filters and blank frames of it.
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
@@ -1742,7 +1742,7 @@ impl SetModuleOutput {
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));

@@ -1099,7 +1099,7 @@ impl SystemOutput {
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
@@ -1135,7 +1135,7 @@ pub struct ModuleCount {
 impl ModuleCount {
     /// The signal `count`, to read or write it alone, or to ask for its limits.
     pub const COUNT: Signal<u8> = Signal::new("count", Place::byte(2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
@@ -1174,7 +1174,7 @@ impl ModuleOutput {
     pub const VOLTAGE: Signal<f32> = Signal::new("voltage", Place::bytes(0, 3)).unit("V");
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<f32> = Signal::new("current", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
@@ -1231,7 +1231,7 @@ impl ModuleStatus {
     pub const STATUS_1: Signal<Status1> = Signal::new("status_1", Place::byte(6));
     /// The signal `status_0`, to read or write it alone, or to ask for its limits.
     pub const STATUS_0: Signal<Status0> = Signal::new("status_0", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
@@ -1287,7 +1287,7 @@ impl InputVoltage {
     pub const BC: Signal<u16, f64> = Signal::new("bc", Place::bytes(2, 3)).unit("V").scale(1, 10);
     /// The signal `ca`, to read or write it alone, or to ask for its limits.
     pub const CA: Signal<u16, f64> = Signal::new("ca", Place::bytes(4, 5)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06));
@@ -1330,7 +1330,7 @@ impl SystemOutputFixed {
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read_total`, for filters and blank frames of it.
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output_fixed", FRAME.id(Identifier::COMMAND, 0x08));
@@ -1373,7 +1373,7 @@ impl ModuleOutputFixed {
     pub const VOLTAGE: Signal<u32, f64> = Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_output_fixed", FRAME.id(Identifier::COMMAND, 0x09));
@@ -1426,7 +1426,7 @@ impl ModuleLimits {
         Signal::new("maximum_current", Place::bytes(4, 5)).unit("A").scale(1, 10);
     /// The signal `rated_power`, to read or write it alone, or to ask for its limits.
     pub const RATED_POWER: Signal<u16, f64> = Signal::new("rated_power", Place::bytes(6, 7)).unit("W").scale(10, 1);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_limits", FRAME.id(Identifier::COMMAND, 0x0A));
@@ -1476,7 +1476,7 @@ pub struct Barcode {
 impl Barcode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<BarcodeValue> = Signal::new("value", Place::bytes(0, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode", FRAME.id(Identifier::COMMAND, 0x0B));
@@ -1527,7 +1527,7 @@ impl ExternalVoltage {
     /// The signal `allowed_current`, to read or write it alone, or to ask for its limits.
     pub const ALLOWED_CURRENT: Signal<u16, f64> =
         Signal::new("allowed_current", Place::bytes(2, 3)).unit("A").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
@@ -1567,7 +1567,7 @@ pub struct SetWalkIn {
 impl SetWalkIn {
     /// The signal `walk_in`, to read or write it alone, or to ask for its limits.
     pub const WALK_IN: Signal<WalkIn> = Signal::new("walk_in", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
@@ -1601,7 +1601,7 @@ pub struct SetLed {
 impl SetLed {
     /// The signal `led`, to read or write it alone, or to ask for its limits.
     pub const LED: Signal<Led> = Signal::new("led", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
@@ -1642,7 +1642,7 @@ pub struct SetGroup {
 impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(0)).limits(1, 62);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.id(Identifier::COMMAND, 0x16));
@@ -1678,7 +1678,7 @@ pub struct SetSleep {
 impl SetSleep {
     /// The signal `sleep`, to read or write it alone, or to ask for its limits.
     pub const SLEEP: Signal<Sleep> = Signal::new("sleep", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_sleep", FRAME.id(Identifier::COMMAND, 0x19));
@@ -1718,7 +1718,7 @@ pub struct SwitchModules {
 impl SwitchModules {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<Power> = Signal::new("power", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A)).answers(&[
@@ -1775,7 +1775,7 @@ impl SetTotalOutput {
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
     /// The signal `current`, to read or write it alone, or to ask for its limits.
     pub const CURRENT: Signal<u32, f64> = Signal::new("current", Place::bytes(4, 7)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set_total`, for filters and blank frames of it.
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
@@ -1854,7 +1854,7 @@ impl SetModuleOutput {
         .scale(1, 1000)
         .limits(0.1, 50.0)
         .model_limits(OUTPUT_CURRENT_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
@@ -1920,7 +1920,7 @@ pub struct SetAddressMode {
 impl SetAddressMode {
     /// The signal `mode`, to read or write it alone, or to ask for its limits.
     pub const MODE: Signal<AddressMode> = Signal::new("mode", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.id(Identifier::COMMAND, 0x1F));

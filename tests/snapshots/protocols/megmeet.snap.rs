@@ -1810,7 +1810,7 @@ impl CharacteristicWord {
     pub const MINOR_VERSION: Signal<u8> = Signal::new("minor_version", Place::bytes(6, 7).bits(8, 5));
     /// The signal `generation`, to read or write it alone, or to ask for its limits.
     pub const GENERATION: Signal<u8> = Signal::new("generation", Place::byte(7).bits(4, 2));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x03];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
@@ -1891,7 +1891,7 @@ impl Versions {
     pub const DCDC: Signal<u16> = Signal::new("dcdc", Place::bytes(4, 5));
     /// The signal `pfc`, to read or write it alone, or to ask for its limits.
     pub const PFC: Signal<u16> = Signal::new("pfc", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
@@ -1958,7 +1958,7 @@ impl HardwareAddress {
     pub const SLAVE: Signal<u8> = Signal::new("slave", Place::byte(3)).limits(1, 8).specials(&[(0, "none")]);
     /// The value of `slave` that stands for `none`.
     pub const SLAVE_NONE: u8 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
@@ -2005,7 +2005,7 @@ impl OutputVoltageSetting {
         .scale(1, 1024)
         .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
@@ -2081,7 +2081,7 @@ impl DefaultOutputVoltage {
         .scale(1, 1024)
         .limits(48.0, 58.0)
         .model_limits(DEFAULT_OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
@@ -2166,7 +2166,7 @@ impl OvervoltageProtectionPoint {
         .scale(1, 1024)
         .limits(58.5, 60.5)
         .model_limits(OVERVOLTAGE_POINT_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
@@ -2252,7 +2252,7 @@ pub struct CurrentLimitSetting {
 impl CurrentLimitSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x103));
@@ -2301,7 +2301,7 @@ pub struct DefaultCurrentLimit {
 impl DefaultCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
@@ -2357,7 +2357,7 @@ impl WalkInTime {
         Signal::new("value", Place::bytes(4, 7)).unit("s").limits(8, 200).specials(&[(0, "forbid")]);
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
@@ -2414,7 +2414,7 @@ pub struct TotalRunningTime {
 impl TotalRunningTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("h");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
@@ -2473,7 +2473,7 @@ pub struct SwitchModules {
 impl SwitchModules {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Power> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(SIGNAL_SELECTOR.place, 0x132));
@@ -2504,7 +2504,7 @@ pub struct ResetOvervoltageLockout {
 impl ResetOvervoltageLockout {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage_lockout", FRAME.data(SIGNAL_SELECTOR.place, 0x133));
@@ -2537,7 +2537,7 @@ pub struct FlashGreenLight {
 impl FlashGreenLight {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Flicker> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("flash_green_light", FRAME.data(SIGNAL_SELECTOR.place, 0x135));
@@ -2573,7 +2573,7 @@ pub struct AssignAddresses {
 impl AssignAddresses {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Assignment> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("assign_addresses", FRAME.data(SIGNAL_SELECTOR.place, 0x13A));
@@ -2612,7 +2612,7 @@ impl ControlLights {
     pub const YELLOW: Signal<Light> = Signal::new("yellow", Place::byte(3).bits(3, 2));
     /// The signal `green`, to read or write it alone, or to ask for its limits.
     pub const GREEN: Signal<Light> = Signal::new("green", Place::byte(3).bits(1, 0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xC0, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("control_lights", FRAME.data(SIGNAL_SELECTOR.place, 0x140));
@@ -2657,7 +2657,7 @@ impl ShieldAlarms {
     pub const EXTENDED: Signal<ExtendedShield> = Signal::new("extended", Place::bytes(2, 3));
     /// The signal `alarms`, to read or write it alone, or to ask for its limits.
     pub const ALARMS: Signal<Shield> = Signal::new("alarms", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("shield_alarms", FRAME.data(SIGNAL_SELECTOR.place, 0x142));
@@ -2692,7 +2692,7 @@ pub struct ShieldCommunicationAlarm {
 impl ShieldCommunicationAlarm {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Shielding> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
@@ -2735,7 +2735,7 @@ pub struct InputPower {
 impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
@@ -2771,7 +2771,7 @@ pub struct InputFrequency {
 impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("Hz").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
@@ -2807,7 +2807,7 @@ pub struct InputCurrent {
 impl InputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
@@ -2843,7 +2843,7 @@ pub struct OutputPower {
 impl OutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
@@ -2879,7 +2879,7 @@ pub struct OutputVoltage {
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
@@ -2915,7 +2915,7 @@ pub struct ActualCurrentLimit {
 impl ActualCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
@@ -2953,7 +2953,7 @@ pub struct ActualPowerLimit {
 impl ActualPowerLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("W").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("actual_power_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x177));
@@ -2990,7 +2990,7 @@ pub struct InputVoltage {
 impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
@@ -3030,7 +3030,7 @@ pub struct AmbientTemperature {
 impl AmbientTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("°C").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
@@ -3066,7 +3066,7 @@ pub struct OutputCurrent {
 impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
@@ -3108,7 +3108,7 @@ impl ModuleStatus {
     pub const EXTENDED: Signal<ExtendedAlarms> = Signal::new("extended", Place::bytes(2, 3));
     /// The signal `alarms`, to read or write it alone, or to ask for its limits.
     pub const ALARMS: Signal<Alarms> = Signal::new("alarms", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
@@ -3149,7 +3149,7 @@ pub struct ExternalVoltage {
 impl ExternalVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("V").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x184));
@@ -3180,7 +3180,7 @@ pub struct RatedCurrent {
 impl RatedCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u16, f64> = Signal::new("value", Place::bytes(2, 3)).unit("A").scale(1, 100);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(SIGNAL_SELECTOR.place, 0x188));
@@ -3215,7 +3215,7 @@ pub struct AddressModeSwitch {
 impl AddressModeSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AddressMode> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange =
@@ -3300,7 +3300,7 @@ pub struct BarcodeVersion {
 impl BarcodeVersion {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
@@ -3355,7 +3355,7 @@ pub struct Barcode1 {
 impl Barcode1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
@@ -3410,7 +3410,7 @@ pub struct Barcode2 {
 impl Barcode2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
@@ -3465,7 +3465,7 @@ pub struct Barcode3 {
 impl Barcode3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
@@ -3520,7 +3520,7 @@ pub struct Barcode4 {
 impl Barcode4 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
@@ -3571,7 +3571,7 @@ pub struct FanDutyCycle {
 impl FanDutyCycle {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("%").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("fan_duty_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x22B));
@@ -3605,7 +3605,7 @@ pub struct RectifierCurrentLimitSetting {
 impl RectifierCurrentLimitSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange =
@@ -3651,7 +3651,7 @@ pub struct PvCurrentLimitSetting {
 impl PvCurrentLimitSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(4, 7)).scale(1, 1024).limits(0.0, 1.22);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pv_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22E));
@@ -3704,7 +3704,7 @@ impl RectifierOutputVoltageSetting {
         .scale(1, 1024)
         .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange =
@@ -3774,7 +3774,7 @@ impl PvOutputVoltageSetting {
         .scale(1, 1024)
         .limits(41.5, 58.5)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
@@ -3838,7 +3838,7 @@ pub struct PfcAlarmWord {
 impl PfcAlarmWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pfc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x236));
@@ -3869,7 +3869,7 @@ pub struct PfcFaultWord {
 impl PfcFaultWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pfc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x237));
@@ -3900,7 +3900,7 @@ pub struct PfcStatusWord {
 impl PfcStatusWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pfc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x238));
@@ -3931,7 +3931,7 @@ pub struct DcdcAlarmWord {
 impl DcdcAlarmWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("dcdc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x239));
@@ -3962,7 +3962,7 @@ pub struct DcdcFaultWord {
 impl DcdcFaultWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("dcdc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23A));
@@ -3993,7 +3993,7 @@ pub struct DcdcStatusWord {
 impl DcdcStatusWord {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("dcdc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23B));
@@ -4031,7 +4031,7 @@ pub struct AutoBootSetting {
 impl AutoBootSetting {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AutoBoot> = Signal::new("value", Place::bytes(2, 3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
@@ -4076,7 +4076,7 @@ impl PvVoltageSetting {
         Signal::new("value", Place::bytes(4, 7)).unit("V").limits(120, 340).specials(&[(0, "forbid")]);
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pv_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x270));
@@ -4162,7 +4162,7 @@ pub struct MpptSingleScan {
 impl MpptSingleScan {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Scan> = Signal::new("value", Place::byte(3));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("mppt_single_scan", FRAME.data(SIGNAL_SELECTOR.place, 0x273));
@@ -4208,7 +4208,7 @@ impl MpptScanCycle {
         Signal::new("value", Place::bytes(4, 7)).unit("s").limits(180, 1800).specials(&[(0, "forbid")]);
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
@@ -4263,7 +4263,7 @@ impl WindVoltageSetting {
         Signal::new("value", Place::bytes(4, 7)).unit("V").limits(120, 380).specials(&[(0, "forbid")]);
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("wind_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x275));
@@ -4308,7 +4308,7 @@ impl WindVoltageUpperLimit {
         Signal::new("value", Place::bytes(4, 7)).unit("V").limits(200, 380).specials(&[(0, "forbid")]);
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("wind_voltage_upper_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x276));
@@ -4353,7 +4353,7 @@ impl WindVoltageLowerLimit {
         Signal::new("value", Place::bytes(4, 7)).unit("V").limits(200, 380).specials(&[(0, "forbid")]);
     /// The value of `value` that stands for `forbid`.
     pub const VALUE_FORBID: u32 = 0;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("wind_voltage_lower_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x277));
@@ -4398,7 +4398,7 @@ pub struct CustomerInformation1 {
 impl CustomerInformation1 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
@@ -4453,7 +4453,7 @@ pub struct CustomerInformation2 {
 impl CustomerInformation2 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
@@ -4508,7 +4508,7 @@ pub struct CustomerInformation3 {
 impl CustomerInformation3 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
@@ -4563,7 +4563,7 @@ pub struct CustomerInformation4 {
 impl CustomerInformation4 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
@@ -4618,7 +4618,7 @@ pub struct CustomerInformation5 {
 impl CustomerInformation5 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
@@ -4673,7 +4673,7 @@ pub struct CustomerInformation6 {
 impl CustomerInformation6 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
@@ -4728,7 +4728,7 @@ pub struct CustomerInformation7 {
 impl CustomerInformation7 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
@@ -4783,7 +4783,7 @@ pub struct CustomerInformation8 {
 impl CustomerInformation8 {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));

@@ -1012,7 +1012,7 @@ pub struct OutputVoltage {
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
@@ -1043,7 +1043,7 @@ pub struct OutputCurrent {
 impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(REGISTER_SELECTOR.place, 0x0002));
@@ -1079,7 +1079,7 @@ pub struct CurrentLimit {
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0003));
@@ -1114,7 +1114,7 @@ pub struct DcBoardTemperature {
 impl DcBoardTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("dc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0004));
@@ -1148,7 +1148,7 @@ pub struct InputVoltage {
 impl InputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0005));
@@ -1179,7 +1179,7 @@ pub struct Pfc0Voltage {
 impl Pfc0Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pfc0_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0008));
@@ -1210,7 +1210,7 @@ pub struct Pfc1Voltage {
 impl Pfc1Voltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pfc1_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000A));
@@ -1245,7 +1245,7 @@ pub struct AmbientTemperature {
 impl AmbientTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x000B));
@@ -1276,7 +1276,7 @@ pub struct PhaseAVoltage {
 impl PhaseAVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("phase_a_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000C));
@@ -1307,7 +1307,7 @@ pub struct PhaseBVoltage {
 impl PhaseBVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("phase_b_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000D));
@@ -1338,7 +1338,7 @@ pub struct PhaseCVoltage {
 impl PhaseCVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("phase_c_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000E));
@@ -1373,7 +1373,7 @@ pub struct PfcBoardTemperature {
 impl PfcBoardTemperature {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("°C");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("pfc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0010));
@@ -1404,7 +1404,7 @@ pub struct RatedPower {
 impl RatedPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("W");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("rated_power", FRAME.data(REGISTER_SELECTOR.place, 0x0011));
@@ -1435,7 +1435,7 @@ pub struct RatedCurrent {
 impl RatedCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("A");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(REGISTER_SELECTOR.place, 0x0012));
@@ -1479,7 +1479,7 @@ pub struct SetAltitude {
 impl SetAltitude {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m").limits(1000, 5000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_altitude", FRAME.data(REGISTER_SELECTOR.place, 0x0017));
@@ -1515,7 +1515,7 @@ pub struct SetOutputCurrent {
 impl SetOutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(4, 7)).unit("A").scale(1, 1024);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x001B));
@@ -1564,7 +1564,7 @@ pub struct SetGroup {
 impl SetGroup {
     /// The signal `group`, to read or write it alone, or to ask for its limits.
     pub const GROUP: Signal<u8> = Signal::new("group", Place::byte(7).bits(5, 0)).limits(0, 60);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xC0];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.data(REGISTER_SELECTOR.place, 0x001E));
@@ -1604,7 +1604,7 @@ pub struct SetAddressMode {
 impl SetAddressMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<AddressMode> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.data(REGISTER_SELECTOR.place, 0x001F));
@@ -1636,7 +1636,7 @@ pub struct SetOutputPower {
 impl SetOutputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32, f64> = Signal::new("value", Place::bytes(4, 7)).limits(0.1, 1.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS_2.of("set_output_power", FRAME.data(REGISTER_SELECTOR.place, 0x0020));
@@ -1673,7 +1673,7 @@ pub struct SetOutputVoltage {
 impl SetOutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS_2.of("set_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
@@ -1719,7 +1719,7 @@ pub struct SetCurrentLimit {
 impl SetCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS_2.of("set_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0022));
@@ -1754,7 +1754,7 @@ pub struct SetOvervoltagePoint {
 impl SetOvervoltagePoint {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(4, 7)).unit("V");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS_2.of("set_overvoltage_point", FRAME.data(REGISTER_SELECTOR.place, 0x0023));
@@ -1791,7 +1791,7 @@ pub struct SwitchModules {
 impl SwitchModules {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Power> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(REGISTER_SELECTOR.place, 0x0030));
@@ -1823,7 +1823,7 @@ pub struct ResetOvervoltage {
 impl ResetOvervoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage", FRAME.data(REGISTER_SELECTOR.place, 0x0031));
@@ -1855,7 +1855,7 @@ pub struct SetOvervoltageRelevance {
 impl SetOvervoltageRelevance {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Relevance> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_overvoltage_relevance", FRAME.data(REGISTER_SELECTOR.place, 0x003E));
@@ -1892,7 +1892,7 @@ pub struct ModuleStatus {
 impl ModuleStatus {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Alarms> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("module_status", FRAME.data(REGISTER_SELECTOR.place, 0x0040));
@@ -1930,7 +1930,7 @@ impl GroupAndAddress {
     pub const GROUP: Signal<u16> = Signal::new("group", Place::bytes(4, 5));
     /// The signal `address`, to read or write it alone, or to ask for its limits.
     pub const ADDRESS: Signal<u16> = Signal::new("address", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("group_and_address", FRAME.data(REGISTER_SELECTOR.place, 0x0043));
@@ -1965,7 +1965,7 @@ pub struct ResetShortCircuit {
 impl ResetShortCircuit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Reset> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("reset_short_circuit", FRAME.data(REGISTER_SELECTOR.place, 0x0044));
@@ -1997,7 +1997,7 @@ pub struct SetInputMode {
 impl SetInputMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<InputMode> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x0046));
@@ -2028,7 +2028,7 @@ pub struct InputPower {
 impl InputPower {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("W");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x0048));
@@ -2061,7 +2061,7 @@ pub struct Altitude {
 impl Altitude {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7)).unit("m");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("altitude", FRAME.data(REGISTER_SELECTOR.place, 0x004A));
@@ -2092,7 +2092,7 @@ pub struct ActiveInputMode {
 impl ActiveInputMode {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<ActiveInput> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("active_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x004B));
@@ -2127,7 +2127,7 @@ pub struct SerialNumberLow {
 impl SerialNumberLow {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("serial_number_low", FRAME.data(REGISTER_SELECTOR.place, 0x0054));
@@ -2162,7 +2162,7 @@ pub struct SerialNumberHigh {
 impl SerialNumberHigh {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("serial_number_high", FRAME.data(REGISTER_SELECTOR.place, 0x0055));
@@ -2197,7 +2197,7 @@ pub struct DcdcVersion {
 impl DcdcVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<u16> = Signal::new("version", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("dcdc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
@@ -2232,7 +2232,7 @@ pub struct PfcVersion {
 impl PfcVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<u16> = Signal::new("version", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS_2.of("pfc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0057));

@@ -848,7 +848,7 @@ impl MeasurementA {
     pub const MODE: Signal<ModeValue> = Signal::new("mode", Place::byte(6).bits(3, 1));
     /// The signal `counter`, to read or write it alone, or to ask for its limits.
     pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF0, 0x00];
     /// The access `report_a`, for filters and blank frames of it.
     pub const REPORT_A: Exchange = REPORT_A_ACCESS.of("measurement_a", FRAME);
@@ -902,7 +902,7 @@ impl MeasurementB {
     pub const FAN_SPEED: Signal<u16> = Signal::new("fan_speed", Place::bytes(4, 3)).unit("rpm");
     /// The signal `load`, to read or write it alone, or to ask for its limits.
     pub const LOAD: Signal<u8, f64> = Signal::new("load", Place::byte(5)).unit("%").scale(1, 2);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report_b`, for filters and blank frames of it.
     pub const REPORT_B: Exchange = REPORT_B_ACCESS.of("measurement_b", FRAME).length(6);
@@ -939,7 +939,7 @@ impl VoltageSetPoint {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 100).limits(42.0, 58.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("voltage_set_point", FRAME.data(INDEX_SELECTOR.place, 0x2100)).refusal(
@@ -994,7 +994,7 @@ impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> =
         Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 10).limits(0.0, 125.0);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(INDEX_SELECTOR.place, 0x2101)).refusal(
@@ -1048,7 +1048,7 @@ pub struct OutputSwitch {
 impl OutputSwitch {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<OutputCommand> = Signal::new("value", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_switch", FRAME.data(INDEX_SELECTOR.place, 0x2102)).refusal(
@@ -1105,7 +1105,7 @@ impl MinimumFanSpeed {
         Signal::new("value", Place::bytes(7, 4)).unit("%").limits(0, 100).specials(&[(255, "automatic")]);
     /// The value of `value` that stands for `automatic`.
     pub const VALUE_AUTOMATIC: u32 = 255;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("minimum_fan_speed", FRAME.data(INDEX_SELECTOR.place, 0x2103)).refusal(
@@ -1158,7 +1158,7 @@ pub struct OutputVoltage {
 impl OutputVoltage {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("V").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(INDEX_SELECTOR.place, 0x2200)).refusal(
@@ -1195,7 +1195,7 @@ pub struct OutputCurrent {
 impl OutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("A").scale(1, 1000);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(INDEX_SELECTOR.place, 0x2201)).refusal(
@@ -1240,7 +1240,7 @@ impl HeatSinkTemperature {
         .specials(&[(255, "sensor_broken")]);
     /// The value of `value` that stands for `sensor_broken`.
     pub const VALUE_SENSOR_BROKEN: f64 = 87.5;
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange =
@@ -1278,7 +1278,7 @@ pub struct InputFrequency {
 impl InputFrequency {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<f32> = Signal::new("value", Place::bytes(7, 4)).unit("Hz");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("input_frequency", FRAME.data(INDEX_SELECTOR.place, 0x2203)).refusal(
@@ -1315,7 +1315,7 @@ pub struct OperatingTime {
 impl OperatingTime {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<u32, f64> = Signal::new("value", Place::bytes(7, 4)).unit("h").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("operating_time", FRAME.data(INDEX_SELECTOR.place, 0x2204)).refusal(
@@ -1352,7 +1352,7 @@ pub struct SerialNumber {
 impl SerialNumber {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Text<4>> = Signal::new("value", Place::bytes(4, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("serial_number", FRAME.data(INDEX_SELECTOR.place, 0x2300)).refusal(
@@ -1389,7 +1389,7 @@ pub struct Firmware {
 impl Firmware {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<FirmwareValue> = Signal::new("value", Place::bytes(4, 6));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("firmware", FRAME.data(INDEX_SELECTOR.place, 0x2301)).refusal(
@@ -1426,7 +1426,7 @@ pub struct State {
 impl State {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<Conditions> = Signal::new("value", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("state", FRAME.data(INDEX_SELECTOR.place, 0x2400)).refusal(
@@ -1463,7 +1463,7 @@ pub struct Refusal {
 impl Refusal {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<RefusalReason> = Signal::new("value", Place::bytes(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `refuse`, for filters and blank frames of it.
     pub const REFUSE: Exchange = REFUSE_ACCESS.of("refusal", FRAME);
@@ -1488,7 +1488,7 @@ pub struct KeepAlive {
 impl KeepAlive {
     /// The signal `outputs`, to read or write it alone, or to ask for its limits.
     pub const OUTPUTS: Signal<KeepAliveOutputs> = Signal::new("outputs", Place::byte(1).bit(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFE, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
     /// The access `tell`, for filters and blank frames of it.
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);

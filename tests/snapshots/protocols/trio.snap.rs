@@ -564,7 +564,7 @@ impl ReferenceValues {
     /// The signal `minimum_voltage`, to read or write it alone, or to ask for its limits.
     pub const MINIMUM_VOLTAGE: Signal<u16, f64> =
         Signal::new("minimum_voltage", Place::bytes(6, 7)).unit("V").scale(1, 10);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("reference_values", FRAME.id(Identifier::COMMAND, 0x20));
@@ -618,7 +618,7 @@ impl OutputValues {
     pub const POWER: Signal<u16, f64> = Signal::new("power", Place::bytes(4, 5)).unit("W").scale(1, 10);
     /// The signal `status`, to read or write it alone, or to ask for its limits.
     pub const STATUS: Signal<Status> = Signal::new("status", Place::bytes(6, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("output_values", FRAME.id(Identifier::COMMAND, 0x21));
@@ -668,7 +668,7 @@ impl TemperatureValues {
     pub const FAN_1: Signal<u16> = Signal::new("fan_1", Place::bytes(2, 3)).unit("rpm");
     /// The signal `fan_2`, to read or write it alone, or to ask for its limits.
     pub const FAN_2: Signal<u16> = Signal::new("fan_2", Place::bytes(4, 5)).unit("rpm");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("temperature_values", FRAME.id(Identifier::COMMAND, 0x22));
@@ -704,7 +704,7 @@ pub struct FirmwareVersion {
 impl FirmwareVersion {
     /// The signal `version`, to read or write it alone, or to ask for its limits.
     pub const VERSION: Signal<Text<6>> = Signal::new("version", Place::bytes(0, 5));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("firmware_version", FRAME.id(Identifier::COMMAND, 0x23));
@@ -735,7 +735,7 @@ impl RunningTime {
     pub const RUNNING: Signal<u32> = Signal::new("running", Place::bytes(0, 3)).unit("min");
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u32> = Signal::new("total", Place::bytes(4, 7)).unit("min");
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("running_time", FRAME.id(Identifier::COMMAND, 0x25));
@@ -768,7 +768,7 @@ pub struct ReplacementAdvice {
 impl ReplacementAdvice {
     /// The signal `advice`, to read or write it alone, or to ask for its limits.
     pub const ADVICE: Signal<Advice> = Signal::new("advice", Place::byte(0));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("replacement_advice", FRAME.id(Identifier::COMMAND, 0x27));
@@ -826,7 +826,7 @@ impl Control {
         .scale(1, 10)
         .limits(18.5, 59.0)
         .model_limits(OUTPUT_VOLTAGE_LIMITS);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x10));
@@ -893,7 +893,7 @@ pub struct SetAddress {
 impl SetAddress {
     /// The signal `address`, to read or write it alone, or to ask for its limits.
     pub const ADDRESS: Signal<u8> = Signal::new("address", Place::byte(0)).limits(224, 239);
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` shows those that are set.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("set_address", FRAME.id(Identifier::COMMAND, 0x11));

@@ -270,7 +270,7 @@ fn lengths(message: &model::Message, frame: &FrameLayout) -> Vec<Length> {
 fn reserved(frame: &FrameLayout) -> (Comment, TokenStream) {
     let sent = u8::from(frame.reserved.are_ones);
     let comment = Comment::line(format!(
-        "The data bits that the document reserves. Requests send {sent}; `Received::reserved` shows those that are set."
+        "The data bits that the document reserves. Requests send {sent}; `Received::reserved` returns set ones."
     ));
     (comment, literal::data(frame.uncovered().to_be_bytes()))
 }
