@@ -11,10 +11,17 @@ pub enum Number {
     Unsigned(u64),
     /// A signed integer.
     Signed(i64),
-    /// A scaled number in single precision.
+    /// A number in single precision.
     Single(f32),
     /// A scaled or floating-point number.
     Float(f64),
+    /// A scaled number that is counted in whole steps, as the exact fraction that it is.
+    Fraction {
+        /// What is divided.
+        numerator: i64,
+        /// What it is divided by.
+        denominator: i64,
+    },
 }
 
 impl Number {
@@ -26,6 +33,7 @@ impl Number {
             Self::Signed(number) => number as f64,
             Self::Single(number) => number as f64,
             Self::Float(number) => number,
+            Self::Fraction { numerator, denominator } => numerator as f64 / denominator as f64,
         }
     }
 
@@ -40,7 +48,7 @@ impl Number {
             Self::Unsigned(number) => number as f32,
             Self::Signed(number) => number as f32,
             Self::Single(number) => number,
-            Self::Float(number) => number as f32,
+            Self::Float(_) | Self::Fraction { .. } => self.to_f64() as f32,
         }
     }
 }
@@ -51,7 +59,7 @@ impl fmt::Display for Number {
             Self::Unsigned(number) => number.fmt(formatter),
             Self::Signed(number) => number.fmt(formatter),
             Self::Single(number) => number.fmt(formatter),
-            Self::Float(number) => number.fmt(formatter),
+            Self::Float(_) | Self::Fraction { .. } => self.to_f64().fmt(formatter),
         }
     }
 }

@@ -4,16 +4,20 @@ use crate::plumbing::Scale;
 use crate::raw::{Integer, Raw};
 use crate::{Error, Meaning, Number, Payload, Signal};
 
-/// The type of a signal's physical values and limits. Its raw values have the type `R`.
+/// The type of a signal's values and limits. Its raw values have the type `R`.
 ///
-/// It is `R` itself if possible, so integers are compared as integers. A scale, or a limit with a
-/// fraction, needs a floating-point type.
+/// It is `R` itself if possible, so integers are compared as integers. If there is a scale, they
+/// count its steps. A physical value with a scale, or a limit with a fraction, needs a
+/// floating-point type.
 pub trait Physical<R: Raw>: Copy + 'static {
-    /// Returns the physical value of a raw value.
+    /// Whether this is the raw value, whatever the scale.
+    const IS_RAW: bool;
+
+    /// Returns the value of a raw value.
     fn of(raw: R, scale: Option<Scale>) -> Self;
 
-    /// Returns the number.
-    fn number(self) -> Number;
+    /// Returns the physical value.
+    fn number(self, scale: Option<Scale>) -> Number;
 
     /// Tests whether this is a finite number.
     fn is_finite(self) -> bool;
@@ -30,14 +34,19 @@ pub trait Physical<R: Raw>: Copy + 'static {
 }
 
 impl<R: Raw + 'static> Physical<R> for R {
+    const IS_RAW: bool = true;
+
     #[inline]
     fn of(raw: R, _: Option<Scale>) -> Self {
         raw
     }
 
     #[inline]
-    fn number(self) -> Number {
-        Raw::number(self)
+    fn number(self, scale: Option<Scale>) -> Number {
+        match scale {
+            Some(scale) => scale.fraction(self.to_bits() as i64),
+            None => Raw::number(self),
+        }
     }
 
     #[inline]
@@ -45,13 +54,13 @@ impl<R: Raw + 'static> Physical<R> for R {
         Raw::is_finite(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_within(self, minimum: Self, maximum: Self) -> bool {
         Raw::is_within(self, minimum, maximum)
     }
 
     fn write(signal: &Signal<R, Self>, number: Number, payload: &mut Payload) -> Result<(), Error> {
-        signal.write_unscaled(number, payload)
+        signal.write_raw(number, payload)
     }
 }
 
@@ -154,6 +163,8 @@ impl Scaled for f32 {
 macro_rules! scaled {
     ($($type:ty, $raw:ident;)*) => {$(
         impl<R: $raw> Physical<R> for $type {
+            const IS_RAW: bool = false;
+
             #[inline]
             fn of(raw: R, scale: Option<Scale>) -> Self {
                 match scale {
@@ -163,7 +174,7 @@ macro_rules! scaled {
             }
 
             #[inline]
-            fn number(self) -> Number {
+            fn number(self, _: Option<Scale>) -> Number {
                 Scaled::number(self)
             }
 

@@ -143,6 +143,11 @@ macro_rules! unsigned {
                 self.into()
             }
 
+            #[inline(always)]
+            fn is_within(self, minimum: Self, maximum: Self) -> bool {
+                (minimum..=maximum).contains(&self)
+            }
+
             fn meaning(&self) -> Meaning<'_> {
                 Meaning::Number(self.number())
             }
@@ -172,6 +177,11 @@ macro_rules! signed {
             #[inline(always)]
             fn to_bits(self) -> u64 {
                 i64::from(self) as u64
+            }
+
+            #[inline(always)]
+            fn is_within(self, minimum: Self, maximum: Self) -> bool {
+                (minimum..=maximum).contains(&self)
             }
 
             fn meaning(&self) -> Meaning<'_> {
@@ -217,7 +227,7 @@ impl Raw for f32 {
     }
 
     fn meaning(&self) -> Meaning<'_> {
-        if self.is_finite() { Meaning::Number(self.number()) } else { Meaning::None }
+        if self.is_finite() { Meaning::Number(Number::Float((*self).into())) } else { Meaning::None }
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "the nearest float is what is sent")]
@@ -229,7 +239,7 @@ impl Raw for f32 {
 
     #[inline(always)]
     fn number(self) -> Number {
-        Number::Float(self.into())
+        Number::Single(self)
     }
 
     #[inline(always)]

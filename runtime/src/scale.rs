@@ -1,5 +1,7 @@
 //! Exact scaling between raw and physical values.
 
+use crate::Number;
+
 /// A scale and an offset, both exact fractions: physical = raw × scale + offset.
 ///
 /// ```
@@ -83,6 +85,15 @@ impl Scale {
     pub const fn raw_f32(self, physical: f32) -> Option<i64> {
         let sum = physical * self.common_denominator() as f32;
         nearest_f32((sum - self.offset as f32) / self.numerator.saturating_mul(self.factor) as f32)
+    }
+
+    /// Returns the physical value of `raw` without floating-point arithmetic. All types of signals
+    /// share the code, which is small because generated scales never overflow.
+    #[inline(never)]
+    pub(crate) const fn fraction(&self, raw: i64) -> Number {
+        let step = self.numerator.wrapping_mul(self.factor);
+        let numerator = raw.wrapping_mul(step).wrapping_add(self.offset);
+        Number::Fraction { numerator, denominator: self.denominator.wrapping_mul(self.factor) }
     }
 
     /// Returns the physical value of `raw` as numerator over the common denominator.

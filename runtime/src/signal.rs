@@ -13,8 +13,8 @@ pub use any::{AnySignal, Reading, WriteSignal};
 
 /// A named bit range of a message's data.
 ///
-/// Its raw value has the type `R`, and its physical value the type `F`. They differ only if the
-/// value is calculated.
+/// Its raw value has the type `R`, and its limits the type `F`. They differ only if the physical
+/// value is calculated. Then `F` is its type.
 ///
 /// [`get`](Self::get) and [`put`](Self::put) use raw values. [`decode`](Self::decode) and
 /// [`encode`](Self::encode) use physical values. Limits of raw integers are integers, and are
@@ -32,6 +32,24 @@ pub use any::{AnySignal, Reading, WriteSignal};
 /// assert_eq!(VOLTAGE.decode(payload.data()), 500.5);
 ///
 /// let error = VOLTAGE.encode(800.0, &mut payload).unwrap_err();
+/// assert_eq!(error.to_string(), "`voltage` of `set_output` is 800 V, but its limits are 0 and 750 V");
+/// # Ok::<(), canspec_runtime::Error>(())
+/// ```
+///
+/// An integer with a scale counts whole steps, without floating-point arithmetic. Readings and
+/// errors have its physical value.
+///
+/// ```
+/// use canspec_runtime::{Payload, Place, Signal};
+///
+/// const VOLTAGE: Signal<u32> =
+///     Signal::new("voltage", Place::bytes(0, 3)).unit("V").scale(1, 1000).limits(0, 750_000);
+///
+/// let mut payload = Payload::within_limits("set_output", [0; 8]);
+/// VOLTAGE.put(500_500, &mut payload)?;
+/// assert_eq!(VOLTAGE.get(payload.data()), 500_500);
+///
+/// let error = VOLTAGE.put(800_000, &mut payload).unwrap_err();
 /// assert_eq!(error.to_string(), "`voltage` of `set_output` is 800 V, but its limits are 0 and 750 V");
 /// # Ok::<(), canspec_runtime::Error>(())
 /// ```
@@ -70,8 +88,21 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         Self { unit: Some(unit), ..self }
     }
 
-    /// Adds the documented limits of the physical value, both legal. They hold if no device model
-    /// is chosen.
+    /// Adds the scale: physical = raw × `numerator` / `denominator`.
+    #[must_use]
+    pub const fn scale(self, numerator: i64, denominator: i64) -> Self {
+        Self { scale: Some(Scale::new(numerator, denominator)), ..self }
+    }
+
+    /// Adds the offset `numerator` / `denominator`, in units of the physical value.
+    #[must_use]
+    pub const fn offset(self, numerator: i64, denominator: i64) -> Self {
+        let scale = self.exact_scale().offset(numerator, denominator);
+        Self { scale: Some(scale), ..self }
+    }
+
+    /// Adds the documented limits, both legal. They are physical values, or raw values if `F` is
+    /// `R`. They hold if no device model is chosen.
     #[must_use]
     pub const fn limits(self, minimum: F, maximum: F) -> Self {
         Self { limits: Some((minimum, maximum)), ..self }
@@ -101,13 +132,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         self.place
     }
 
-    /// Returns the documented limits of the physical value, both legal. They hold if no device
-    /// model is chosen.
+    /// Returns the documented limits, both legal. They hold if no device model is chosen.
     pub const fn documented_limits(&self) -> Option<(F, F)> {
         self.limits
     }
 
-    /// Returns the documented limits of the physical value for a device model, both legal.
+    /// Returns the documented limits for a device model, both legal.
     pub fn limits_for(&self, model: impl Into<u8>) -> Option<(F, F)> {
         let model = model.into();
         let own = self.model_limits.iter().find(|(known, _)| *known == model);
@@ -235,7 +265,19 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     #[cold]
     fn outside(&self, value: F, minimum: F, maximum: F, payload: &Payload) -> Error {
-        self.beyond([value, minimum, maximum].map(F::number), payload)
+        let (minimum, maximum) = self.numbers((minimum, maximum));
+        self.beyond([value.number(self.scale), minimum, maximum], payload)
+    }
+
+    /// Returns limits as physical values, the lower one first.
+    fn numbers(&self, (minimum, maximum): (F, F)) -> (Number, Number) {
+        let numbers = (minimum.number(self.scale), maximum.number(self.scale));
+        if F::IS_RAW { self.rising(numbers) } else { numbers }
+    }
+
+    /// Returns the physical values of a lower and a higher raw value, the lower one first.
+    fn rising(&self, (one, other): (Number, Number)) -> (Number, Number) {
+        if self.scale.is_some_and(Scale::is_falling) { (other, one) } else { (one, other) }
     }
 
     /// Says that a value lies outside what a minimum and a maximum allow.
@@ -261,15 +303,14 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Says that a value does not fit, with the limits of what the bits hold.
     #[cold]
     fn too_wide(&self, value: F, payload: &Payload) -> Error {
-        self.unfit(value.number(), payload)
+        self.unfit(value.number(self.scale), payload)
     }
 
     /// Says that a number does not fit, with the limits of what the bits hold.
     #[cold]
     fn unfit(&self, number: Number, payload: &Payload) -> Error {
-        let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number());
-        let is_falling = self.scale.is_some_and(Scale::is_falling);
-        let (minimum, maximum) = if is_falling { (other, one) } else { (one, other) };
+        let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number(self.scale));
+        let (minimum, maximum) = self.rising((one, other));
         self.beyond([number, minimum, maximum], payload)
     }
 
@@ -289,19 +330,6 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 }
 
 impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
-    /// Adds the scale: physical = raw × `numerator` / `denominator`.
-    #[must_use]
-    pub const fn scale(self, numerator: i64, denominator: i64) -> Self {
-        Self { scale: Some(Scale::new(numerator, denominator)), ..self }
-    }
-
-    /// Adds the offset `numerator` / `denominator`, in units of the physical value.
-    #[must_use]
-    pub const fn offset(self, numerator: i64, denominator: i64) -> Self {
-        let scale = self.exact_scale().offset(numerator, denominator);
-        Self { scale: Some(scale), ..self }
-    }
-
     /// Returns the physical value: the number of type `F` nearest to the exact one.
     #[inline(always)]
     pub fn decode(&self, data: &Data) -> F {
@@ -515,6 +543,71 @@ mod tests {
         let written = |value| FREQUENCY.write(Meaning::Number(Number::Float(value)), &mut request());
         assert_eq!(written(65.7), Ok(()));
         assert!(written(65.700_01).is_err());
+    }
+
+    /// The same signals as `LIMIT` and `TEMPERATURE`, in whole steps.
+    const STEPS: Signal<u8> =
+        Signal::new("limit", Place::byte(0)).unit("A").scale(1, 10).limits(1, 200).specials(&[(0, "unlimited")]);
+    const HALVES: Signal<u8> =
+        Signal::new("temperature", Place::byte(3)).unit("°C").scale(1, 2).offset(-40, 1).limits(0, 240);
+
+    #[test]
+    fn whole_steps_meet_limits_as_integers_and_are_told_in_the_unit() {
+        assert_eq!([0, 1, 200].map(|raw| STEPS.put(raw, &mut request())), [Ok(()); 3]);
+        let text = refusal(STEPS.put(201, &mut request()));
+        assert_eq!(text, "`limit` of `report` is 20.1 A, but its limits are 0.1 and 20 A");
+        let text = refusal(HALVES.put(241, &mut request()));
+        assert_eq!(text, "`temperature` of `report` is 80.5 °C, but its limits are -40 and 80 °C");
+        let narrow = Signal::<i16>::new("slope", Place::bytes(0, 1).bits(11, 0)).unit("V").scale(1, 4);
+        let text = refusal(narrow.put(2048, &mut reply()));
+        assert_eq!(text, "`slope` of `report` is 512 V, but its limits are -512 and 511.75 V");
+    }
+
+    #[test]
+    fn limits_of_steps_that_count_down_are_told_from_the_lower_one_on() {
+        let falling = Signal::<u8>::new("depth", Place::byte(0)).unit("m").scale(-1, 2).limits(3, 10);
+        assert_eq!([3, 10].map(|raw| falling.put(raw, &mut request())), [Ok(()); 2]);
+        let text = refusal(falling.put(11, &mut request()));
+        assert_eq!(text, "`depth` of `report` is -5.5 m, but its limits are -5 and -1.5 m");
+        assert_eq!(
+            AnySignal::limits(&falling).map(|(lower, upper)| (lower.to_f64(), upper.to_f64())),
+            Some((-5.0, -1.5))
+        );
+        let text = refusal(falling.write(Meaning::Number(Number::Float(0.5)), &mut reply()));
+        assert_eq!(text, "`depth` of `report` is 0.5 m, but its limits are -127.5 and 0 m");
+    }
+
+    #[test]
+    fn a_number_of_the_unit_is_written_as_the_nearest_step() {
+        let sent = |value| {
+            let mut payload = request();
+            STEPS.write(Meaning::Number(Number::Float(value)), &mut payload).map(|()| payload.data()[0])
+        };
+        assert_eq!([19.96, 20.0, 0.14, 0.15].map(sent), [200, 200, 1, 2].map(Ok));
+        assert_eq!(refusal(sent(20.04).map(drop)), "`limit` of `report` is 20.04 A, but its limits are 0.1 and 20 A");
+        assert!(sent(0.0).is_ok() && sent(f64::NAN).is_err() && sent(0.04).is_err());
+    }
+
+    #[test]
+    fn steps_are_read_as_an_exact_fraction_and_come_back() {
+        let data = [0, 0, 0, 111, 0, 0, 0, 0];
+        HALVES.read(&data, &mut |reading| {
+            // 111/2 - 40 = 31/2
+            let fraction = Number::Fraction { numerator: 31, denominator: 2 };
+            assert_eq!((reading.raw, reading.meaning), (Number::Unsigned(111), Meaning::Number(fraction)));
+            assert_eq!((fraction.to_f64(), fraction.to_f32()), (15.5, 15.5));
+            let mut payload = reply();
+            assert_eq!(HALVES.write(reading.meaning, &mut payload), Ok(()));
+            assert_eq!(payload.data(), &data);
+        });
+    }
+
+    #[test]
+    fn a_float_without_doubles_tells_limits_as_precisely_as_it_has_them() {
+        const SINGLE: Signal<f32> = Signal::new("frequency", Place::bytes(4, 7)).unit("Hz").limits(45.0, 65.7);
+        assert_eq!(SINGLE.put(65.7, &mut request()), Ok(()));
+        let text = refusal(SINGLE.put(65.8, &mut request()));
+        assert_eq!(text, "`frequency` of `report` is 65.8 Hz, but its limits are 45 and 65.7 Hz");
     }
 
     #[test]

@@ -94,10 +94,12 @@ fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
     let bits = match reading.raw {
         Number::Unsigned(raw) => raw,
         Number::Signed(raw) => raw.cast_unsigned(),
-        Number::Single(_) | Number::Float(_) => panic!("a raw value is an integer"),
+        Number::Single(_) | Number::Float(_) | Number::Fraction { .. } => panic!("a raw value is an integer"),
     };
     let meaning = match reading.meaning {
-        Meaning::Number(Number::Float(value)) => format!("{:016X}", value.to_bits()),
+        Meaning::Number(number @ (Number::Float(_) | Number::Fraction { .. })) => {
+            format!("{:016X}", number.to_f64().to_bits())
+        }
         Meaning::Number(number) => number.to_string(),
         Meaning::Name(name) | Meaning::Text(name) => name.to_owned(),
         Meaning::Packed(text) => text.to_string(),

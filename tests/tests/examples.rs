@@ -52,7 +52,7 @@ fn bits(raw: Number) -> u64 {
     match raw {
         Number::Unsigned(raw) => raw,
         Number::Signed(raw) => raw.cast_unsigned(),
-        Number::Single(_) | Number::Float(_) => panic!("a raw value is an integer"),
+        Number::Single(_) | Number::Float(_) | Number::Fraction { .. } => panic!("a raw value is an integer"),
     }
 }
 

@@ -71,7 +71,7 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
     }
 
     fn limits(&self) -> Option<(Number, Number)> {
-        self.limits.map(|(minimum, maximum)| (minimum.number(), maximum.number()))
+        self.limits.map(|limits| self.numbers(limits))
     }
 
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {
@@ -79,8 +79,8 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
         let bits = self.bits(*data);
         let meaning = match (self.special(bits), self.scale) {
             (Some(name), _) => Meaning::Name(name),
-            (None, Some(_)) => Meaning::Number(self.physical(value).number()),
-            (None, None) => value.meaning(),
+            (None, Some(_)) if R::IS_NUMBER => Meaning::Number(self.physical(value).number(self.scale)),
+            (None, _) => value.meaning(),
         };
         let raw = if R::SIGNED { Number::Signed(bits as i64) } else { Number::Unsigned(bits) };
         visitor(Reading { name: self.name, unit: self.unit, raw, meaning, is_of_error_reply: false });
@@ -119,12 +119,13 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     /// Writes a number as its own raw value, or as the nearest one.
-    pub(crate) fn write_unscaled(&self, number: Number, payload: &mut Payload) -> Result<(), Error> {
-        if let Some(raw) = R::from_meaning(Meaning::Number(number)) {
+    pub(crate) fn write_raw(&self, number: Number, payload: &mut Payload) -> Result<(), Error> {
+        let raw_of = |number| R::from_meaning(Meaning::Number(number));
+        if let Some(raw) = raw_of(number).filter(|_| !self.is_scaled()) {
             return self.put(raw, payload);
         }
         let value = number.to_f64();
-        match crate::scale::nearest(value).and_then(|whole| R::from_meaning(Meaning::Number(Number::Signed(whole)))) {
+        match self.exact_scale().raw(value).and_then(|whole| raw_of(Number::Signed(whole))) {
             Some(raw) => {
                 self.check_fraction(value, raw, payload)?;
                 self.put(raw, payload)
@@ -136,12 +137,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests a number with a fraction that is rounded to `raw`.
     fn check_fraction(&self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
-        let sent = raw.number().to_f64();
+        let sent = self.physical(raw).number(self.scale).to_f64();
         if sent.partial_cmp(&value) == Some(Ordering::Equal) || !payload.keeps_limits() {
             return Ok(());
         }
         let number = Number::Float(value);
-        let limits = self.limits_in(payload).map(|(minimum, maximum)| (minimum.number(), maximum.number()));
+        let limits = self.limits_in(payload).map(|limits| self.numbers(limits));
         match (limits, self.special(raw.to_bits())) {
             (Some((minimum, maximum)), _) if !(minimum.to_f64()..=maximum.to_f64()).contains(&value) => {
                 Err(self.beyond([number, minimum, maximum], payload))
