@@ -1,44 +1,47 @@
 //! Generates codecs of the feature specs, of made-up devices and of whole protocols that do not
-//! ship. Each is also generated with every option. A list names every protocol, including those
-//! that ship.
+//! ship. Each is also generated with every option. Those that ship, too, are generated in whole
+//! steps. Lists name the protocols.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use canspec_codegen::Generated;
-use canspec_codegen::emit::{Float, Options, Switch};
+use canspec_codegen::emit::{Options, Scaled, Switch};
 use canspec_codegen::source::Source;
 
 fn main() {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets it"));
     let mut list = Protocols::default();
+    let steps = Options { scaled: Scaled::Steps, ..Options::default() };
     for (name, path) in specs(&root.join("../specs")) {
         let module = format!("canspec_protocols::{name}");
-        let visit = visit(&module, &path);
-        list.visits.push_str(&visit);
-        list.switched.push_str(&visit);
+        let visited = visit(&module, &path);
+        list.visits.push_str(&visited);
+        list.switched.push_str(&visited);
         list.signals(&module, &generate(&path, &Options::default()).code);
+        let module = format!("{name}_in_steps");
+        list.generated(&out, &module, &generate(&path, &steps));
+        list.in_steps.push_str(&visit(&module, &path));
     }
     // A whole protocol may have numbers that single precision misses.
     let folders = [
-        ("features", "specs/features", Float::F32),
-        ("devices", "specs/devices", Float::F32),
-        ("unshipped", "specs", Float::F64),
+        ("features", "specs/features", Scaled::F32),
+        ("devices", "specs/devices", Scaled::F32),
+        ("unshipped", "specs", Scaled::F64),
     ];
-    for (kind, folder, float) in folders {
+    for (kind, folder, scaled) in folders {
         for (name, path) in specs(&root.join(folder)) {
             let module = format!("{kind}_{name}");
-            let switched = format!("{module}_switched");
-            for (module, options) in [(&module, Options::default()), (&switched, every_option(float))] {
-                let Generated { manual, code, .. } = generate(&path, &options);
-                list.module(module, &manual);
-                list.signals(module, &code);
-                fs::write(out.join(format!("{module}.rs")), code).expect("OUT_DIR can be written");
+            let [switched, in_steps] = ["switched", "in_steps"].map(|ending| format!("{module}_{ending}"));
+            let every = [(&module, Options::default()), (&switched, every_option(scaled)), (&in_steps, steps.clone())];
+            for (module, options) in every {
+                list.generated(&out, module, &generate(&path, &options));
             }
             list.visits.push_str(&visit(&module, &path));
             list.switched.push_str(&visit(&switched, &path));
+            list.in_steps.push_str(&visit(&in_steps, &path));
         }
     }
     fs::write(out.join("protocols.rs"), list.finish()).expect("OUT_DIR can be written");
@@ -67,8 +70,8 @@ fn generate(path: &Path, options: &Options) -> Generated {
     }
 }
 
-fn every_option(float: Float) -> Options {
-    Options { float, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
+fn every_option(scaled: Scaled) -> Options {
+    Options { scaled, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always }
 }
 
 /// Shows a protocol to a visitor.
@@ -82,10 +85,18 @@ struct Protocols {
     modules: String,
     visits: String,
     switched: String,
+    in_steps: String,
     signals: String,
 }
 
 impl Protocols {
+    /// Writes a module to a file and lists it.
+    fn generated(&mut self, out: &Path, name: &str, Generated { manual, code, .. }: &Generated) {
+        self.module(name, manual);
+        self.signals(name, code);
+        fs::write(out.join(format!("{name}.rs")), code).expect("OUT_DIR can be written");
+    }
+
     fn module(&mut self, name: &str, manual: &str) {
         let _ = writeln!(
             self.modules,
@@ -99,7 +110,7 @@ impl Protocols {
         let mut owner = "";
         let _ = write!(
             self.signals,
-            "impl Signals for {module}::Message {{\n    const SIGNALS: &'static [&'static dyn WriteSignal] = &["
+            "impl Signals for {module}::Message {{\n    const SIGNALS: &'static [&'static dyn KnownSignal] = &["
         );
         for line in code.lines() {
             if let Some(block) = line.strip_prefix("impl ").and_then(|rest| rest.strip_suffix(" {")) {
@@ -118,8 +129,10 @@ impl Protocols {
             "{}\n{}\n/// Shows every protocol to a visitor, with the path of its spec.\n\
              pub fn visit(visitor: &mut impl Visitor) {{\n{}}}\n\
              \n/// Shows every protocol that has the optional traits to a visitor, with the path of its spec.\n\
-             pub fn visit_switched(visitor: &mut impl SwitchedVisitor) {{\n{}}}\n",
-            self.modules, self.signals, self.visits, self.switched
+             pub fn visit_switched(visitor: &mut impl SwitchedVisitor) {{\n{}}}\n\
+             \n/// Shows every protocol in whole steps to a visitor, with the path of its spec.\n\
+             pub fn visit_in_steps(visitor: &mut impl Visitor) {{\n{}}}\n",
+            self.modules, self.signals, self.visits, self.switched, self.in_steps
         )
     }
 }

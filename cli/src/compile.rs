@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use canspec_codegen::emit::{Float, Options, Switch};
+use canspec_codegen::emit::{Options, Scaled, Switch};
 use canspec_codegen::files::{self, File, State};
 use canspec_codegen::{Builder, Generated, generate};
 use clap::{Args, ValueEnum};
@@ -31,9 +31,9 @@ pub struct Compile {
     /// Write nothing; exit with status 1 if a file of `--out` is missing or would change.
     #[arg(long, requires = "out")]
     check: bool,
-    /// Type of scaled values.
-    #[arg(long, value_enum, default_value_t = Width::F64)]
-    float: Width,
+    /// What scaled values are: a type of float, or whole steps as raw integers.
+    #[arg(long, value_enum, default_value_t = Values::F64)]
+    scaled: Values,
     /// Implement the traits of serde: `always`, `never`, or if the crate has this feature.
     #[arg(long, value_name = "WHEN", value_parser = switch, default_value = "never")]
     serde: Switch,
@@ -48,19 +48,21 @@ pub struct Compile {
 const EXAMPLES: &str = "Examples:
   canspec compile protocol.yaml --out src
   canspec compile protocol.yaml --out src --check
-  canspec compile protocol.yaml --float f32 --defmt always --serde my_feature";
+  canspec compile protocol.yaml --scaled steps --defmt always --serde my_feature";
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Width {
+enum Values {
     F64,
     F32,
+    Steps,
 }
 
-impl From<Width> for Float {
-    fn from(width: Width) -> Self {
-        match width {
-            Width::F64 => Self::F64,
-            Width::F32 => Self::F32,
+impl From<Values> for Scaled {
+    fn from(values: Values) -> Self {
+        match values {
+            Values::F64 => Self::F64,
+            Values::F32 => Self::F32,
+            Values::Steps => Self::Steps,
         }
     }
 }
@@ -90,7 +92,7 @@ impl Compile {
 
     fn options(&self) -> Options {
         Options {
-            float: self.float.into(),
+            scaled: self.scaled.into(),
             serde: self.serde.clone(),
             defmt: self.defmt.clone(),
             arbitrary: self.arbitrary.clone(),
@@ -145,7 +147,7 @@ fn is_feature(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use canspec_codegen::emit::{Float, Options, Switch};
+    use canspec_codegen::emit::{Options, Scaled, Switch};
     use clap::Parser;
 
     #[derive(Parser)]
@@ -160,12 +162,14 @@ mod tests {
 
     #[test]
     fn each_choice_reaches_its_option() {
-        let call = "compile a.yaml --float f32 --serde always --defmt log --arbitrary fuzz-1";
+        let call = "compile a.yaml --scaled f32 --serde always --defmt log --arbitrary fuzz-1";
         let gated = |feature: &str| Switch::Gated(feature.to_owned());
         let expected =
-            Options { float: Float::F32, serde: Switch::Always, defmt: gated("log"), arbitrary: gated("fuzz-1") };
+            Options { scaled: Scaled::F32, serde: Switch::Always, defmt: gated("log"), arbitrary: gated("fuzz-1") };
         assert_eq!(options(call), Some(expected));
-        assert_eq!(options("compile a.yaml --serde never --float f64"), Some(Options::default()));
+        assert_eq!(options("compile a.yaml --serde never --scaled f64"), Some(Options::default()));
+        let steps = Options { scaled: Scaled::Steps, ..Options::default() };
+        assert_eq!(options("compile a.yaml --scaled steps"), Some(steps));
         assert_eq!(options("compile a.yaml"), Some(Options::default()));
     }
 

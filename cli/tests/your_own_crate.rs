@@ -7,7 +7,7 @@ use std::process::Command;
 const PAGES: [&str; 2] = ["docs/your-own-crate.md", "README.md"];
 
 /// Files of the crate that a page can quote.
-const FILES: [&str; 12] = [
+const FILES: [&str; 14] = [
     "Cargo.toml",
     "build.rs",
     "frames.jsonl",
@@ -17,9 +17,11 @@ const FILES: [&str; 12] = [
     "specs/meter.yaml",
     "specs/pump.yaml",
     "specs/winch.yaml",
+    "steps/build.rs",
     "tests/frames.rs",
     "tests/meters.rs",
     "tests/pumps.rs",
+    "tests/steps.rs",
 ];
 
 /// The part of the README that is about a crate of one's own.

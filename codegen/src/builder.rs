@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::{env, io};
 
 use crate::diagnostic::Diagnostics;
-use crate::emit::{Float, Options, Switch};
+use crate::emit::{Options, Scaled, Switch};
 use crate::files;
 pub use generated::{Generated, generate};
 use inputs::Inputs;
@@ -84,10 +84,10 @@ impl Builder {
         Self { options, ..self }
     }
 
-    /// Sets the type of scaled values.
+    /// Sets what scaled values are: `f64`, `f32` or whole steps.
     #[must_use]
-    pub fn float(mut self, float: Float) -> Self {
-        self.options.float = float;
+    pub fn scaled(mut self, scaled: Scaled) -> Self {
+        self.options.scaled = scaled;
         self
     }
 

@@ -38,6 +38,20 @@ pub fn prefixed(symbol: &str) -> Option<(Unit, Rational)> {
     })
 }
 
+/// Returns the unit of whole steps that are a decimal prefix of `unit`, and the ending of names in
+/// it: `mV` and `mv`. No name ends in `mhz` for megahertz.
+pub(crate) fn of_steps(unit: Unit, step: Rational) -> Option<(String, String)> {
+    let (prefix, ..) = PREFIXES.iter().find(|(_, above, below)| Rational::new(*above, *below) == Some(step))?;
+    let ending = match *prefix {
+        "µ" => "u",
+        "M" => return None,
+        prefix => prefix,
+    };
+    let is_prefixed =
+        matches!(unit.symbol, "V" | "A" | "W" | "VA" | "var" | "Ah" | "Wh" | "Ω" | "Pa" | "Hz" | "s" | "m");
+    is_prefixed.then(|| (format!("{prefix}{}", unit.symbol), format!("{ending}{}", unit.suffix)))
+}
+
 /// Returns how many `unit` one `symbol` is, if both measure the same quantity. The symbol may be
 /// spelled in another way.
 pub fn factor(symbol: &str, unit: Unit) -> Option<Rational> {
@@ -86,6 +100,20 @@ mod tests {
         assert_eq!(factor_text("mV", "V").as_deref(), Some("0.001"));
         assert_eq!(factor_text("kW", "W").as_deref(), Some("1000"));
         assert_eq!(factor_text("mm", "m").as_deref(), Some("0.001"));
+    }
+
+    #[test]
+    fn steps_that_are_a_decimal_prefix_are_a_unit_of_their_own() {
+        let steps = |unit, step| of_steps(Unit::find(unit)?, Rational::parse(step)?);
+        let known = |symbol: &str, ending: &str| Some((symbol.to_owned(), ending.to_owned()));
+        assert_eq!(steps("V", "1/1000"), known("mV", "mv"));
+        assert_eq!(steps("W", "1000"), known("kW", "kw"));
+        assert_eq!(steps("A", "1/1000000"), known("µA", "ua"));
+        for (unit, step) in
+            [("V", "0.1"), ("V", "1"), ("Hz", "1000000"), ("°C", "0.001"), ("ms", "0.001"), ("%", "0.001")]
+        {
+            assert_eq!(steps(unit, step), None, "{step} {unit}");
+        }
     }
 
     #[test]

@@ -79,6 +79,16 @@ impl Rational {
         (self.denominator == 1).then_some(self.numerator)
     }
 
+    /// Returns the greatest whole number that is not above.
+    pub fn floor(self) -> i128 {
+        self.numerator.div_euclid(self.denominator)
+    }
+
+    /// Returns the least whole number that is not below.
+    pub fn ceiling(self) -> i128 {
+        self.floor() + i128::from(self.denominator != 1)
+    }
+
     /// Returns the nearest `f64`.
     #[allow(clippy::cast_precision_loss, reason = "the conversion rounds to nearest, which is what is wanted")]
     pub fn to_f64(self) -> f64 {
@@ -190,6 +200,12 @@ mod tests {
         assert_eq!(parts("-40"), Some((-40, 1)));
         assert_eq!(parts("0xFD"), Some((253, 1)));
         assert_eq!(parts("18446744073709551615"), Some((18_446_744_073_709_551_615, 1)));
+    }
+
+    #[test]
+    fn whole_numbers_stand_around_a_fraction() {
+        let around = |text| Rational::parse(text).map(|number| (number.floor(), number.ceiling()));
+        assert_eq!(["7/2", "-7/2", "3", "-3"].map(around), [(3, 4), (-4, -3), (3, 3), (-3, -3)].map(Some));
     }
 
     #[test]

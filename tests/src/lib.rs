@@ -12,7 +12,8 @@ use std::path::{Path, PathBuf};
 use canspec_codegen::interpret::{Form, Frame};
 use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol, Signal};
 use canspec_codegen::{Outcome, compile, source::Source};
-use canspec_runtime::{Problem, Received, WriteSignal};
+use canspec_runtime::plumbing::{Physical, Raw};
+use canspec_runtime::{Error, Payload, Problem, Received, WriteSignal};
 
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
 
@@ -48,7 +49,23 @@ pub trait SwitchedVisitor {
 /// The signals of a protocol's generated code, to be written by tests that do not know their types.
 pub trait Signals {
     /// Each signal, in the order of the spec.
-    const SIGNALS: &'static [&'static dyn WriteSignal];
+    const SIGNALS: &'static [&'static dyn KnownSignal];
+}
+
+/// A signal that is written by tests that do not know its type.
+pub trait KnownSignal: WriteSignal {
+    /// Writes a raw value.
+    ///
+    /// # Errors
+    ///
+    /// As [`Signal::put`](canspec_runtime::Signal::put) has them.
+    fn put_bits(&self, bits: u64, payload: &mut Payload) -> Result<(), Error>;
+}
+
+impl<R: Raw, F: Physical<R>> KnownSignal for canspec_runtime::Signal<R, F> {
+    fn put_bits(&self, bits: u64, payload: &mut Payload) -> Result<(), Error> {
+        self.put(R::from_bits(bits), payload)
+    }
 }
 
 /// Returns each signal of a protocol: its message, what the interpreter knows of it, and the one of the generated code.
@@ -56,7 +73,7 @@ pub trait Signals {
 /// # Panics
 ///
 /// If the engines differ in them.
-pub fn signals<P: Signals>(protocol: &Protocol) -> impl Iterator<Item = (&Message, &Signal, &'static dyn WriteSignal)> {
+pub fn signals<P: Signals>(protocol: &Protocol) -> impl Iterator<Item = (&Message, &Signal, &'static dyn KnownSignal)> {
     let known =
         protocol.messages.iter().flat_map(|message| message.signals.iter().map(move |signal| (message, signal)));
     assert_eq!(known.clone().count(), P::SIGNALS.len(), "both engines have the same signals");

@@ -1,7 +1,7 @@
 //! The interpreter and the generated code agree, to the last bit.
 
 use canspec_tests::engines::{candidates, compare_decoding, compare_encoding};
-use canspec_tests::{Frames, Signals, Visitor, models, protocol, signals, visit};
+use canspec_tests::{Frames, Signals, Visitor, models, protocol, signals, visit, visit_in_steps};
 
 /// How many random frames each protocol sees.
 const FRAMES: usize = 50_000;
@@ -25,6 +25,13 @@ impl Visitor for Decoding {
 fn random_frames_mean_the_same_to_both_engines_and_encode_to_the_same_bytes() {
     let mut decoding = Decoding { recognised: 0 };
     visit(&mut decoding);
+    assert!(decoding.recognised > FRAMES, "only {} frames were recognised at all", decoding.recognised);
+}
+
+#[test]
+fn random_frames_mean_the_same_in_whole_steps_and_encode_to_the_same_bytes() {
+    let mut decoding = Decoding { recognised: 0 };
+    visit_in_steps(&mut decoding);
     assert!(decoding.recognised > FRAMES, "only {} frames were recognised at all", decoding.recognised);
 }
 

@@ -3,7 +3,7 @@
 use canspec_codegen::interpret::Frame;
 use canspec_codegen::model::{Example, Kind, Protocol};
 use canspec_runtime::Number;
-use canspec_tests::{Visitor, protocol, received, visit};
+use canspec_tests::{Visitor, protocol, received, visit, visit_in_steps};
 use embedded_can::Frame as _;
 
 struct Examples {
@@ -60,5 +60,12 @@ fn bits(raw: Number) -> u64 {
 fn every_frame_that_a_document_prints_holds_in_the_generated_code() {
     let mut examples = Examples { frames: 0 };
     visit(&mut examples);
+    assert!(examples.frames >= 140, "{} frames", examples.frames);
+}
+
+#[test]
+fn every_frame_that_a_document_prints_holds_in_whole_steps_too() {
+    let mut examples = Examples { frames: 0 };
+    visit_in_steps(&mut examples);
     assert!(examples.frames >= 140, "{} frames", examples.frames);
 }

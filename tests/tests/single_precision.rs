@@ -1,6 +1,7 @@
 //! Scaling in single precision, against exact integers; and which specs suit it.
 
-use canspec_codegen::emit::Float;
+use canspec_codegen::diagnostic::Diagnostics;
+use canspec_codegen::emit::Scaled;
 use canspec_codegen::{check, compile, source::Source};
 use canspec_runtime::plumbing::{Integer, Scale};
 use canspec_runtime::{Payload, Place, Signal};
@@ -154,8 +155,12 @@ fn limits_and_special_values_are_singles() {
     assert_eq!(wide, "`voltage` of `message` is 6553.6 V, but its limits are 0 and 6553.5 V");
 }
 
-/// Returns what is said of a spec with this field for code that calculates in `float`.
-fn said(field: &str, float: Float) -> String {
+/// Returns what is said in short of a spec with this field for code whose scaled values are `scaled`.
+fn said(field: &str, scaled: Scaled) -> String {
+    diagnostics(field, scaled).concise()
+}
+
+fn diagnostics(field: &str, scaled: Scaled) -> Diagnostics {
     let field = field.replacen('{', "{title: Level, ", 1);
     let spec = include_str!("../specs/rules/grid/good.yaml")
         .replace("in: [reply], ", "")
@@ -163,8 +168,8 @@ fn said(field: &str, float: Float) -> String {
         .replace("      elapsed: {bytes: 2..7, unit: s}\n", &format!("      level: {field}\n"));
     let mut outcome = compile(Source::new("heater.yaml", spec.into()).expect("plain text"));
     let protocol = outcome.protocol.as_ref().unwrap_or_else(|| panic!("{}", outcome.diagnostics.concise()));
-    check::fits(protocol, float, &mut outcome.diagnostics);
-    outcome.diagnostics.concise()
+    check::fits(protocol, scaled, &mut outcome.diagnostics);
+    outcome.diagnostics
 }
 
 #[test]
@@ -185,14 +190,23 @@ fn a_spec_that_does_not_suit_single_precision_is_refused_for_it() {
             "the denominator of 1/16777217 reaches 2^24, beyond which a single misses integers",
         ),
     ] {
-        let said = said(field, Float::F32);
+        let said = said(field, Scaled::F32);
         assert!(said.ends_with(&format!("error[grid]: `temperature.level`: {why}")), "{field}: {said}");
     }
-    let said = said("{bytes: 0..3, range: 0..16777216.5}", Float::F32);
+    let said = said("{bytes: 0..3, range: 0..16777216.5}", Scaled::F32);
     assert!(
         said.ends_with("the limits of `temperature.level` reach 2^24, beyond which a single misses integers"),
         "{said}"
     );
+}
+
+#[test]
+fn what_single_precision_misses_is_compiled_in_whole_steps() {
+    for field in ["{bytes: 0..3, scale: 1/1000}", "{bytes: 0..3, range: 0..16777216.5}"] {
+        let shown = diagnostics(field, Scaled::F32).render(false);
+        assert!(shown.contains("help: generate code in whole steps or with `f64`"), "{shown}");
+        assert!(!said(field, Scaled::Steps).contains("error["), "{field}");
+    }
 }
 
 #[test]
@@ -204,10 +218,10 @@ fn a_spec_that_suits_single_precision_is_not_refused_for_it() {
         "{bytes: 0..3, range: 0..16777217}",
         "{bytes: 0..3}",
     ] {
-        let said = said(field, Float::F32);
+        let said = said(field, Scaled::F32);
         assert!(!said.contains("error["), "{field}: {said}");
     }
     let between_steps = "{bytes: 0..3, range: 0..8388607.5}";
-    assert_eq!(said(between_steps, Float::F32), said(between_steps, Float::F64));
-    assert_eq!(said("{bytes: 0..3, scale: 1/1000}", Float::F64), "");
+    assert_eq!(said(between_steps, Scaled::F32), said(between_steps, Scaled::F64));
+    assert_eq!(said("{bytes: 0..3, scale: 1/1000}", Scaled::F64), "");
 }

@@ -5,7 +5,9 @@ use canspec_codegen::model::{Message, MessageId, Protocol, Signal, SignalId};
 use canspec_protocols::infy::SetModuleOutput;
 use canspec_protocols::{mxr, trio};
 use canspec_runtime::{Meaning, Payload, Reading, WriteSignal};
-use canspec_tests::{Optional, Signals, SwitchedVisitor, Visitor, protocol, signals, visit, visit_switched};
+use canspec_tests::{
+    Optional, Signals, SwitchedVisitor, Visitor, protocol, signals, visit, visit_in_steps, visit_switched,
+};
 
 /// How many random raw values a signal of more than 16 bits sees.
 const SAMPLE: usize = 20_000;
@@ -95,6 +97,19 @@ impl SwitchedVisitor for SinglePrecision {
 #[test]
 fn every_raw_value_survives_in_single_precision_too() {
     visit_switched(&mut SinglePrecision);
+}
+
+struct WholeSteps;
+
+impl Visitor for WholeSteps {
+    fn visit<P: canspec_runtime::Protocol + Signals>(&mut self, path: &str) {
+        generated::<P>(&protocol(path));
+    }
+}
+
+#[test]
+fn every_raw_value_survives_the_way_to_what_a_reading_in_whole_steps_says_and_back() {
+    visit_in_steps(&mut WholeSteps);
 }
 
 /// Returns `millivolts` as a person writes them in volts: the text decides the double, not an operation of ours.

@@ -39,7 +39,7 @@ impl Generated {
 pub fn generate(source: Source, options: &Options) -> Result<Generated, Diagnostics> {
     let Outcome { protocol, mut diagnostics, .. } = compile(source);
     if let Some(protocol) = &protocol {
-        check::fits(protocol, options.float, &mut diagnostics);
+        check::fits(protocol, options.scaled, &mut diagnostics);
     }
     match protocol.filter(|_| !diagnostics.has_errors()) {
         Some(protocol) => {

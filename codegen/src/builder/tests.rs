@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::Builder;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::emit::{Float, Options, Switch};
+use crate::emit::{Options, Scaled, Switch};
 use crate::source::Source;
 
 /// A spec without errors, of the protocol `heater`.
@@ -474,8 +474,8 @@ fn outside_a_build_script_there_is_nowhere_to_write() {
 #[test]
 fn each_option_is_set_by_its_own_method() {
     let gated = |feature: &str| Switch::Gated(feature.to_owned());
-    let builder = Builder::new().float(Float::F32).serde(gated("a")).defmt(gated("b")).arbitrary(Switch::Always);
-    let options = Options { float: Float::F32, serde: gated("a"), defmt: gated("b"), arbitrary: Switch::Always };
+    let builder = Builder::new().scaled(Scaled::F32).serde(gated("a")).defmt(gated("b")).arbitrary(Switch::Always);
+    let options = Options { scaled: Scaled::F32, serde: gated("a"), defmt: gated("b"), arbitrary: Switch::Always };
     assert_eq!(builder.options, options);
     assert_eq!(Builder::new().options(options.clone()).options, options);
     assert_eq!(Builder::new().options, Options::default());

@@ -1,7 +1,7 @@
 #![doc = include_str!("../rules/grid.md")]
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::emit::Float;
+use crate::emit::Scaled;
 use crate::model::{Linear, Numeral, Protocol, Signal};
 use crate::number::Rational;
 use crate::rule::rules;
@@ -44,9 +44,9 @@ pub fn has_exact_steps(width: u8, linear: Linear) -> bool {
 
 /// Looks for scales and limits that do not fit single precision, if generated code calculates in
 /// it.
-pub fn fits(protocol: &Protocol, float: Float, diagnostics: &mut Diagnostics) {
-    if float == Float::F32 {
-        let help = "generate code with `f64`, or write the range that the document states";
+pub fn fits(protocol: &Protocol, scaled: Scaled, diagnostics: &mut Diagnostics) {
+    if scaled == Scaled::F32 {
+        let help = "generate code in whole steps or with `f64`, or write the range that the document states";
         each_scaled(protocol, diagnostics, help, missed_by_single);
         limits(protocol, diagnostics);
     }
@@ -88,6 +88,7 @@ fn each_scaled(
 /// Looks for limits of unscaled numbers that a single does not hold. Limits without a fraction are
 /// integers.
 fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    let help = "generate code in whole steps or with `f64`, or say the limits in the note";
     for message in &protocol.messages {
         let is_compared = |signal: &&Signal| signal.encoding.is_unscaled() && !signal.has_whole_limits();
         for signal in message.signals.iter().filter(is_compared) {
@@ -98,7 +99,7 @@ fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     "the limits of `{}.{}` reach 2^{EXACT}, beyond which a single misses integers",
                     message.name, signal.name
                 );
-                diagnostics.push(Diagnostic::error(&GRID, path.at_value(), text).help("say the limits in the note"));
+                diagnostics.push(Diagnostic::error(&GRID, path.at_value(), text).help(help));
             }
         }
     }

@@ -34,7 +34,7 @@ fn missed(range: Range, linear: Linear) -> Vec<Rational> {
 /// Returns the steps on both sides of a number, the lower one first; where it is a step itself, it twice.
 fn steps_around(number: Rational, linear: Linear) -> Option<[Rational; 2]> {
     let steps = number.minus(linear.offset)?.over(linear.scale)?;
-    let before = steps.numerator().div_euclid(steps.denominator());
+    let before = steps.floor();
     let after = before + i128::from(steps.to_integer().is_none());
     let (one, other) = (linear.value(before)?, linear.value(after)?);
     Some([one.min(other), one.max(other)])

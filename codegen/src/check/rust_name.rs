@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::emit::{camel_case, is_word_of_rust, member};
+use crate::emit::{Scaled, camel_case, is_word_of_rust, member};
 use crate::model::{Doc, Id, ModelId, Protocol};
 use crate::rule::rules;
 use crate::syntax::tree::Path;
@@ -22,7 +22,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let module = Doc { path: Path::default().key("protocol"), ..Doc::default() };
     check_names("module", std::iter::once((protocol.name.clone(), protocol.name.as_str(), &module)), diagnostics);
     for message in &protocol.messages {
-        let names = message.signals.iter().map(|signal| (member(signal), signal.name.as_str(), &signal.doc));
+        let names =
+            message.signals.iter().map(|signal| (member(signal, Scaled::default()), signal.name.as_str(), &signal.doc));
         check_names("member", names, diagnostics);
     }
     let accesses = protocol.accesses.iter().map(|access| (access.name.clone(), access.name.as_str(), &access.doc));

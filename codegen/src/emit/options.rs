@@ -7,8 +7,8 @@
 /// else.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// Type of scaled values.
-    pub float: Float,
+    /// What scaled values are.
+    pub scaled: Scaled,
     /// `serde::Serialize` and `serde::Deserialize` of every type that carries values: messages, the enum of them,
     /// identifiers, targets, named values, status words and packed values.
     ///
@@ -27,18 +27,25 @@ pub struct Options {
     pub arbitrary: Switch,
 }
 
-/// Type of scaled values in generated code.
+/// What scaled values are in generated code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Float {
-    /// `f64`, which suits every spec.
+pub enum Scaled {
+    /// `f64` in the unit of the spec, which suits every spec.
     #[default]
     F64,
-    /// `f32`, for processors that only calculate in single precision. Decoding and encoding then
-    /// never calculate in double.
+    /// `f32` in the unit of the spec, for processors that only calculate in single precision.
+    /// Decoding and encoding then never calculate in double.
     ///
     /// It does not suit every spec. [`check::fits`](crate::check::fits) reports the signals that
-    /// need `f64`.
+    /// need another choice.
     F32,
+    /// Whole steps: the raw integer, and its limits as integers. This suits every spec, too.
+    /// Decoding and encoding then never calculate in floating point.
+    ///
+    /// A field is called `voltage_mv` if the step is a thousandth of a volt, and `voltage_raw` if
+    /// it is no decimal prefix of the unit. Its comment names the step. Readings and errors still
+    /// have physical values.
+    Steps,
 }
 
 /// Whether generated code implements an optional trait.

@@ -39,7 +39,7 @@ pub fn rust(protocol: &Protocol, options: &Options) -> String {
 
 /// Returns the documentation of that module, as inner doc comments to stand before its content.
 pub fn manual(protocol: &Protocol, options: &Options) -> String {
-    manual::Manual { protocol, plan: &Plan::new(protocol, options), float: options.float }.text()
+    manual::Manual { protocol, plan: &Plan::new(protocol, options), scaled: options.scaled }.text()
 }
 
 /// Returns the same content as tokens, for macros and for build scripts that go on with it.

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{EnumerationId, Numeral, PartId, Signal, StatusWordId, Table};
+use super::{EnumerationId, Numeral, PartId, Range, Signal, StatusWordId, Table};
 use crate::number::Rational;
 
 /// What a signal's bits mean.
@@ -51,6 +51,14 @@ impl Linear {
     /// Returns the exact physical value of an integer; `None` on overflow.
     pub fn value(&self, integer: i128) -> Option<Rational> {
         Rational::integer(integer).times(self.scale)?.plus(self.offset)
+    }
+
+    /// Returns the least and the greatest integer whose exact values lie within a range; `None` on
+    /// overflow. If there are none, the first lies above the second.
+    pub fn integers(&self, range: Range) -> Option<[i128; 2]> {
+        let steps = |end: Rational| end.minus(self.offset)?.over(self.scale);
+        let (one, other) = (steps(range.minimum)?, steps(range.maximum)?);
+        Some([one.min(other).ceiling(), one.max(other).floor()])
     }
 }
 
@@ -139,4 +147,30 @@ pub enum Piece {
         /// Number of digits that zeros fill a number up to.
         digits: Option<usize>,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn integers(scale: &str, offset: &str, range: [&str; 2]) -> Option<[i128; 2]> {
+        let [scale, offset] = [scale, offset].map(Rational::parse);
+        let [minimum, maximum] = range.map(Rational::parse);
+        let linear = Linear { numeral: Numeral::Signed, scale: scale?, offset: offset? };
+        linear.integers(Range { minimum: minimum?, maximum: maximum? })
+    }
+
+    #[test]
+    fn a_range_has_the_integers_whose_values_lie_within() {
+        assert_eq!(integers("1/10", "0", ["0.04", "20.06"]), Some([1, 200]));
+        assert_eq!(integers("1/1000", "0", ["0.26", "25.7"]), Some([260, 25_700]));
+        assert_eq!(integers("1/2", "-40", ["-40", "80"]), Some([0, 240]));
+        // 10 - 0.5 n: 9.5 is n = 1, and 0.5 is n = 19.
+        assert_eq!(integers("-1/2", "10", ["0.3", "9.9"]), Some([1, 19]));
+    }
+
+    #[test]
+    fn between_two_steps_there_is_no_integer() {
+        assert_eq!(integers("10", "0", ["11", "19"]), Some([2, 1]));
+    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-use canspec_codegen::emit::{Float, Options, Switch};
+use canspec_codegen::emit::{Options, Scaled, Switch};
 use canspec_codegen::generate;
 use canspec_codegen::source::Source;
 
@@ -13,9 +13,9 @@ use canspec_codegen::source::Source;
 ///
 /// # Errors
 ///
-/// What is wrong with the spec, or with it in single precision.
-pub fn rust(text: &str, float: Float) -> Result<String, String> {
-    let every = Options { float, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always };
+/// What is wrong with the spec, or with scaled values of this type.
+pub fn rust(text: &str, scaled: Scaled) -> Result<String, String> {
+    let every = Options { scaled, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always };
     let source = Source::new("spec.yaml", text.as_bytes().to_vec()).map_err(|errors| errors.concise())?;
     generate(source, &every).map(|generated| generated.code).map_err(|errors| errors.concise())
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-use canspec_codegen::emit::{self, Float, Options, Switch, is_word_of_rust};
+use canspec_codegen::emit::{self, Options, Scaled, Switch, is_word_of_rust};
 use fastrand::Rng;
 use proc_macro2::{TokenStream, TokenTree};
 
@@ -52,7 +52,8 @@ const ENDINGS: [&str; 26] = [
 /// Names as hostile as they may be: words of Rust, and every name in generated code.
 static HOSTILE: LazyLock<Vec<String>> = LazyLock::new(|| {
     let mut names: BTreeSet<String> = WORDS.split_whitespace().map(str::to_owned).collect();
-    let every = Options { float: Float::F32, serde: Switch::Always, defmt: Switch::Always, arbitrary: Switch::Always };
+    let [serde, defmt, arbitrary] = [const { Switch::Always }; 3];
+    let every = Options { scaled: Scaled::F32, serde, defmt, arbitrary };
     for path in specs("tests/specs/features") {
         collect(emit::tokens(&protocol(path), &every), &mut names);
     }

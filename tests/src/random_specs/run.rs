@@ -5,7 +5,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
-use canspec_codegen::emit::Float;
+use canspec_codegen::emit::Scaled;
 
 use super::Spec;
 use super::compiled::{Crate, rust};
@@ -47,9 +47,13 @@ impl Run {
     }
 
     fn add_spec(&mut self, spec: &Spec, modules: &mut Crate) -> io::Result<Result<(), String>> {
-        // Every second spec in single precision, which not every one suits.
-        let single = (spec.seed % 2 == 1).then(|| rust(&spec.text, Float::F32).ok()).flatten();
-        let code = match single.map_or_else(|| rust(&spec.text, Float::F64), Ok) {
+        let scaled = match spec.seed % 3 {
+            0 => Scaled::F64,
+            1 => Scaled::F32,
+            _ => Scaled::Steps,
+        };
+        // Single precision does not suit every spec.
+        let code = match rust(&spec.text, scaled).or_else(|_| rust(&spec.text, Scaled::F64)) {
             Ok(code) => code,
             Err(errors) => return Ok(Err(errors)),
         };

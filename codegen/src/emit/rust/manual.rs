@@ -6,7 +6,7 @@ mod table;
 use super::plan::Plan;
 use super::plan::doc::{self, Comment};
 use super::plan::usage::time;
-use crate::emit::Float;
+use crate::emit::Scaled;
 use crate::model::{Doc, Protocol, Quantity, Timing};
 use crate::text::Text;
 
@@ -16,8 +16,8 @@ pub struct Manual<'a> {
     pub protocol: &'a Protocol,
     /// Its module.
     pub plan: &'a Plan,
-    /// Type of scaled values.
-    pub float: Float,
+    /// What scaled values are.
+    pub scaled: Scaled,
 }
 
 impl Manual<'_> {

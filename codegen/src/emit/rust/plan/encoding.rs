@@ -3,9 +3,10 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::literal::{decimal, ends, physical, physical_type};
-use crate::emit::Float;
-use crate::model::{Doc, Encoding, EnumerationId, Numeral, Protocol, Range, Signal, StatusWordId, Table};
+use super::limits::Limits;
+use super::literal::{Precision, decimal};
+use crate::emit::Scaled;
+use crate::model::{Doc, Encoding, EnumerationId, Linear, Numeral, Protocol, Signal, StatusWordId, Table};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -23,8 +24,8 @@ pub struct WordTypes<'a> {
 pub struct Coding {
     /// Type of the raw value.
     pub raw: TokenStream,
-    /// Whether the value is calculated from the raw value.
-    pub is_scaled: bool,
+    /// Type of the value if it is calculated from the raw value.
+    pub calculated: Option<Precision>,
     /// Whether the value can be infinite or NaN.
     pub is_float: bool,
     /// Numerator and denominator of the step, unless it is 1.
@@ -33,7 +34,7 @@ pub struct Coding {
     pub offset: Option<[TokenStream; 2]>,
     /// How limits are compared.
     pub limits: Limits,
-    /// What the comment says of both.
+    /// What the comment says of the digits and of both.
     pub step: Option<String>,
     /// The type of the spec that is a type in Rust too.
     pub documented: Option<Path>,
@@ -41,25 +42,21 @@ pub struct Coding {
 
 impl Coding {
     /// Returns how a signal looks in Rust.
-    pub fn new(protocol: &Protocol, words: &WordTypes, signal: &Signal) -> Self {
-        let width = signal.place.width();
+    pub fn new(protocol: &Protocol, words: &WordTypes, signal: &Signal, scaled: Scaled) -> Self {
+        let limits = Limits::new(signal, scaled);
         match &signal.encoding {
             Encoding::Number { numeral, scale, offset } => Self {
-                is_scaled: !signal.encoding.is_unscaled(),
+                calculated: Precision::of(scaled).filter(|_| !signal.encoding.is_unscaled()),
                 scale: (*scale != Rational::ONE).then(|| fraction(*scale)),
                 offset: (*offset != Rational::ZERO).then(|| fraction(*offset)),
-                limits: if is_compared_raw(signal) { Limits::Raw } else { Limits::Physical },
-                step: step(signal, Integer::new(width, *numeral).digits, *scale, *offset),
-                ..Self::raw(integer(width, *numeral))
+                limits,
+                step: step(signal, scaled, Linear { numeral: *numeral, scale: *scale, offset: *offset }),
+                ..Self::raw(raw_type(signal))
             },
-            Encoding::Float => Self {
-                is_float: true,
-                limits: if signal.ranges().next().is_some() { Limits::Double } else { Limits::Raw },
-                ..Self::raw(quote!(f32))
-            },
+            Encoding::Float => Self { is_float: true, limits, ..Self::raw(raw_type(signal)) },
             Encoding::Named(known) => Self::named(&words.enumerations[*known], &protocol[*known].doc),
             Encoding::Status(known) => Self::named(&words.statuses[*known], &protocol[*known].doc),
-            Encoding::Text => Self::raw(text(width)),
+            Encoding::Text => Self::raw(text(signal.place.width())),
             Encoding::Packed { .. } => {
                 let packed = words.packed;
                 Self::raw(quote!(#packed))
@@ -71,7 +68,7 @@ impl Coding {
     fn raw(raw: TokenStream) -> Self {
         Self {
             raw,
-            is_scaled: false,
+            calculated: None,
             is_float: false,
             scale: None,
             offset: None,
@@ -87,77 +84,63 @@ impl Coding {
     }
 
     /// Returns the type of the value.
-    pub fn value(&self, float: Float) -> TokenStream {
-        if self.is_scaled { physical_type(float) } else { self.raw.clone() }
+    pub fn value(&self) -> TokenStream {
+        self.calculated.map_or_else(|| self.raw.clone(), Precision::kind)
     }
 
     /// Returns the methods that read and write the value.
     pub fn methods(&self) -> [Ident; 2] {
-        let names = if self.is_scaled { ["decode", "encode"] } else { ["get", "put"] };
+        let names = if self.calculated.is_some() { ["decode", "encode"] } else { ["get", "put"] };
         names.map(|name| format_ident!("{name}"))
     }
 
     /// Returns the type in which limits are compared, if it is not that of the raw value.
-    pub fn physical(&self, float: Float) -> Option<TokenStream> {
-        match (self.limits, float) {
-            (Limits::Raw, _) | (Limits::Double, Float::F32) => None,
-            (Limits::Physical, _) | (Limits::Double, Float::F64) => Some(physical_type(float)),
+    pub fn physical(&self) -> Option<TokenStream> {
+        match self.limits {
+            Limits::Raw => None,
+            Limits::Physical(precision) => Some(precision.kind()),
         }
-    }
-
-    /// Writes the ends of a range as they are compared.
-    pub fn ends(&self, range: Range, float: Float) -> [TokenStream; 2] {
-        ends(range, self.limits == Limits::Raw, float)
     }
 
     /// Tests whether equality of values is exact.
     pub fn is_exact(&self) -> bool {
-        !self.is_float && !self.is_scaled
+        !self.is_float && self.calculated.is_none()
     }
 
     /// Writes the value that a raw value of the signal stands for.
-    pub fn value_of(&self, signal: &Signal, raw: i128, float: Float) -> TokenStream {
-        if self.is_scaled {
-            return physical(signal.encoding.value_of(raw).unwrap_or(Rational::ZERO), float);
-        }
-        let raw = decimal(raw);
-        match Integer::new(signal.place.width(), signal.encoding.numeral()).around {
-            None => raw,
-            Some(around) => quote!(#around::from_raw(#raw)),
+    pub fn value_of(&self, signal: &Signal, raw: i128) -> TokenStream {
+        match self.calculated {
+            Some(precision) => precision.nearest(signal.encoding.value_of(raw).unwrap_or(Rational::ZERO)),
+            None => raw_number(signal, raw),
         }
     }
 }
 
-/// How the limits of a signal are compared with its values.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Limits {
-    /// As raw values.
-    Raw,
-    /// As physical values.
-    Physical,
-    /// In double precision if that is the type of scaled values, else as raw values.
-    Double,
+/// Returns the type of a number's raw values.
+pub fn raw_type(signal: &Signal) -> TokenStream {
+    if signal.encoding.is_single() {
+        return quote!(f32);
+    }
+    integer(signal.place.width(), signal.encoding.numeral())
 }
 
-/// Tests whether limits can be raw values. Without limits, any unscaled number passes.
-fn is_compared_raw(signal: &Signal) -> bool {
-    whole(signal).is_some() || signal.encoding.is_unscaled() && signal.ranges().next().is_none()
-}
-
-/// Returns the type of a number that is a raw integer, and its limits too.
-pub fn whole(signal: &Signal) -> Option<TokenStream> {
-    let is_raw = signal.encoding.is_unscaled() && signal.encoding.numeral().is_raw();
-    let is_whole = is_raw && signal.has_whole_limits();
-    is_whole.then(|| integer(signal.place.width(), signal.encoding.numeral()))
+/// Writes a raw value of an integer.
+pub fn raw_number(signal: &Signal, raw: i128) -> TokenStream {
+    let raw = decimal(raw);
+    match Integer::new(signal.place.width(), signal.encoding.numeral()).around {
+        None => raw,
+        Some(around) => quote!(#around::from_raw(#raw)),
+    }
 }
 
 fn fraction(number: Rational) -> [TokenStream; 2] {
     [number.numerator(), number.denominator()].map(decimal)
 }
 
-fn step(signal: &Signal, digits: Option<&str>, scale: Rational, offset: Rational) -> Option<String> {
-    let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
-    let step = (scale != Rational::ONE).then(|| format!("steps of {scale}{unit}"));
+fn step(signal: &Signal, scaled: Scaled, Linear { numeral, scale, offset }: Linear) -> Option<String> {
+    let (unit, digits) = (signal.unit_text(), Integer::new(signal.place.width(), numeral).digits);
+    // The unit of whole steps says what a step is.
+    let step = (scale != Rational::ONE && scaled != Scaled::Steps).then(|| format!("steps of {scale}{unit}"));
     let offset = (offset != Rational::ZERO).then(|| format!("raw 0 is {offset}{unit}"));
     let facts: Vec<_> = digits.map(str::to_owned).into_iter().chain(step).chain(offset).collect();
     (!facts.is_empty()).then(|| facts.join(", "))

@@ -4,8 +4,7 @@ use canspec_runtime::Data;
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, quote};
 
-use crate::emit::Float;
-use crate::model::Range;
+use crate::emit::Scaled;
 use crate::number::Rational;
 
 /// Writes a field in hexadecimal, with the digits that its width needs.
@@ -19,27 +18,42 @@ pub fn decimal(value: impl Into<i128>) -> TokenStream {
     signed(&value.into().to_string())
 }
 
-/// Returns the type of scaled values.
-pub fn physical_type(float: Float) -> TokenStream {
-    match float {
-        Float::F64 => quote!(f64),
-        Float::F32 => quote!(f32),
+/// A floating-point type.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// `f64`.
+    Double,
+    /// `f32`.
+    Single,
+}
+
+impl Precision {
+    /// Returns the type of scaled values, unless they are whole steps.
+    pub fn of(scaled: Scaled) -> Option<Self> {
+        match scaled {
+            Scaled::F64 => Some(Self::Double),
+            Scaled::F32 => Some(Self::Single),
+            Scaled::Steps => None,
+        }
     }
-}
 
-/// Writes the double or the single nearest to a number.
-pub fn physical(value: Rational, float: Float) -> TokenStream {
-    let text = match float {
-        Float::F64 => value.to_f64().to_string(),
-        #[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is wanted")]
-        Float::F32 => (value.to_f64() as f32).to_string(),
-    };
-    signed(&if text.contains('.') { text } else { format!("{text}.0") })
-}
+    /// Returns the type.
+    pub fn kind(self) -> TokenStream {
+        match self {
+            Self::Double => quote!(f64),
+            Self::Single => quote!(f32),
+        }
+    }
 
-/// Writes the ends of a range as they are compared: as integers, or in floating point.
-pub fn ends(range: Range, whole: bool, float: Float) -> [TokenStream; 2] {
-    [range.minimum, range.maximum].map(|end| if whole { decimal(end.numerator()) } else { physical(end, float) })
+    /// Writes what is nearest to a number.
+    pub fn nearest(self, number: Rational) -> TokenStream {
+        let text = match self {
+            Self::Double => number.to_f64().to_string(),
+            #[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is wanted")]
+            Self::Single => (number.to_f64() as f32).to_string(),
+        };
+        signed(&if text.contains('.') { text } else { format!("{text}.0") })
+    }
 }
 
 /// Writes the eight bytes of a frame.
@@ -111,12 +125,12 @@ mod tests {
 
     #[test]
     fn a_double_has_a_point() {
-        let literal = |text, float| physical(Rational::parse(text).unwrap_or(Rational::ZERO), float).to_string();
-        let float = |text| literal(text, Float::F64);
+        let literal = |text, kind: Precision| kind.nearest(Rational::parse(text).unwrap_or(Rational::ZERO)).to_string();
+        let float = |text| literal(text, Precision::Double);
         assert_eq!(float("750"), "750.0");
         assert_eq!(float("25.7"), "25.7");
         assert_eq!(float("1/3"), "0.333_333_333_333_333_3");
         assert_eq!(float("100000"), "100_000.0");
-        assert_eq!(literal("1/3", Float::F32), "0.333_333_34");
+        assert_eq!(literal("1/3", Precision::Single), "0.333_333_34");
     }
 }

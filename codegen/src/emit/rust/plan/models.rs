@@ -3,10 +3,9 @@
 use proc_macro2::{Ident, TokenStream};
 
 use super::doc::{self, Comment};
-use super::encoding::whole;
-use super::literal::{ends, physical_type};
+use super::limits;
 use super::naming::{Pool, model_variant};
-use crate::emit::Float;
+use crate::emit::Scaled;
 use crate::model::{FrameLayout, Kind, ModelId, Protocol, Range, Signal, SignalId, Table};
 use crate::syntax::tree::Step;
 
@@ -19,19 +18,20 @@ pub struct Models {
     /// Limits by device model, which signals share.
     pub limits: Vec<Limits>,
     sources: Vec<Source>,
+    scaled: Scaled,
 }
 
-/// The source of limits: the ranges, and the integer type of those that are integers.
+/// The source of limits: the ranges as they are compared, and the type of their ends.
 #[derive(PartialEq)]
 struct Source {
     ranges: Table<ModelId, Option<Range>>,
-    whole: Option<String>,
+    kind: String,
 }
 
 impl Source {
-    fn new(protocol: &Protocol, signal: &Signal) -> Self {
-        let ranges = protocol.models.ids().map(|model| signal.range_for(Some(model))).collect();
-        Self { ranges, whole: whole(signal).map(|kind| kind.to_string()) }
+    fn new(protocol: &Protocol, signal: &Signal, form: limits::Limits) -> Self {
+        let range = |model| Some(form.range(signal, signal.range_for(Some(model))?));
+        Self { ranges: protocol.models.ids().map(range).collect(), kind: form.kind(signal).to_string() }
     }
 }
 
@@ -59,7 +59,7 @@ pub struct Limits {
 
 impl Models {
     /// Plans the device models.
-    pub fn new(protocol: &Protocol, float: Float, constants: &mut Pool) -> Self {
+    pub fn new(protocol: &Protocol, scaled: Scaled, constants: &mut Pool) -> Self {
         let mut variants = Pool::default();
         let rows = protocol.models.map(|model| {
             let title = model.doc.title.as_ref().map_or_else(String::new, |title| format!(": {}", title.in_rust_doc()));
@@ -71,20 +71,21 @@ impl Models {
             }
         });
         let has_within = protocol.frames.iter().any(|frame| depends_on_model(protocol, frame));
-        let mut models = Self { rows, has_within, limits: Vec::new(), sources: Vec::new() };
+        let mut models = Self { rows, has_within, limits: Vec::new(), sources: Vec::new(), scaled };
         for signal in protocol.messages.iter().flat_map(|message| &message.signals) {
-            models.add_limits(protocol, signal, float, constants);
+            models.add_limits(protocol, signal, constants);
         }
         models
     }
 
     /// Adds the limits of a signal, unless another has the same.
-    fn add_limits(&mut self, protocol: &Protocol, signal: &Signal, float: Float, constants: &mut Pool) {
+    fn add_limits(&mut self, protocol: &Protocol, signal: &Signal, constants: &mut Pool) {
         if signal.model_ranges.is_empty() || self.limits_of(protocol, signal).is_some() {
             return;
         }
-        let source = Source::new(protocol, signal);
-        let limits = self.limits(signal, &source.ranges, float, constants);
+        let form = limits::Limits::new(signal, self.scaled);
+        let source = Source::new(protocol, signal, form);
+        let limits = self.limits(signal, &source.ranges, form, constants);
         self.limits.push(limits);
         self.sources.push(source);
     }
@@ -93,26 +94,28 @@ impl Models {
         &self,
         signal: &Signal,
         ranges: &Table<ModelId, Option<Range>>,
-        float: Float,
+        form: limits::Limits,
         constants: &mut Pool,
     ) -> Limits {
         let of = type_name(signal).unwrap_or(&signal.name);
-        let (kind, is_whole) = (whole(signal), whole(signal).is_some());
-        let ends = |range: Range| ends(range, is_whole, float);
+        let ends = |range: Range| form.ends(signal, range);
         let rows = ranges.iter().zip(&self.rows).map(|(range, model)| (model.variant.clone(), range.map(ends)));
         Limits {
             constant: constants.constant(&format!("{of}_LIMITS")),
             comment: Comment::line(format!("Limits of `{of}` by device model.")),
-            kind: kind.unwrap_or_else(|| physical_type(float)),
+            kind: form.kind(signal),
             rows: rows.collect(),
         }
     }
 
     /// Returns the constant of the limits that a signal has by device model.
     pub fn limits_of(&self, protocol: &Protocol, signal: &Signal) -> Option<&Ident> {
-        let source = Source::new(protocol, signal);
-        let known = self.limits.iter().zip(&self.sources).filter(|_| !signal.model_ranges.is_empty());
-        known.into_iter().find(|(_, known)| **known == source).map(|(limits, _)| &limits.constant)
+        if signal.model_ranges.is_empty() {
+            return None;
+        }
+        let source = Source::new(protocol, signal, limits::Limits::new(signal, self.scaled));
+        let known = self.sources.iter().position(|known| *known == source)?;
+        Some(&self.limits.get(known)?.constant)
     }
 
     /// Returns the variant of a model.

@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Span};
 
+use super::unit::Unit;
+use crate::emit::Scaled;
 use crate::model::Signal;
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
@@ -226,9 +228,10 @@ pub fn screaming(name: &str) -> Ident {
     ident(&name.to_ascii_uppercase())
 }
 
-/// Names the member of a signal, with its unit as the ending.
-pub fn member(signal: &Signal) -> String {
-    signal.unit.map_or_else(|| signal.name.clone(), |unit| format!("{}_{}", signal.name, unit.suffix))
+/// Names the member of a signal, with the unit of its values as the ending.
+pub fn member(signal: &Signal, scaled: Scaled) -> String {
+    let ending = Unit::new(signal, scaled).ending;
+    ending.map_or_else(|| signal.name.clone(), |ending| format!("{}_{ending}", signal.name))
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ use super::models::Models;
 use super::naming::{Pool, member};
 use super::place::Written;
 use super::types::Types;
-use crate::emit::Float;
+use super::unit::Unit;
+use crate::emit::Scaled;
 use crate::model::{self, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
 use crate::syntax::tree::Path;
 
@@ -89,8 +90,8 @@ pub struct Context<'a> {
     pub types: &'a Types,
     /// Device models.
     pub models: &'a Models,
-    /// Type of scaled values.
-    pub float: Float,
+    /// What scaled values are.
+    pub scaled: Scaled,
 }
 
 impl Context<'_> {
@@ -99,13 +100,13 @@ impl Context<'_> {
         let (message, mut fields) = (&self.protocol[id], Pool::default());
         let constants = message.signals.map(|known| members.take(known.name.to_ascii_uppercase(), "_SIGNAL"));
         let signals = message.signals.entries().map(|(signal, known)| {
-            let (constant, field) = (constants[signal].clone(), fields.take(member(known), "_"));
+            let (constant, field) = (constants[signal].clone(), fields.take(member(known, self.scaled), "_"));
             let mut named = |special: &NamedValue| {
                 let name = format!("{constant}_{}", special.name.to_ascii_uppercase());
                 members.take(name, "_VALUE")
             };
             let specials = known.specials.iter().map(&mut named).collect();
-            let coding = Coding::new(self.protocol, &self.types.words(id, signal), known);
+            let coding = Coding::new(self.protocol, &self.types.words(id, signal), known, self.scaled);
             self.signal(message, known, Names { constant, field, specials }, coding)
         });
         signals.collect()
@@ -119,7 +120,8 @@ impl Context<'_> {
         coding: Coding,
     ) -> Signal {
         let range = signal.hull(self.protocol.models_of(message));
-        let special = |(special, name)| Special::new(name, signal, &coding, special, self.float);
+        let range = range.map(|range| coding.limits.range(signal, range));
+        let special = |(special, name)| Special::new(name, signal, &coding, special);
         Signal {
             comment: Comment::line(format!(
                 "The signal `{}`, to read or write it alone, or to ask for its limits.",
@@ -128,8 +130,8 @@ impl Context<'_> {
             name: signal.name.clone(),
             place: Written::new(signal.place),
             unit: signal.unit.map(|unit| unit.symbol),
-            physical: coding.physical(self.float),
-            limits: range.map(|range| coding.ends(range, self.float)),
+            physical: coding.physical(),
+            limits: range.map(|range| coding.limits.ends(signal, range)),
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),
             specials: signal.specials.iter().zip(specials).map(special).collect(),
             has_absent: signal.has_absent,
@@ -149,22 +151,34 @@ impl Context<'_> {
     ) -> Member {
         let is_at_end = message.is_optional(signal);
         let is_optional = is_at_end || signal.has_absent;
-        let sentence = sentence(self.protocol, (message, signal), coding, range);
+        let sentence = self.sentence(message, signal, coding, range);
         let paragraphs = doc::paragraphs(self.protocol, &signal.doc, &sentence, Some(&message.doc));
         let comment = Comment::new(paragraphs.into_iter().chain(type_notes(self.protocol, signal, coding)));
         let [get, put] = coding.methods().map(|name| if is_optional { format_ident!("{name}_some") } else { name });
-        Member { name, comment, kind: coding.value(self.float), is_optional, is_at_end, get, put }
+        Member { name, comment, kind: coding.value(), is_optional, is_at_end, get, put }
+    }
+
+    fn sentence(&self, message: &Message, signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
+        let (title, unit) = (doc::title(&signal.doc, &signal.name), Unit::new(signal, self.scaled).phrase);
+        let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
+        let place = Some(Written::new(signal.place).text());
+        let optional =
+            message.is_optional(signal).then(|| format!("only in frames of {} bytes", least(message, signal)));
+        let facts = [place, optional, coding.step.clone(), range, specials(signal)];
+        let facts: Vec<_> = facts.into_iter().flatten().collect();
+        let models = models(self.protocol, signal);
+        format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
     }
 }
 
 impl Special {
-    fn new(constant: Ident, known: &model::Signal, coding: &Coding, special: &NamedValue, float: Float) -> Self {
+    fn new(constant: Ident, known: &model::Signal, coding: &Coding, special: &NamedValue) -> Self {
         Self {
             raw: as_signed(special.raw),
             name: special.name.clone(),
             constant,
             comment: Comment::line(format!("The value of `{}` that stands for `{}`.", known.name, special.name)),
-            value: coding.value_of(known, special.raw, float),
+            value: coding.value_of(known, special.raw),
         }
     }
 }
@@ -176,23 +190,6 @@ fn as_signed(raw: i128) -> TokenStream {
     }
     let bits = decimal(raw);
     quote!(u64::cast_signed(#bits))
-}
-
-fn sentence(
-    protocol: &Protocol,
-    (message, signal): (&Message, &model::Signal),
-    coding: &Coding,
-    range: Option<Range>,
-) -> String {
-    let title = doc::title(&signal.doc, &signal.name);
-    let unit = signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol));
-    let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
-    let place = Some(Written::new(signal.place).text());
-    let optional = message.is_optional(signal).then(|| format!("only in frames of {} bytes", least(message, signal)));
-    let facts = [place, optional, coding.step.clone(), range, specials(signal)];
-    let facts: Vec<_> = facts.into_iter().flatten().collect();
-    let models = models(protocol, signal);
-    format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
 }
 
 /// Returns the numbers of data bytes with which a message's frame has a signal.

@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 
-use crate::emit::Float;
+use crate::emit::Scaled;
 use crate::emit::rust::manual::Manual;
 use crate::emit::rust::plan;
 use crate::interpret::Value;
@@ -15,7 +15,7 @@ pub fn literal(manual: &Manual, planned: &plan::signal::Signal, signal: &Signal,
         return Some("None".to_owned());
     }
     match signal.encoding {
-        Encoding::Number { .. } => Some(squeezed(&planned.coding.value_of(signal, raw, manual.float))),
+        Encoding::Number { .. } => Some(squeezed(&planned.coding.value_of(signal, raw))),
         Encoding::Float => Some(format!("{:?}", f32::from_bits(u32::try_from(bits).ok()?))),
         Encoding::Named(id) => {
             let place = manual.protocol[id].values.iter().position(|value| value.raw == raw)?;
@@ -37,7 +37,7 @@ pub fn shown(manual: &Manual, signal: &Signal, value: &Value) -> Option<String> 
     match value {
         Value::None => None,
         Value::Integer(value) => Some(format!("{value}{unit}")),
-        Value::Number(value) => Some(format!("{}{unit}", number(*value, manual.float, signal))),
+        Value::Number(value) => Some(format!("{}{unit}", number(*value, manual.scaled, signal))),
         Value::Name(text) | Value::Text(text) => Some(text.clone()),
         Value::Status { set, .. } => {
             let word = &manual.protocol[signal.encoding.status_word()?];
@@ -49,9 +49,9 @@ pub fn shown(manual: &Manual, signal: &Signal, value: &Value) -> Option<String> 
 
 /// Writes a number in the precision that it is calculated in.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest single is what is shown")]
-fn number(value: f64, float: Float, signal: &Signal) -> String {
-    match float {
-        Float::F32 if !signal.encoding.is_single() => (value as f32).to_string(),
-        Float::F32 | Float::F64 => value.to_string(),
+fn number(value: f64, scaled: Scaled, signal: &Signal) -> String {
+    match scaled {
+        Scaled::F32 if !signal.encoding.is_single() => (value as f32).to_string(),
+        Scaled::F32 | Scaled::F64 | Scaled::Steps => value.to_string(),
     }
 }

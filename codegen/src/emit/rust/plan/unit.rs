@@ -1,0 +1,38 @@
+//! The units of values: those of the spec, or whole steps.
+
+use crate::emit::Scaled;
+use crate::model::{Linear, Signal};
+use crate::multiples;
+use crate::number::Rational;
+
+/// The unit of a signal's values in Rust.
+pub struct Unit {
+    /// What comments say of it behind a title, such as ` in V`.
+    pub phrase: String,
+    /// The ending of the member's name.
+    pub ending: Option<String>,
+}
+
+impl Unit {
+    /// Returns the unit of a signal's values.
+    pub fn new(signal: &Signal, scaled: Scaled) -> Self {
+        match signal.encoding.linear() {
+            Some(linear) if scaled == Scaled::Steps && !signal.encoding.is_unscaled() => Self::of_steps(signal, linear),
+            _ => Self {
+                phrase: signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol)),
+                ending: signal.unit.map(|unit| unit.suffix.to_owned()),
+            },
+        }
+    }
+
+    /// Returns a unit with a decimal prefix if the steps are such a unit, counted from 0.
+    fn of_steps(signal: &Signal, Linear { scale, offset, .. }: Linear) -> Self {
+        let unit = signal.unit.filter(|_| offset == Rational::ZERO);
+        match unit.and_then(|unit| multiples::of_steps(unit, scale)) {
+            Some((symbol, ending)) => Self { phrase: format!(" in {symbol}"), ending: Some(ending) },
+            None => {
+                Self { phrase: format!(" in steps of {scale}{}", signal.unit_text()), ending: Some("raw".to_owned()) }
+            }
+        }
+    }
+}
