@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-use canspec_codegen::emit;
+use canspec_codegen::emit::{self, Options, Scaled};
 use canspec_codegen::model::Protocol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -40,14 +40,14 @@ impl Codec {
     /// # Panics
     ///
     /// If a spec is wrong.
-    pub fn all(folder: &str) -> Vec<Self> {
-        crate::specs(folder).iter().map(|path| Self::new(path)).collect()
+    pub fn all(folder: &str, scaled: Scaled) -> Vec<Self> {
+        crate::specs(folder).iter().map(|path| Self::new(path, scaled)).collect()
     }
 
-    fn new(path: &Path) -> Self {
+    fn new(path: &Path, scaled: Scaled) -> Self {
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         let protocol = crate::protocol(path);
-        let code = emit::rust(&protocol, &emit::Options::default());
+        let code = emit::rust(&protocol, &Options { scaled, ..Options::default() });
         Self { name, protocol, code }
     }
 
@@ -94,6 +94,12 @@ impl Program {
     /// Returns the program that calls every function of all these codecs.
     pub fn everything(codecs: &[Codec]) -> Self {
         Self::of("everything", codecs.iter().map(|codec| module(codec, Module::everything)))
+    }
+
+    /// Returns the program that does with all these codecs what a driver does: it recognises frames, encodes others,
+    /// builds every request and reads its replies.
+    pub fn traffic(codecs: &[Codec]) -> Self {
+        Self::of("traffic", codecs.iter().map(|codec| module(codec, Module::traffic)))
     }
 
     /// Returns the program that recognises a frame.
@@ -151,6 +157,12 @@ fn module(codec: &Codec, calls: impl FnOnce(&Module) -> TokenStream) -> (String,
         }
     };
     (codec.name.clone(), tokens)
+}
+
+/// Tests whether the toolchain has a target.
+pub fn is_installed(target: &str) -> bool {
+    let folder = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+    folder.is_ok_and(|folder| PathBuf::from(String::from_utf8_lossy(&folder.stdout).trim()).is_dir())
 }
 
 /// How a program is compiled.

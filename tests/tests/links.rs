@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use canspec_tests::bare::{Binary, Codec, Others, Program, Settings};
+use canspec_codegen::emit::Scaled;
+use canspec_tests::bare::{Binary, Codec, Others, Program, Settings, is_installed};
 
 const SIZE: Settings<'static> = Settings { profile: "z", target: None };
 const SPEED: Settings<'static> = Settings { profile: "three", target: None };
@@ -19,20 +20,28 @@ fn linked(program: &Program, settings: Settings<'_>) -> Binary {
 
 #[test]
 fn every_function_of_every_protocol_links_without_std_and_without_panics() {
-    let program = Program::everything(&[Codec::all("specs"), Codec::all("tests/specs")].concat());
+    let program =
+        Program::everything(&[Codec::all("specs", Scaled::F64), Codec::all("tests/specs", Scaled::F64)].concat());
     linked(&program, SIZE);
     linked(&program, SPEED);
 }
 
 #[test]
 fn every_construct_of_the_language_links_without_std_and_without_panics() {
-    linked(&Program::everything(&Codec::all("tests/specs/features")), SIZE);
-    linked(&Program::everything(&Codec::all("tests/specs/devices")), SIZE);
+    linked(&Program::everything(&Codec::all("tests/specs/features", Scaled::F64)), SIZE);
+    linked(&Program::everything(&Codec::all("tests/specs/devices", Scaled::F64)), SIZE);
+}
+
+#[test]
+fn whole_steps_link_without_std_and_without_panics() {
+    for folder in ["specs", "tests/specs/features"] {
+        linked(&Program::everything(&Codec::all(folder, Scaled::Steps)), SIZE);
+    }
 }
 
 #[test]
 fn one_indexing_expression_in_one_decoder_does_not_link() {
-    let mut codecs = Codec::all("specs");
+    let mut codecs = Codec::all("specs", Scaled::F64);
     let Some(codec) = codecs.pop() else { return };
     codecs.push(codec.with_index());
     let message = link(&Program::everything(&codecs), SIZE).expect_err("a panic needs what nobody defines");
@@ -41,7 +50,7 @@ fn one_indexing_expression_in_one_decoder_does_not_link() {
 
 #[test]
 fn one_message_alone_does_not_link_the_others() {
-    for codec in Codec::all("specs") {
+    for codec in Codec::all("specs", Scaled::F64) {
         let Some(owner) = codec.one_message() else { continue };
         let others = Others::new(&codec, &owner);
         let every = linked(&Program::decode(&codec), SIZE);
@@ -52,4 +61,30 @@ fn one_message_alone_does_not_link_the_others() {
             assert_eq!(others.symbols_in(&alone), Vec::<String>::new());
         }
     }
+}
+
+/// A processor without instructions for doubles: each operation on them is a function that is linked.
+const SINGLE: Settings<'static> = Settings { profile: "z", target: Some("thumbv7em-none-eabihf") };
+
+/// Tests whether a function calculates with doubles, by the names of LLVM and of the ABI of ARM.
+fn is_of_doubles(symbol: &str) -> bool {
+    let of_arm = symbol.strip_prefix("__aeabi_").is_some_and(|name| name.starts_with('d') || name.ends_with("2d"));
+    of_arm || symbol.starts_with("__") && (symbol.contains("df") || symbol.ends_with("dfti"))
+}
+
+/// Returns the functions that calculate with doubles in a program that decodes, encodes, asks and reads replies.
+fn doubles(scaled: Scaled) -> Vec<String> {
+    let mut symbols = linked(&Program::traffic(&Codec::all("specs", scaled)), SINGLE).symbols();
+    symbols.retain(|symbol| is_of_doubles(symbol));
+    symbols
+}
+
+#[test]
+fn a_driver_in_whole_steps_never_calculates_with_doubles() {
+    if !SINGLE.target.is_some_and(is_installed) {
+        eprintln!("SKIPPED: the toolchain has no thumbv7em-none-eabihf; `rustup target add` installs it");
+        return;
+    }
+    assert_eq!(doubles(Scaled::Steps), Vec::<String>::new());
+    assert!(!doubles(Scaled::F64).is_empty(), "such functions are found where they are");
 }

@@ -37,6 +37,14 @@ pub fn decode<P: Protocol>() {
     sink(Received::<P>::decode(&unknown_frame()));
 }
 
+/// Recognises a frame and encodes another.
+pub fn echo<P: Protocol + Unknown>() {
+    if let Ok(received) = Received::<P>::decode(&unknown_frame()) {
+        sink(received.content());
+        sink(received.with_content(unknown()).encode());
+    }
+}
+
 /// Recognises a frame and shows its signals.
 pub fn visit<P: Protocol>() {
     if let Ok(received) = Received::<P>::decode(&unknown_frame()) {

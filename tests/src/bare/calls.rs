@@ -47,6 +47,12 @@ impl Module {
         functions.chain(self.signals()).chain(self.blocks().map(provided)).collect()
     }
 
+    /// Returns calls that recognise frames, encode others, build the requests of every message and read their replies.
+    pub fn traffic(&self) -> TokenStream {
+        let requests = self.functions().filter(Function::builds_request).map(Function::call);
+        std::iter::once(quote!(calls::echo::<Message>();)).chain(requests).collect()
+    }
+
     /// Returns calls that build the requests of every message.
     pub fn requests(&self) -> TokenStream {
         self.functions().filter(Function::builds_request).map(Function::encode).collect()

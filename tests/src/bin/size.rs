@@ -2,11 +2,11 @@
 #![expect(clippy::print_stdout, reason = "the table is what people call it for")]
 
 use std::env::consts::ARCH;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 use std::{env, io};
 
-use canspec_tests::bare::{Codec, Program, Settings, Size};
+use canspec_codegen::emit::Scaled;
+use canspec_tests::bare::{Codec, Program, Settings, Size, is_installed};
 
 /// The targets: this machine, and the processors of small devices if the toolchain has them.
 const TARGETS: [(&str, Option<&str>); 2] = [(ARCH, None), ("Cortex-M4F", Some("thumbv7em-none-eabihf"))];
@@ -58,27 +58,27 @@ fn missing() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// Returns the programs to measure, each with its name.
 fn programs() -> Vec<(String, Program)> {
-    let codecs = Codec::all("specs");
-    let of_codec = |codec: &Codec| {
-        let name = codec.name();
-        let message = codec.one_message().unwrap_or_default();
-        [
-            (format!("`{name}`: decode"), Program::decode(codec)),
-            (format!("`{name}`: visit"), Program::visit(codec)),
-            (format!("`{name}`: encode"), Program::encode(codec)),
-            (format!("`{name}`: `{message}` alone"), Program::one_message(codec)),
-        ]
+    let of_scaled = |(what, scaled): (&str, Scaled)| {
+        let codecs = Codec::all("specs", scaled);
+        codecs.iter().flat_map(|codec| of_codec(codec, what)).collect::<Vec<_>>()
     };
     let by_hand = [
         ("`infy` by hand: decode".to_owned(), Program::decode_by_hand()),
         ("`infy` by hand: encode".to_owned(), Program::encode_by_hand()),
     ];
-    codecs.iter().flat_map(of_codec).chain(by_hand).collect()
+    [("", Scaled::F64), (" in whole steps", Scaled::Steps)].into_iter().flat_map(of_scaled).chain(by_hand).collect()
 }
 
-fn is_installed(target: &str) -> bool {
-    let folder = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
-    folder.is_ok_and(|folder| PathBuf::from(String::from_utf8_lossy(&folder.stdout).trim()).is_dir())
+/// Returns the programs of a codec, each with its name.
+fn of_codec(codec: &Codec, what: &str) -> [(String, Program); 4] {
+    let name = codec.name();
+    let message = codec.one_message().unwrap_or_default();
+    [
+        (format!("`{name}`{what}: decode"), Program::decode(codec)),
+        (format!("`{name}`{what}: visit"), Program::visit(codec)),
+        (format!("`{name}`{what}: encode"), Program::encode(codec)),
+        (format!("`{name}`{what}: `{message}` alone"), Program::one_message(codec)),
+    ]
 }
 
 /// Returns by how much a program is larger than the empty one.
