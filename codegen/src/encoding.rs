@@ -123,7 +123,7 @@ impl Words<'_> {
             Encoding::Float => ask(&float::Float { signal }),
             Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
             Encoding::Status(id) => ask(&status::Status { signal, word: &self.status_words[*id] }),
-            Encoding::Text => ask(&text::Text { signal }),
+            Encoding::Text(form) => ask(&text::Text { signal, form: *form }),
             Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),
         }
     }

@@ -5,15 +5,24 @@ use core::fmt;
 use crate::Meaning;
 use crate::plumbing::Raw;
 
-/// A text of at most `N` ASCII characters. The bytes after a shorter text are 0.
+/// A text of at most `N` ASCII characters. The bytes after a shorter text are `FILL`.
+///
+/// ```
+/// use canspec_runtime::Text;
+///
+/// let name = Text::<4>::new("A1").expect("two characters");
+/// assert_eq!(name.as_bytes(), b"A1\0\0");
+/// let name = Text::<4, b' '>::new("A1").expect("two characters");
+/// assert_eq!((name.as_bytes(), name.as_str()), (b"A1  ", Some("A1")));
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Text<const N: usize>([u8; N]);
+pub struct Text<const N: usize, const FILL: u8 = 0>([u8; N]);
 
-impl<const N: usize> Text<N> {
+impl<const N: usize, const FILL: u8> Text<N, FILL> {
     /// Takes a text of at most `N` printable ASCII characters, or returns `None` for any other
     /// text.
     pub fn new(text: &str) -> Option<Self> {
-        let mut bytes = [0; N];
+        let mut bytes = [FILL; N];
         bytes.iter_mut().zip(text.bytes()).for_each(|(byte, letter)| *byte = letter);
         (text.len() <= N && text.bytes().all(is_printable)).then_some(Self(bytes))
     }
@@ -28,10 +37,10 @@ impl<const N: usize> Text<N> {
         &self.0
     }
 
-    /// Returns the text. It is `None` unless the bytes are printable ASCII with only zeros after
-    /// it.
+    /// Returns the text. It is `None` unless the bytes are printable ASCII with only `FILL`
+    /// after it.
     pub fn as_str(&self) -> Option<&str> {
-        let length = self.0.iter().rposition(|byte| *byte != 0).map_or(0, |last| last.saturating_add(1));
+        let length = self.0.iter().rposition(|byte| *byte != FILL).map_or(0, |last| last.saturating_add(1));
         let text = self.0.get(..length)?;
         text.iter().all(|byte| is_printable(*byte)).then(|| core::str::from_utf8(text).ok()).flatten()
     }
@@ -41,13 +50,13 @@ const fn is_printable(byte: u8) -> bool {
     matches!(byte, b' '..=b'~')
 }
 
-impl<const N: usize> Default for Text<N> {
+impl<const N: usize, const FILL: u8> Default for Text<N, FILL> {
     fn default() -> Self {
-        Self([0; N])
+        Self([FILL; N])
     }
 }
 
-impl<const N: usize> fmt::Display for Text<N> {
+impl<const N: usize, const FILL: u8> fmt::Display for Text<N, FILL> {
     /// Writes the text, and escapes bytes that are no printable ASCII.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.as_str() {
@@ -57,13 +66,13 @@ impl<const N: usize> fmt::Display for Text<N> {
     }
 }
 
-impl<const N: usize> fmt::Debug for Text<N> {
+impl<const N: usize, const FILL: u8> fmt::Debug for Text<N, FILL> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "\"{}\"", self.0.escape_ascii())
     }
 }
 
-impl<const N: usize> Raw for Text<N> {
+impl<const N: usize, const FILL: u8> Raw for Text<N, FILL> {
     fn from_bits(bits: u64) -> Self {
         let mut text = [0; N];
         for (byte, value) in text.iter_mut().rev().zip(bits.to_le_bytes()) {
@@ -104,6 +113,16 @@ mod tests {
     fn a_short_text_is_filled_up_with_zeros() {
         assert_eq!(Text::<4>::new("A").map(Raw::to_bits), Some(0x4100_0000));
         assert_eq!(Text::<4>::from_bits(0x4100_0000).as_str(), Some("A"));
+    }
+
+    #[test]
+    fn a_text_ends_before_the_bytes_that_fill_it_up() {
+        let text = |bits| Text::<4, b' '>::from_bits(bits);
+        assert_eq!(text(0x4142_2020).as_str(), Some("AB"));
+        assert_eq!(text(0x2041_2042).as_str(), Some(" A B"));
+        assert_eq!(text(0x2020_2020), Text::default());
+        assert_eq!(text(0x4142_0000).as_str(), None);
+        assert_eq!(Text::<4, b' '>::new("A").map(Raw::to_bits), Some(0x4120_2020));
     }
 
     #[test]

@@ -32,7 +32,7 @@ fn set_bits(raw: u64, bits: &'static [StatusBit], formatter: Formatter<'_>) {
     }
 }
 
-impl<const N: usize> Format for Text<N> {
+impl<const N: usize, const FILL: u8> Format for Text<N, FILL> {
     fn format(&self, formatter: Formatter<'_>) {
         if let Some(text) = self.as_str() {
             write!(formatter, "{=str}", text);

@@ -126,6 +126,7 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Bits => &["1", "2..1"],
         Key::Type => &["titled"],
         Key::As => return words(key),
+        Key::Fill => &["0x20"],
         Key::Scale => &["1/4", "-1"],
         Key::Offset => &["3"],
         Key::Unit => &["V"],

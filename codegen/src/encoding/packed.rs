@@ -77,8 +77,8 @@ impl Packed<'_> {
             Piece::Part { part, digits } => {
                 let part = &self.parts[*part];
                 let raw = part.place.get(&data);
-                if part.encoding.is_text() {
-                    return Text { signal: part }.text(raw);
+                if let Some(text) = Text::of(part) {
+                    return text.text(raw);
                 }
                 let number = part.encoding.numeral().integer(raw.into())?;
                 Some(format!("{number:0width$}", width = digits.unwrap_or(1)))
@@ -89,8 +89,8 @@ impl Packed<'_> {
 
 /// Returns how many bytes of the rest of a text belong to a part.
 fn length(part: &Signal, digits: Option<usize>, rest: &str, is_last: bool) -> usize {
-    if part.encoding.is_text() {
-        return Text { signal: part }.length();
+    if let Some(text) = Text::of(part) {
+        return text.length();
     }
     match digits {
         Some(digits) => digits,
@@ -100,8 +100,8 @@ fn length(part: &Signal, digits: Option<usize>, rest: &str, is_last: bool) -> us
 }
 
 fn bits_of_part(part: &Signal, text: &str) -> Option<u64> {
-    if part.encoding.is_text() {
-        return Text { signal: part }.bits(text).ok();
+    if let Some(part) = Text::of(part) {
+        return part.bits(text).ok();
     }
     let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let number: i128 = digits.then(|| text.parse().ok()).flatten()?;

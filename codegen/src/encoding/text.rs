@@ -1,10 +1,11 @@
-//! ASCII in whole bytes, filled up with NUL.
+//! ASCII in whole bytes, filled up with NUL or another byte.
 
 use super::{Allowed, Input, Room, Value, bits};
-use crate::model::{Misfit, NoteRule, Signal};
+use crate::model::{Misfit, NoteRule, Signal, TextForm};
 
 pub struct Text<'a> {
     pub signal: &'a Signal,
+    pub form: TextForm,
 }
 
 impl Room for Text<'_> {
@@ -29,7 +30,9 @@ impl Room for Text<'_> {
     }
 
     fn description(&self) -> Vec<String> {
-        vec![format!("text of {} characters", self.signal.place.width().div_ceil(8))]
+        let TextForm::Ascii { fill } = self.form;
+        let filled = if fill == 0 { String::new() } else { format!(", filled with {fill:#04X}") };
+        vec![format!("text of {} characters{filled}", self.length())]
     }
 }
 
@@ -39,7 +42,12 @@ pub fn formless(signal: &Signal, value: &Value) -> Option<(NoteRule, String)> {
     (*value == Value::None).then(|| (NoteRule::UnknownValue, text()))
 }
 
-impl Text<'_> {
+impl<'a> Text<'a> {
+    /// Returns the text that a signal is, if it is one.
+    pub fn of(signal: &'a Signal) -> Option<Self> {
+        signal.encoding.text_form().map(|form| Self { signal, form })
+    }
+
     /// Returns how many characters fit.
     pub fn length(&self) -> usize {
         usize::from(self.signal.place.width() / 8)
@@ -57,15 +65,19 @@ impl Text<'_> {
             let name = &self.signal.name;
             return Err(format!("`{text}` is not a text of at most {bytes} printable ASCII characters for `{name}`"));
         }
-        let filled = text.bytes().chain(std::iter::repeat_n(0, bytes - text.len()));
+        let TextForm::Ascii { fill } = self.form;
+        let filled = text.bytes().chain(std::iter::repeat_n(fill, bytes - text.len()));
         Ok(filled.fold(0, |bits, byte| bits << 8 | u64::from(byte)))
     }
 
-    /// Returns the text of raw bits, without the NULs at its end. It is `None` if the text would
-    /// not give the same bits.
+    /// Returns the text of raw bits, without what it is filled with. It is `None` if the text
+    /// would not give the same bits.
     pub fn text(&self, bits: u64) -> Option<String> {
         let bytes = bits.to_be_bytes();
-        let text = std::str::from_utf8(&bytes[8 - self.length()..]).ok()?.trim_end_matches('\0');
+        let bytes = &bytes[8 - self.length()..];
+        let TextForm::Ascii { fill } = self.form;
+        let length = bytes.iter().rposition(|byte| *byte != fill).map_or(0, |last| last + 1);
+        let text = std::str::from_utf8(&bytes[..length]).ok()?;
         (self.bits(text) == Ok(bits)).then(|| text.to_owned())
     }
 }

@@ -25,14 +25,24 @@ pub enum Encoding {
     Named(EnumerationId),
     /// Conditions, one a bit.
     Status(StatusWordId),
-    /// ASCII, the first character at the most significant byte of the place.
-    Text,
+    /// Whole bytes as a text, which begins at the most significant byte of the place.
+    Text(TextForm),
     /// One text made of several parts.
     Packed {
         /// What the text consists of, in order.
         pieces: Vec<Piece>,
         /// Bits of the payload that the pieces name.
         parts: Table<PartId, Signal>,
+    },
+}
+
+/// How bytes are written as a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TextForm {
+    /// ASCII characters, filled up with a byte.
+    Ascii {
+        /// The byte after the last character.
+        fill: u8,
     },
 }
 
@@ -68,7 +78,7 @@ impl Encoding {
     pub fn linear(&self) -> Option<Linear> {
         match *self {
             Self::Number { numeral, scale, offset } => Some(Linear { numeral, scale, offset }),
-            Self::Float | Self::Named(_) | Self::Status(_) | Self::Text | Self::Packed { .. } => None,
+            Self::Float | Self::Named(_) | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => None,
         }
     }
 
@@ -76,7 +86,7 @@ impl Encoding {
     pub fn enumeration(&self) -> Option<EnumerationId> {
         match self {
             Self::Named(id) => Some(*id),
-            Self::Number { .. } | Self::Float | Self::Status(_) | Self::Text | Self::Packed { .. } => None,
+            Self::Number { .. } | Self::Float | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => None,
         }
     }
 
@@ -84,7 +94,7 @@ impl Encoding {
     pub fn status_word(&self) -> Option<StatusWordId> {
         match self {
             Self::Status(id) => Some(*id),
-            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Text | Self::Packed { .. } => None,
+            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Text(_) | Self::Packed { .. } => None,
         }
     }
 
@@ -92,7 +102,7 @@ impl Encoding {
     pub fn packed(&self) -> Option<(&[Piece], &Table<PartId, Signal>)> {
         match self {
             Self::Packed { pieces, parts } => Some((pieces, parts)),
-            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Text => None,
+            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Text(_) => None,
         }
     }
 
@@ -105,15 +115,15 @@ impl Encoding {
     pub fn is_single(&self) -> bool {
         match self {
             Self::Float => true,
-            Self::Number { .. } | Self::Named(_) | Self::Status(_) | Self::Text | Self::Packed { .. } => false,
+            Self::Number { .. } | Self::Named(_) | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => false,
         }
     }
 
-    /// Tests whether it is ASCII.
-    pub fn is_text(&self) -> bool {
+    /// Returns how bytes are written as a text, if they are a text of their own.
+    pub fn text_form(&self) -> Option<TextForm> {
         match self {
-            Self::Text => true,
-            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Packed { .. } => false,
+            Self::Text(form) => Some(*form),
+            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Packed { .. } => None,
         }
     }
 

@@ -68,7 +68,7 @@ impl Resolver<'_> {
     /// Tests that no digit follows a number without a count of digits.
     fn check_ends(&mut self, path: &Path, pieces: &[Piece], parts: &Table<PartId, Signal>) {
         let number = |piece: &Piece| match piece {
-            Piece::Part { part, digits } if !parts[*part].encoding.is_text() => Some((*part, *digits)),
+            Piece::Part { part, digits } if parts[*part].encoding.text_form().is_none() => Some((*part, *digits)),
             Piece::Part { .. } | Piece::Literal(_) => None,
         };
         for pair in pieces.windows(2) {

@@ -95,6 +95,7 @@ impl Role {
             Key::Bytes => signal || among(WORDS) || among(PLACED),
             Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
             Key::As => among(QUANTITIES) || among(&[Self::Text, Self::PackedDecimal, Self::PackedText]),
+            Key::Fill => self == Self::Text,
             Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
             Key::Unit => among(QUANTITIES),
             Key::Range => among(QUANTITIES) || among(PACKED_NUMBERS) || among(&[Self::Address, Self::OfModel]),
@@ -150,7 +151,7 @@ impl Role {
         match site {
             Site::Message => Self::of_signal(encoding),
             Site::Header => Self::Header,
-            Site::Packed if encoding.is_text() => Self::PackedText,
+            Site::Packed if encoding.text_form().is_some() => Self::PackedText,
             Site::Packed => match encoding.numeral() {
                 Numeral::Unsigned | Numeral::Signed => Self::PackedNumber,
                 Numeral::Bcd => Self::PackedDecimal,
@@ -165,7 +166,7 @@ impl Role {
             Encoding::Float => Self::Float,
             Encoding::Named(_) => Self::Named,
             Encoding::Status(_) => Self::Status,
-            Encoding::Text => Self::Text,
+            Encoding::Text(_) => Self::Text,
             Encoding::Packed { .. } => Self::Packed,
         }
     }
@@ -177,6 +178,7 @@ fn is_of_values(key: Key) -> bool {
         Key::Bytes
         | Key::Bits
         | Key::As
+        | Key::Fill
         | Key::Scale
         | Key::Offset
         | Key::Unit

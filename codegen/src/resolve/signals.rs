@@ -9,7 +9,7 @@ use super::texts::{self, remarks};
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
-    DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, Numeral, OfModel, PartId, Signal, Table, TypeOfModel,
+    DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, Numeral, OfModel, PartId, Signal, Table, TextForm, TypeOfModel,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -392,7 +392,11 @@ impl Resolver<'_> {
             self.error_with_help(&rules::TYPE, merged.sources[0].key("as").at_value(), message, help);
             return None;
         }
-        Some(Encoding::Text)
+        let fill = match &merged.field.fill {
+            Some(text) => self.integer(&merged.path(self.diagnostics, Key::Fill), text, 0, u8::MAX)?,
+            None => 0,
+        };
+        Some(Encoding::Text(TextForm::Ascii { fill }))
     }
 
     /// Makes one text signal of several parts.

@@ -131,6 +131,18 @@ fn decimal_digits_are_a_number_unless_one_is_above_nine() {
 }
 
 #[test]
+fn a_text_ends_before_the_bytes_that_fill_it_up_and_no_other_byte_may_follow() {
+    let text = feature("text");
+    let said = |bytes: &str| notes(&text, &format!("463#{bytes}00000000"));
+    for bytes in ["41312020", "20413142", "20202020"] {
+        assert!(said(bytes).is_empty(), "{bytes}");
+    }
+    for bytes in ["41310000", "41200020", "412020FF"] {
+        assert_eq!(said(bytes), ["unknown_value"], "{bytes}");
+    }
+}
+
+#[test]
 fn an_error_code_gets_a_note() {
     assert_eq!(notes(&feature("addressing"), "0443F003#3200000000000000"), ["error_code"]);
     let registers = feature("register_table");

@@ -79,7 +79,7 @@ impl<const N: usize> Unknown for [u8; N] {
     }
 }
 
-impl<const N: usize> Unknown for Text<N> {
+impl<const N: usize, const FILL: u8> Unknown for Text<N, FILL> {
     fn unknown() -> Self {
         Self::from_bits(unknown())
     }

@@ -156,6 +156,39 @@ impl Layout for Version {
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
+/// Label of the housing: `command` 0x06. Section 2.
+/// - [`read`](READ_ACCESS): the module answers (`single`).
+/// - Request `063#0000000000000000`.
+/// - Reply `463#4131202000000000`: `family` A1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Label {
+    /// Family: bytes 0..3.
+    pub family: Text<4, 0x20>,
+}
+
+impl Label {
+    /// The signal `family`, to read or write it alone, or to ask for its limits.
+    pub const FAMILY: Signal<Text<4, 0x20>> = Signal::new("family", Place::bytes(0, 3));
+    /// The data bits that the document reserves; requests send them as 0.
+    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
+    /// The access `read`, for filters and blank frames of it.
+    pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
+
+    /// Builds the request [`read`](READ_ACCESS).
+    ///
+    /// # Errors
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
+        Self::READ.request_to(route, &())
+    }
+}
+
+impl Layout for Label {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FAMILY];
+    const DECODE: Decode<Self> = |data| Self { family: Self::FAMILY.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::FAMILY.put(message.family, payload);
+}
+
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
@@ -163,6 +196,10 @@ pub enum Message {
     ReadVersion,
     /// Version of the firmware.
     Version(Version),
+    /// The request of `label` by `read`.
+    ReadLabel,
+    /// Label of the housing.
+    Label(Label),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -196,7 +233,12 @@ impl Protocol for Message {
     #[inline(always)]
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x05).then(|| Recognised::request(&Version::READ, Self::ReadVersion))
+        let recognised = match Identifier::COMMAND.of(id) {
+            0x05 => Recognised::request(&Version::READ, Self::ReadVersion),
+            0x06 => Recognised::request(&Label::READ, Self::ReadLabel),
+            _ => return None,
+        };
+        Some(recognised)
     }
 
     #[expect(clippy::inline_always, reason = "only decoding calls it")]
@@ -204,26 +246,39 @@ impl Protocol for Message {
     fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x05)
-            .then(|| Recognised::reply(&Version::READ, Self::Version(Layout::decode(data))))
+        let recognised = match Identifier::COMMAND.of(id) {
+            0x05 => Recognised::reply(&Version::READ, Self::Version(Layout::decode(data))),
+            0x06 => Recognised::reply(&Label::READ, Self::Label(Layout::decode(data))),
+            _ => return None,
+        };
+        Some(recognised)
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x05 { &[8] } else { &[] }
+        match Identifier::COMMAND.of(id) {
+            0x05 | 0x06 => &[8],
+            _ => &[],
+        }
     }
 
     fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x05 { &[8] } else { &[] }
+        match Identifier::COMMAND.of(id) {
+            0x05 | 0x06 => &[8],
+            _ => &[],
+        }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Version(message) => task.run(message),
-            Self::ReadVersion => task.run(&()),
+            Self::Label(message) => task.run(message),
+            _ => task.run(&()),
         }
     }
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Version of the firmware", &[("command", 0x05)], &[&Version::VALUE], &[&Version::READ])];
+pub const MESSAGES: &[Entry<Message>] = &[
+    Entry::new("Version of the firmware", &[("command", 0x05)], &[&Version::VALUE], &[&Version::READ]),
+    Entry::new("Label of the housing", &[("command", 0x06)], &[&Label::FAMILY], &[&Label::READ]),
+];

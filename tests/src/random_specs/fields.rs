@@ -265,6 +265,9 @@ impl Draft {
 
     fn ascii(&mut self, field: &mut Map, count: u8) {
         field.put("as", "text");
+        if self.chance(30) {
+            field.put("fill", self.one(&["0", "0x20", "255", "0x41"]));
+        }
         if self.chance(20) {
             field.put("default", if count > 1 { "A\"" } else { "\\" });
         }

@@ -41,7 +41,7 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
             whole(vec![Signal { signed, named: values, ..plain(signal, name) }])
         }
         Encoding::Status(word) => whole(status(&protocol[*word], signal.place, name)),
-        Encoding::Text => {
+        Encoding::Text(_) => {
             Written { signals: vec![plain(signal, name)], loss: Some("is a text; it is given as a number") }
         }
         Encoding::Packed { parts, .. } => {

@@ -129,11 +129,11 @@ function values.named(signal, raw)
   return nil, "unknown_value", signal.name .. " 0x" .. digits(raw, 1) .. " has no name"
 end
 
--- Returns the text of hexadecimal digits without the NULs at its end, or nil if it is not
+-- Returns the text of hexadecimal digits without the bytes that fill it up, or nil if it is not
 -- printable.
-local function ascii(hex)
+local function ascii(hex, fill)
+  while hex:sub(-2) == (fill or "00") do hex = hex:sub(1, -3) end
   local text = hex:gsub("..", function(pair) return string.char(tonumber(pair, 16)) end)
-  text = text:gsub("\0+$", "")
   return not text:find("[^ -~]") and text or nil
 end
 
@@ -142,7 +142,7 @@ local function not_of_form(signal)
 end
 
 function values.text(signal, raw)
-  local text = ascii(digits(raw, math.floor(signal.place.width / 4)))
+  local text = ascii(digits(raw, math.floor(signal.place.width / 4)), signal.fill)
   if text then return text end
   return not_of_form(signal)
 end

@@ -4,7 +4,7 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::table::Value;
-use crate::model::{Encoding, NamedValue, Numeral, PartId, Piece, Protocol, Range, Signal, StatusBit, Table};
+use crate::model::{Encoding, NamedValue, Numeral, PartId, Piece, Protocol, Range, Signal, StatusBit, Table, TextForm};
 use crate::number::Rational;
 
 /// How a value is shown. Numbers are what has limits.
@@ -67,10 +67,18 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
             made("named", TEXT).with("names", names(values, signal.place.width()))
         }
         Encoding::Status(id) => made("status", BITS).with("bits", Value::list(&protocol[*id].bits, status_bit)),
-        Encoding::Text => made("text", TEXT),
+        Encoding::Text(form) => text(made("text", TEXT), *form),
         Encoding::Packed { pieces, parts } => {
             made("packed", TEXT).with("pieces", Value::list(pieces, |known| piece(known, parts)))
         }
+    }
+}
+
+/// Adds how bytes are written as a text.
+fn text(record: Value, form: TextForm) -> Value {
+    match form {
+        TextForm::Ascii { fill: 0 } => record,
+        TextForm::Ascii { fill } => record.with("fill", Value::text(&format!("{fill:02X}"))),
     }
 }
 
@@ -108,7 +116,7 @@ fn piece(piece: &Piece, parts: &Table<PartId, Signal>) -> Value {
     };
     written(Value::record(), part.encoding.numeral())
         .with("place", place(part.place))
-        .maybe("text", part.encoding.is_text().then(|| Value::flag(true)))
+        .maybe("text", part.encoding.text_form().map(|_| Value::flag(true)))
         .maybe("digits", digits.map(|digits| Value::Plain(digits.to_string())))
         .maybe("range", part.range.map(|known| range(part, known)))
 }

@@ -134,6 +134,9 @@ keys! {
     /// `signed` is two's complement. `bcd` has decimal digits of four bits each. `float` is IEEE
     /// 754 in 32 bits, and `text` is ASCII in whole bytes.
     As "as": format_of_number: Option<String>, inherited;
+    /// Byte that fills up a text, `0` to `255`: `0x20` for blanks; 0 if absent. It is cut off at the
+    /// end of a text that is received.
+    Fill "fill": fill: Option<String>, inherited;
     /// Size of one raw step in the field's unit, exact: `1/10` or `0.02`; 1 if absent. The physical
     /// value is raw x scale + offset. The scale of an address is 1 or -1.
     Scale "scale": scale: Option<String>, inherited;

@@ -4,9 +4,9 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::limits::Limits;
-use super::literal::{Precision, decimal};
+use super::literal::{Precision, decimal, hexadecimal};
 use crate::emit::Scaled;
-use crate::model::{Doc, Encoding, EnumerationId, Linear, Numeral, Protocol, Signal, StatusWordId, Table};
+use crate::model::{Doc, Encoding, EnumerationId, Linear, Numeral, Protocol, Signal, StatusWordId, Table, TextForm};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -56,7 +56,7 @@ impl Coding {
             Encoding::Float => Self { is_float: true, limits, ..Self::raw(raw_type(signal)) },
             Encoding::Named(known) => Self::named(&words.enumerations[*known], &protocol[*known].doc),
             Encoding::Status(known) => Self::named(&words.statuses[*known], &protocol[*known].doc),
-            Encoding::Text => Self::raw(text(signal.place.width())),
+            Encoding::Text(form) => Self::raw(text(signal.place.width(), *form)),
             Encoding::Packed { .. } => {
                 let packed = words.packed;
                 Self::raw(quote!(#packed))
@@ -175,9 +175,15 @@ impl Integer {
 }
 
 /// Returns the type of a text that takes `width` bits.
-fn text(width: u8) -> TokenStream {
+fn text(width: u8, form: TextForm) -> TokenStream {
     let bytes = Literal::u8_unsuffixed(width / 8);
-    quote!(Text<#bytes>)
+    match form {
+        TextForm::Ascii { fill: 0 } => quote!(Text<#bytes>),
+        TextForm::Ascii { fill } => {
+            let fill = hexadecimal(fill, 8);
+            quote!(Text<#bytes, #fill>)
+        }
+    }
 }
 
 /// What a part of a packed value is in Rust.
@@ -192,10 +198,9 @@ impl Part {
     /// Returns how a part looks in Rust.
     pub fn new(part: &Signal) -> Self {
         let width = part.place.width();
-        if part.encoding.is_text() {
-            Self::Text(text(width))
-        } else {
-            Self::Number(integer(width, part.encoding.numeral()))
+        match part.encoding.text_form() {
+            Some(form) => Self::Text(text(width, form)),
+            None => Self::Number(integer(width, part.encoding.numeral())),
         }
     }
 }

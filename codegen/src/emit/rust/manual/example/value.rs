@@ -22,7 +22,7 @@ pub fn literal(manual: &Manual, planned: &plan::signal::Signal, signal: &Signal,
             let known = manual.plan.enumerations.get(id.place())?;
             Some(format!("{}::{}", known.name, known.values.get(place)?.variant))
         }
-        Encoding::Status(_) | Encoding::Text | Encoding::Packed { .. } => None,
+        Encoding::Status(_) | Encoding::Text(_) | Encoding::Packed { .. } => None,
     }
 }
 
