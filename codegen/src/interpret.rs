@@ -194,11 +194,6 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Shows bytes as documents print them.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |text, byte| format!("{text}{byte:02X}"))
-}
-
 /// Shows an address field as documents print it.
 fn hexadecimal(value: u32) -> String {
     format!("0x{value:02X}")

@@ -13,6 +13,7 @@ pub mod diagnostic;
 pub mod emit;
 mod encoding;
 pub mod files;
+mod hex;
 pub mod interpret;
 mod lint;
 mod misplaced;

@@ -2,21 +2,23 @@
 
 use crate::model::{Numeral, Severity, Who};
 
-/// How a number or a text is written in bits.
+/// How a number, a text or raw bytes are written in bits.
 #[derive(Clone, Copy)]
 pub enum NumberFormat {
     Integer(Numeral),
     Float,
     Text,
+    Bytes,
 }
 
 /// What may stand after `as`.
-pub const NUMBER_FORMATS: [(&str, NumberFormat); 5] = [
+pub const NUMBER_FORMATS: [(&str, NumberFormat); 6] = [
     ("unsigned", NumberFormat::Integer(Numeral::Unsigned)),
     ("signed", NumberFormat::Integer(Numeral::Signed)),
     ("bcd", NumberFormat::Integer(Numeral::Bcd)),
     ("float", NumberFormat::Float),
     ("text", NumberFormat::Text),
+    ("bytes", NumberFormat::Bytes),
 ];
 
 /// What may stand after `absent`, and whether all ones mean that there is no value.

@@ -25,6 +25,7 @@ extern crate std;
 mod address;
 pub mod assembler;
 mod bcd;
+mod bytes;
 mod entry;
 mod error;
 mod filter;
@@ -60,6 +61,7 @@ mod word;
 
 pub use address::{AddressType, Addressing, Kind, Mode};
 pub use bcd::Bcd;
+pub use bytes::Bytes;
 pub use embedded_can;
 pub use entry::Entry;
 pub use error::Error;

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use crate::{Number, PackedText, StatusBit, status};
+use crate::{Number, PackedText, StatusBit, bytes, status};
 
-/// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text or a packed value.
+/// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text, raw bytes or a packed value.
 pub trait Raw: Copy + 'static {
     /// Whether the bits are a number in two's complement.
     const SIGNED: bool = false;
@@ -91,6 +91,8 @@ pub enum Meaning<'a> {
     Name(&'a str),
     /// A text.
     Text(&'a str),
+    /// Raw bytes.
+    Bytes(&'a [u8]),
     /// The text of a packed value.
     Packed(PackedText),
     /// The bits of a status word, and all its named bits, set or not.
@@ -105,6 +107,7 @@ impl fmt::Display for Meaning<'_> {
         match self {
             Self::Number(number) => number.fmt(formatter),
             Self::Name(text) | Self::Text(text) => formatter.write_str(text),
+            Self::Bytes(bytes) => bytes::write(bytes, formatter),
             Self::Packed(text) => text.fmt(formatter),
             Self::Status(bits, known) => write_status(*bits, known, formatter),
             Self::None => formatter.write_str("?"),
@@ -206,6 +209,7 @@ fn whole(meaning: Meaning<'_>) -> Option<i128> {
         Meaning::Number(_)
         | Meaning::Name(_)
         | Meaning::Text(_)
+        | Meaning::Bytes(_)
         | Meaning::Packed(_)
         | Meaning::Status(..)
         | Meaning::None => None,

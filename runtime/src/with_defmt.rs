@@ -3,7 +3,7 @@
 use defmt::{Display2Format, Format, Formatter, write};
 
 use crate::plumbing::{Integer, Raw, Word};
-use crate::{Bcd, Frame, Meaning, StatusBit, Text, status};
+use crate::{Bcd, Bytes, Frame, Meaning, StatusBit, Text, status};
 
 /// Writes a named value by its name, a status word by the names of its set bits, and a packed value
 /// by its text.
@@ -14,7 +14,9 @@ pub fn format<W: Word>(word: W, formatter: Formatter<'_>) {
         Meaning::Name(name) => write!(formatter, "{=str}", name),
         Meaning::Packed(text) => write!(formatter, "{}", Display2Format(&text)),
         Meaning::Status(raw, bits) => set_bits(raw, bits, formatter),
-        Meaning::Number(_) | Meaning::Text(_) | Meaning::None => write!(formatter, "{=u64:#X}", word.to_bits()),
+        Meaning::Number(_) | Meaning::Text(_) | Meaning::Bytes(_) | Meaning::None => {
+            write!(formatter, "{=u64:#X}", word.to_bits())
+        }
     }
 }
 
@@ -38,6 +40,14 @@ impl<const N: usize, const FILL: u8> Format for Text<N, FILL> {
             write!(formatter, "{=str}", text);
         } else {
             write!(formatter, "{=[u8]:#04X}", self.as_bytes().as_slice());
+        }
+    }
+}
+
+impl<const N: usize> Format for Bytes<N> {
+    fn format(&self, formatter: Formatter<'_>) {
+        for byte in self.as_bytes() {
+            write!(formatter, "{=u8:02X}", *byte);
         }
     }
 }

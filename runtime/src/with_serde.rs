@@ -8,6 +8,7 @@
 //! | status word | `{"set": NAMES, "unknown": MASK}`: the set bits that have a name, and those that have none |
 //! | packed value | its text, or its raw number if that text would not give the same value |
 //! | [`Text`](crate::Text) | the text, or its bytes if they are no printable ASCII |
+//! | [`Bytes`](crate::Bytes) | two hexadecimal digits a byte, such as `"0A1B2C"` |
 //! | [`Bcd`](crate::Bcd) | the number, or its bits such as `"0x2A"` if a digit is above 9 |
 //! | `f32` of the frame | the number, or its bits such as `"0x7FC00000"` if it is not finite |
 //! | [`Frame`](crate::Frame) | as in a log: `"029C03F0#000B71B000003A98"` |
@@ -15,6 +16,7 @@
 //! A format for people must be self-describing, as JSON is.
 
 mod bcd;
+mod bytes;
 pub mod float;
 mod frame;
 pub mod optional_float;
@@ -51,6 +53,7 @@ pub fn serialize<W: Word, S: Serializer>(word: W, serializer: S) -> Result<S::Ok
         Meaning::Number(_)
         | Meaning::Name(_)
         | Meaning::Text(_)
+        | Meaning::Bytes(_)
         | Meaning::Packed(_)
         | Meaning::Status(..)
         | Meaning::None => serializer.serialize_u64(word.to_bits()),

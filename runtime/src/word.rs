@@ -114,7 +114,7 @@ impl<W: Word> Raw for W {
             Meaning::Name(name) => W::named(name),
             Meaning::Text(text) => packed::parse(text),
             Meaning::Status(raw, _) => Some(W::from_bits(raw)),
-            Meaning::Number(_) | Meaning::Packed(_) | Meaning::None => None,
+            Meaning::Number(_) | Meaning::Bytes(_) | Meaning::Packed(_) | Meaning::None => None,
         }
     }
 }

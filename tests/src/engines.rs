@@ -103,6 +103,7 @@ fn shown(reading: &Reading) -> (String, Option<String>, u64, String) {
         Meaning::Number(number) => number.to_string(),
         Meaning::Name(name) | Meaning::Text(name) => name.to_owned(),
         Meaning::Packed(text) => text.to_string(),
+        Meaning::Bytes(_) => reading.meaning.to_string(),
         Meaning::Status(..) => "status".to_owned(),
         _ => "none".to_owned(),
     };

@@ -7,7 +7,7 @@ use canspec_codegen::interpret;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
 use canspec_runtime::plumbing::Raw;
-use canspec_runtime::{Bcd, Frame, Layout, Payload, Protocol, Text};
+use canspec_runtime::{Bcd, Bytes, Frame, Layout, Payload, Protocol, Text};
 use canspec_tests::features_status_word_switched::State;
 use canspec_tests::{Frames, Optional, SwitchedVisitor, models, protocol, received, visit_switched};
 use serde::de::DeserializeOwned;
@@ -191,6 +191,15 @@ fn a_text_is_a_text_or_its_bytes() {
     assert_eq!(texts.map(|text| both_ways(&text)), texts.map(|text| [text; 2]));
     assert!(refused::<Text<4>>(json!("ABCDE")).ends_with("expected at most 4 printable ASCII characters, or 4 bytes"));
     refused::<Text<4>>(json!([1, 2, 3]));
+}
+
+#[test]
+fn raw_bytes_are_their_hexadecimal_digits() {
+    let code = Bytes::new([0x0A, 0xFF]);
+    assert_eq!(shown(code), json!("0AFF"));
+    assert_eq!(both_ways(&code), [code; 2]);
+    assert!(refused::<Bytes<2>>(json!("0AF")).ends_with("expected two hexadecimal digits for each of 2 bytes"));
+    refused::<Bytes<2>>(json!([10, 255]));
 }
 
 #[test]

@@ -13,9 +13,8 @@ use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
-use crate::interpret::{
-    Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, hex, physical,
-};
+use crate::hex;
+use crate::interpret::{Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, physical};
 use crate::model::{
     Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, SignalId, ValueExample,
 };
@@ -281,8 +280,11 @@ impl<'a> Checker<'a> {
         match encode(self.protocol, self.example.model, &content) {
             Ok(encoded) if encoded == frame => Ok(()),
             Ok(encoded) => {
-                let text =
-                    format!("it encodes back to other bytes: {} instead of {}", hex(&encoded.data), hex(&frame.data));
+                let text = format!(
+                    "it encodes back to other bytes: {} instead of {}",
+                    hex::digits(&encoded.data),
+                    hex::digits(&frame.data)
+                );
                 Err(wrong(self.frame_at(), text))
             }
             Err(_) if decoded.kind == Kind::Request && !self.example.notes.is_empty() => Ok(()),

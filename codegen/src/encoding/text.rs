@@ -1,6 +1,7 @@
-//! ASCII in whole bytes, filled up with NUL or another byte.
+//! Whole bytes as a text: ASCII that is filled up with NUL or another byte, or hexadecimal digits.
 
 use super::{Allowed, Input, Room, Value, bits};
+use crate::hex;
 use crate::model::{Misfit, NoteRule, Signal, TextForm};
 
 pub struct Text<'a> {
@@ -30,9 +31,12 @@ impl Room for Text<'_> {
     }
 
     fn description(&self) -> Vec<String> {
-        let TextForm::Ascii { fill } = self.form;
-        let filled = if fill == 0 { String::new() } else { format!(", filled with {fill:#04X}") };
-        vec![format!("text of {} characters{filled}", self.length())]
+        let length = self.length();
+        match self.form {
+            TextForm::Ascii { fill: 0 } => vec![format!("text of {length} characters")],
+            TextForm::Ascii { fill } => vec![format!("text of {length} characters, filled with {fill:#04X}")],
+            TextForm::Hexadecimal => vec![format!("{length} bytes in hexadecimal")],
+        }
     }
 }
 
@@ -59,25 +63,38 @@ impl<'a> Text<'a> {
     ///
     /// Says how long the text may be.
     pub fn bits(&self, text: &str) -> Result<u64, String> {
-        let bytes = self.length();
-        let printable = text.bytes().all(|byte| byte == b' ' || byte.is_ascii_graphic());
-        if !printable || text.len() > bytes {
-            let name = &self.signal.name;
-            return Err(format!("`{text}` is not a text of at most {bytes} printable ASCII characters for `{name}`"));
-        }
-        let TextForm::Ascii { fill } = self.form;
-        let filled = text.bytes().chain(std::iter::repeat_n(fill, bytes - text.len()));
-        Ok(filled.fold(0, |bits, byte| bits << 8 | u64::from(byte)))
+        let (count, name) = (self.length(), &self.signal.name);
+        let bytes = match self.form {
+            TextForm::Ascii { fill } => filled(text, count, fill).ok_or_else(|| {
+                format!("`{text}` is not a text of at most {count} printable ASCII characters for `{name}`")
+            }),
+            TextForm::Hexadecimal => hex::bytes(text)
+                .filter(|bytes| bytes.len() == count)
+                .ok_or_else(|| format!("`{text}` is not {count} bytes of two hexadecimal digits each for `{name}`")),
+        };
+        Ok(bytes?.into_iter().fold(0, |bits, byte| bits << 8 | u64::from(byte)))
     }
 
-    /// Returns the text of raw bits, without what it is filled with. It is `None` if the text
-    /// would not give the same bits.
+    /// Returns the text of raw bits. It is `None` if the text would not give the same bits.
     pub fn text(&self, bits: u64) -> Option<String> {
-        let bytes = bits.to_be_bytes();
-        let bytes = &bytes[8 - self.length()..];
-        let TextForm::Ascii { fill } = self.form;
-        let length = bytes.iter().rposition(|byte| *byte != fill).map_or(0, |last| last + 1);
-        let text = std::str::from_utf8(&bytes[..length]).ok()?;
-        (self.bits(text) == Ok(bits)).then(|| text.to_owned())
+        let bytes = &bits.to_be_bytes()[8 - self.length()..];
+        match self.form {
+            TextForm::Ascii { fill } => {
+                let length = bytes.iter().rposition(|byte| *byte != fill).map_or(0, |last| last + 1);
+                let text = std::str::from_utf8(&bytes[..length]).ok()?;
+                text.bytes().all(is_printable).then(|| text.to_owned())
+            }
+            TextForm::Hexadecimal => Some(hex::digits(bytes)),
+        }
     }
+}
+
+/// Returns the bytes of a text of printable characters, filled up to `count`.
+fn filled(text: &str, count: usize, fill: u8) -> Option<Vec<u8>> {
+    let missing = count.checked_sub(text.len()).filter(|_| text.bytes().all(is_printable))?;
+    Some(text.bytes().chain(std::iter::repeat_n(fill, missing)).collect())
+}
+
+fn is_printable(byte: u8) -> bool {
+    matches!(byte, b' '..=b'~')
 }

@@ -4,8 +4,9 @@ use std::cmp::Reverse;
 use std::fmt::Display;
 
 use super::value::physical;
-use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hex, hexadecimal};
+use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hexadecimal};
 use crate::encoding::Words;
+use crate::hex;
 use crate::model::{
     AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Kind, Message, ModelId,
     NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who, first_bytes,
@@ -408,7 +409,7 @@ impl<'a> Decoder<'a> {
         let present = first_bytes(u8::try_from(self.frame.data.len()).unwrap_or(8));
         let odd = u64::from_be_bytes(reserved) ^ frame.filled() & present;
         let found = if frame.reserved.are_ones { "clear" } else { "set" };
-        let bits = hex(&odd.to_be_bytes()[..self.frame.data.len()]);
+        let bits = hex::digits(&odd.to_be_bytes()[..self.frame.data.len()]);
         let text = format!("bits are {found} that no field has: 0x{bits}");
         (odd != 0 && !frame.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
     }

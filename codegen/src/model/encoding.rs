@@ -44,6 +44,8 @@ pub enum TextForm {
         /// The byte after the last character.
         fill: u8,
     },
+    /// Two hexadecimal digits a byte.
+    Hexadecimal,
 }
 
 /// Turns an integer into a number: physical = integer * scale + offset.

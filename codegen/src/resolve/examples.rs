@@ -6,6 +6,7 @@ use indexmap::IndexSet;
 use super::Resolver;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
+use crate::hex;
 use crate::model::{
     Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Signal, SignalId,
     StatusBit, Table, ValueExample,
@@ -162,7 +163,7 @@ impl Resolver<'_> {
         let extended = id.len() == 8;
         let number = (extended || id.len() == 3).then(|| u32::from_str_radix(id, 16).ok()).flatten();
         let number = number.filter(|number| *number <= if extended { 0x1FFF_FFFF } else { 0x7FF });
-        let bytes = data.map(|data| hex_bytes(data).filter(|bytes| bytes.len() <= 8));
+        let bytes = data.map(|data| hex::bytes(data).filter(|bytes| bytes.len() <= 8));
         if number.is_none() && matches!(id.len(), 8 | 3) && u32::from_str_radix(id, 16).is_ok() {
             let (bits, digits) = if extended { (29, "0 or 1") } else { (11, "0 to 7") };
             let message = format!("the identifier `{id}` has more than {bits} bits");
@@ -288,7 +289,7 @@ impl Resolver<'_> {
         example: &ast::ValueExample,
         outer: &Doc,
     ) -> Option<ValueExample> {
-        let bytes = hex_bytes(&example.bytes).filter(|bytes| (1..=8).contains(&bytes.len()));
+        let bytes = hex::bytes(&example.bytes).filter(|bytes| (1..=8).contains(&bytes.len()));
         let Some(bytes) = bytes else {
             let message = format!("`{}` is not 1 to 8 bytes", example.bytes);
             let help = "write two hexadecimal digits for each byte, without spaces";
@@ -339,11 +340,4 @@ fn status_bit(signal: &Signal, bits: &[StatusBit], name: &str) -> Result<u8, Mis
         }
         None => Ok(number),
     }
-}
-
-/// Reads pairs of hexadecimal digits.
-fn hex_bytes(text: &str) -> Option<Vec<u8>> {
-    let even = text.len().is_multiple_of(2) && text.bytes().all(|digit| digit.is_ascii_hexdigit());
-    let pairs = (0..text.len()).step_by(2).map(|at| u8::from_str_radix(text.get(at..at + 2)?, 16).ok());
-    even.then(|| pairs.collect()).flatten()
 }

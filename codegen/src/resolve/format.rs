@@ -4,7 +4,7 @@ use canspec_runtime::Place;
 
 use super::{Resolver, rules};
 use crate::diagnostic::Diagnostic;
-use crate::model::{PartId, Piece, Signal, Table};
+use crate::model::{PartId, Piece, Signal, Table, TextForm};
 use crate::syntax::tree::Path;
 
 impl Resolver<'_> {
@@ -12,6 +12,7 @@ impl Resolver<'_> {
     pub fn format(&mut self, path: &Path, format: &str, parts: &Table<PartId, Signal>) -> Option<(Vec<Piece>, Place)> {
         let pieces = self.pieces(path, format, parts)?;
         self.check_pieces(path, &pieces, parts);
+        self.check_no_bytes(parts)?;
         self.check_ends(path, &pieces, parts);
         Some((pieces, self.packed_place(path, parts)?))
     }
@@ -63,6 +64,18 @@ impl Resolver<'_> {
                 self.error_with_help(&rules::FORMAT, path.at_value(), message, help);
             }
         }
+    }
+
+    /// Tests that no part is raw bytes.
+    fn check_no_bytes(&mut self, parts: &[Signal]) -> Option<()> {
+        let part = parts.iter().find(|part| part.encoding.text_form() == Some(TextForm::Hexadecimal));
+        part.map_or(Some(()), |part| {
+            let name = &part.name;
+            let text = format!("a packed value shows characters and decimal numbers, but `{name}` is raw bytes");
+            let help = format!("give `{name}` another `as`, or make it a field of its own");
+            self.error_with_help(&rules::TYPE, part.doc.path.at_key(), text, help);
+            None
+        })
     }
 
     /// Tests that no digit follows a number without a count of digits.

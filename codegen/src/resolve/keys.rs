@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Encoding, Numeral};
+use crate::model::{Encoding, Numeral, TextForm};
 use crate::resolve::rules;
 use crate::syntax::ast::{Field, Key};
 use crate::syntax::tree::{Node, Path};
@@ -33,6 +33,7 @@ pub enum Role {
     Named,
     Status,
     Text,
+    Bytes,
     Packed,
     PackedWord,
     PackedNumber,
@@ -44,7 +45,7 @@ pub enum Role {
 const QUANTITIES: &[Role] = &[Role::Number, Role::Decimal, Role::Float];
 
 /// Signals that have no parts.
-const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text]];
+const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text, Role::Bytes]];
 
 /// Numbers in a packed value.
 const PACKED_NUMBERS: &[Role] = &[Role::PackedNumber, Role::PackedDecimal];
@@ -76,6 +77,7 @@ impl Role {
             Self::Named => "a signal of named values",
             Self::Status => "a status word",
             Self::Text => "a text",
+            Self::Bytes => "a field of raw bytes",
             Self::Packed => "a packed value",
             Self::PackedWord => "a word of a packed value",
             Self::PackedNumber => "a number of a packed value",
@@ -94,7 +96,7 @@ impl Role {
             Key::Type => !among(&[Self::Address, Self::OfModel]),
             Key::Bytes => signal || among(WORDS) || among(PLACED),
             Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
-            Key::As => among(QUANTITIES) || among(&[Self::Text, Self::PackedDecimal, Self::PackedText]),
+            Key::As => among(QUANTITIES) || among(&[Self::Text, Self::Bytes, Self::PackedDecimal, Self::PackedText]),
             Key::Fill => self == Self::Text,
             Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
             Key::Unit => among(QUANTITIES),
@@ -109,7 +111,7 @@ impl Role {
             Key::Const => among(&[Self::IdentifierConstant, Self::Constant]),
             Key::Send => among(&[Self::Identifier, Self::Address]),
             Key::Normal | Key::Continues => among(&[Self::Identifier, Self::Header]),
-            Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::OfModel]),
+            Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::Bytes, Self::OfModel]),
             Key::Outside | Key::Examples => self == Self::Address,
             Key::Reply => signal || among(&[Self::Word, Self::Packed]),
             Key::In => signal || among(&[Self::Constant, Self::Packed]),
@@ -166,7 +168,8 @@ impl Role {
             Encoding::Float => Self::Float,
             Encoding::Named(_) => Self::Named,
             Encoding::Status(_) => Self::Status,
-            Encoding::Text(_) => Self::Text,
+            Encoding::Text(TextForm::Ascii { .. }) => Self::Text,
+            Encoding::Text(TextForm::Hexadecimal) => Self::Bytes,
             Encoding::Packed { .. } => Self::Packed,
         }
     }

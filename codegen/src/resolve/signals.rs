@@ -338,6 +338,7 @@ impl Resolver<'_> {
             NumberFormat::Integer(numeral @ (Numeral::Unsigned | Numeral::Signed)) => numeral,
             NumberFormat::Float => return self.float(name, merged, place),
             NumberFormat::Text => return self.text(name, merged, place),
+            NumberFormat::Bytes => return self.hexadecimal(name, merged, place),
         };
         let number = field.scale.is_some() || field.offset.is_some() || field.unit.is_some() || field.range.is_some();
         if !field.values.is_empty() && !number {
@@ -386,17 +387,29 @@ impl Resolver<'_> {
     }
 
     fn text(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
-        if !place.width().is_multiple_of(8) {
-            let message = format!("a text has whole bytes, the place of `{name}` has {} bits", place.width());
-            let help = "give the field whole bytes, or take `as: text` out";
-            self.error_with_help(&rules::TYPE, merged.sources[0].key("as").at_value(), message, help);
-            return None;
-        }
+        self.whole_bytes(name, merged, place, "a text has")?;
         let fill = match &merged.field.fill {
             Some(text) => self.integer(&merged.path(self.diagnostics, Key::Fill), text, 0, u8::MAX)?,
             None => 0,
         };
         Some(Encoding::Text(TextForm::Ascii { fill }))
+    }
+
+    fn hexadecimal(&mut self, name: &str, merged: &Merged, place: Place) -> Option<Encoding> {
+        self.whole_bytes(name, merged, place, "raw bytes are")?;
+        Some(Encoding::Text(TextForm::Hexadecimal))
+    }
+
+    /// Tests that a text has a place of whole bytes.
+    fn whole_bytes(&mut self, name: &str, merged: &Merged, place: Place, subject: &str) -> Option<()> {
+        if !place.width().is_multiple_of(8) {
+            let message = format!("{subject} whole bytes, the place of `{name}` has {} bits", place.width());
+            let format = merged.field.format_of_number.as_deref().unwrap_or_default();
+            let help = format!("give the field whole bytes, or take `as: {format}` out");
+            self.error_with_help(&rules::TYPE, merged.sources[0].key("as").at_value(), message, help);
+            return None;
+        }
+        Some(())
     }
 
     /// Makes one text signal of several parts.

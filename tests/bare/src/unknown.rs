@@ -1,7 +1,7 @@
 //! Values that the compiler cannot foresee.
 
 use canspec_runtime::plumbing::{Raw, Who};
-use canspec_runtime::{Bcd, Destination, Frame, Meaning, Number, Payload, Route, Text};
+use canspec_runtime::{Bcd, Bytes, Destination, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
 pub trait Unknown: Sized {
@@ -85,6 +85,12 @@ impl<const N: usize, const FILL: u8> Unknown for Text<N, FILL> {
     }
 }
 
+impl<const N: usize> Unknown for Bytes<N> {
+    fn unknown() -> Self {
+        Raw::from_bits(unknown())
+    }
+}
+
 impl<R: Unknown> Unknown for Bcd<R> {
     fn unknown() -> Self {
         Self::from_raw(unknown())
@@ -133,6 +139,7 @@ impl Unknown for Meaning<'_> {
             1 => Self::Name(unknown()),
             2 => Self::Text(unknown()),
             3 => Self::Status(unknown(), &[]),
+            4 => Self::Bytes(&[]),
             _ => Self::None,
         }
     }

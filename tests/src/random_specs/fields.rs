@@ -264,6 +264,9 @@ impl Draft {
     }
 
     fn ascii(&mut self, field: &mut Map, count: u8) {
+        if self.chance(30) {
+            return field.put("as", "bytes");
+        }
         field.put("as", "text");
         if self.chance(30) {
             field.put("fill", self.one(&["0", "0x20", "255", "0x41"]));

@@ -6,6 +6,7 @@ use super::file::Signal;
 use super::text::{remarks, unit};
 use crate::model::{
     Encoding, NamedValue, Numeral, Protocol, Range, Selector, Severity, Signal as Meaning, StatusBit, StatusWord,
+    TextForm,
 };
 use crate::number::Rational;
 
@@ -41,8 +42,12 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
             whole(vec![Signal { signed, named: values, ..plain(signal, name) }])
         }
         Encoding::Status(word) => whole(status(&protocol[*word], signal.place, name)),
-        Encoding::Text(_) => {
-            Written { signals: vec![plain(signal, name)], loss: Some("is a text; it is given as a number") }
+        Encoding::Text(form) => {
+            let loss = match form {
+                TextForm::Ascii { .. } => "is a text; it is given as a number",
+                TextForm::Hexadecimal => "is raw bytes; they are given as a number",
+            };
+            Written { signals: vec![plain(signal, name)], loss: Some(loss) }
         }
         Encoding::Packed { parts, .. } => {
             let signals = parts.iter().flat_map(|part| signals(protocol, part, &format!("{name}_{}", part.name)));

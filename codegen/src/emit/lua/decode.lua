@@ -147,6 +147,10 @@ function values.text(signal, raw)
   return not_of_form(signal)
 end
 
+function values.bytes(signal, raw)
+  return digits(raw, math.floor(signal.place.width / 4))
+end
+
 -- Returns the text of a part of a packed value, if that text gives the same bits again.
 local function piece_text(frame, piece)
   local raw, width = get(frame, piece.place), piece.place.width

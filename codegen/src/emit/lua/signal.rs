@@ -67,18 +67,14 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
             made("named", TEXT).with("names", names(values, signal.place.width()))
         }
         Encoding::Status(id) => made("status", BITS).with("bits", Value::list(&protocol[*id].bits, status_bit)),
-        Encoding::Text(form) => text(made("text", TEXT), *form),
+        Encoding::Text(TextForm::Hexadecimal) => made("bytes", TEXT),
+        Encoding::Text(TextForm::Ascii { fill: 0 }) => made("text", TEXT),
+        Encoding::Text(TextForm::Ascii { fill }) => {
+            made("text", TEXT).with("fill", Value::text(&format!("{fill:02X}")))
+        }
         Encoding::Packed { pieces, parts } => {
             made("packed", TEXT).with("pieces", Value::list(pieces, |known| piece(known, parts)))
         }
-    }
-}
-
-/// Adds how bytes are written as a text.
-fn text(record: Value, form: TextForm) -> Value {
-    match form {
-        TextForm::Ascii { fill: 0 } => record,
-        TextForm::Ascii { fill } => record.with("fill", Value::text(&format!("{fill:02X}"))),
     }
 }
 

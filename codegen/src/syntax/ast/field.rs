@@ -130,9 +130,9 @@ keys! {
     /// Entry of `types`, or a list of them: `real` or `[real, volts]`; none if absent. The field
     /// takes from them the keys that it does not have itself. In a list the last one wins.
     Type "type": types: Names, own;
-    /// Number format: `unsigned`, `signed`, `bcd`, `float` or `text`; `unsigned` if absent.
+    /// Number format: `unsigned`, `signed`, `bcd`, `float`, `text` or `bytes`; `unsigned` if absent.
     /// `signed` is two's complement. `bcd` has decimal digits of four bits each. `float` is IEEE
-    /// 754 in 32 bits, and `text` is ASCII in whole bytes.
+    /// 754 in 32 bits, `text` is ASCII in whole bytes, and `bytes` are raw ones in hexadecimal.
     As "as": format_of_number: Option<String>, inherited;
     /// Byte that fills up a text, `0` to `255`: `0x20` for blanks; 0 if absent. It is cut off at the
     /// end of a text that is received.

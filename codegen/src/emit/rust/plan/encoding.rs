@@ -183,6 +183,7 @@ fn text(width: u8, form: TextForm) -> TokenStream {
             let fill = hexadecimal(fill, 8);
             quote!(Text<#bytes, #fill>)
         }
+        TextForm::Hexadecimal => quote!(Bytes<#bytes>),
     }
 }
 

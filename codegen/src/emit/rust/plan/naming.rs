@@ -9,13 +9,14 @@ use crate::emit::Scaled;
 use crate::model::Signal;
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 77] = [
+const TAKEN: [&str; 78] = [
     "Address",
     "AddressType",
     "Addressing",
     "AnySignal",
     "Bcd",
     "Bits",
+    "Bytes",
     "Clone",
     "Continuation",
     "Copy",

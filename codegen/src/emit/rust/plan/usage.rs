@@ -2,7 +2,7 @@
 
 use super::doc;
 use super::exchange::{Accesses, membership};
-use crate::interpret::hex;
+use crate::hex;
 use crate::model::{Constant, Example, Exchange, ExchangeId, Kind, Meaning, Message, MessageId, Protocol, Timing, Who};
 use crate::text::Text;
 
@@ -44,7 +44,7 @@ pub fn printed(protocol: &Protocol, id: MessageId, kind: Kind) -> Option<&Exampl
 /// Writes a frame as documents print it.
 pub fn frame(example: &Example) -> String {
     let digits = if example.extended { 8 } else { 3 };
-    format!("{:0digits$X}#{}", example.id, hex(example.data.as_deref().unwrap_or_default()))
+    format!("{:0digits$X}#{}", example.id, hex::digits(example.data.as_deref().unwrap_or_default()))
 }
 
 /// Shows a frame of the document and what it means.
