@@ -99,8 +99,9 @@ def differences(protocol, frame):
         return ["no message of the DBC has this identifier"]
     data = bytes.fromhex(frame["data"])
     try:
-        raw = message.decode(data, decode_choices=False, scaling=False)
-        values = message.decode(data)
+        is_short = len(data) < message.length
+        raw = message.decode(data, decode_choices=False, scaling=False, allow_truncated=is_short)
+        values = message.decode(data, allow_truncated=is_short)
     except (cantools.database.DecodeError, ValueError) as error:
         return [f"{message.name}: {error}"]
     found, seen = [], set()
@@ -167,6 +168,8 @@ def set_values(protocol, frame, chance):
     if message is None or differences(protocol, frame):
         return None, False
     data = bytes.fromhex(frame["data"])
+    if len(data) < message.length:
+        return None, False
     values = message.decode(data, decode_choices=False)
     values.update({name: 0 for name in values if name.endswith("_reserved")})
     halfway = False

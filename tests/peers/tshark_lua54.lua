@@ -28,6 +28,7 @@ end
 function Word:rshift(count) return word(self.value >> math.tointeger(count)) end
 function Word:lshift(count) return word(self.value << math.tointeger(count)) end
 function Word:band(other) return word(self.value & (type(other) == "number" and math.tointeger(other) or other.value)) end
+function Word:bxor(other) return word(self.value ~ other.value) end
 function Word:bor(other) return word(self.value | other.value) end
 function Word:lower() return self.value & 0xFFFFFFFF end
 function Word:higher() return self.value >> 32 end

@@ -32,7 +32,8 @@ pub mod oven {
 
 pub mod ovens;
 
-use winch::{Error, Message, Request, Run, Target, embedded_can};
+use canspec_runtime::Layout;
+use winch::{Error, Message, Reply, Request, Run, Target, embedded_can};
 
 /// Lets a winch pull its rope in.
 ///
@@ -41,6 +42,16 @@ use winch::{Error, Message, Request, Run, Target, embedded_can};
 /// The winch or the speed is out of range.
 pub fn pull(winch: u8, speed_rpm: i16) -> Result<Request<Run>, Error> {
     Run { speed_rpm, ramp_s: 2.5 }.set(Target::Winch(winch))
+}
+
+/// Sends a request, and takes the first frame that answers it out of the next `patience` frames.
+pub fn ask<C, R>(can: &mut C, request: &Request<R>, patience: usize) -> Option<Reply<R>>
+where
+    C: embedded_can::blocking::Can,
+    R: Layout,
+{
+    can.transmit(&request.frame().to()?).ok()?;
+    (0..patience).find_map(|_| request.reply(&can.receive().ok()?))
 }
 
 /// Returns how much rope is out, if a frame of the bus says so.

@@ -1,8 +1,10 @@
 //! The frames that the manual of the winches prints.
 
-use winch_driver::winch::embedded_can::{ExtendedId, Frame as _};
+use std::collections::VecDeque;
+
+use winch_driver::winch::embedded_can::{self, ExtendedId, Frame as _, blocking};
 use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, Target};
-use winch_driver::{pull, rope_m};
+use winch_driver::{ask, pull, rope_m};
 
 #[test]
 fn a_request_is_the_printed_frame() {
@@ -23,6 +25,38 @@ fn a_reply_has_the_printed_values() {
     assert!(!status.state.contains(State::SLACK_ROPE));
     let names = status.state.set_bits().map(|bit| bit.name);
     assert!(names.eq(["braked", "overload"]));
+}
+
+/// A bus that hands out frames, and keeps what is sent.
+struct Bus {
+    sent: Vec<Frame>,
+    waiting: VecDeque<Frame>,
+}
+
+impl blocking::Can for Bus {
+    type Frame = Frame;
+    type Error = embedded_can::ErrorKind;
+
+    fn transmit(&mut self, frame: &Frame) -> Result<(), Self::Error> {
+        self.sent.push(*frame);
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<Frame, Self::Error> {
+        self.waiting.pop_front().ok_or(embedded_can::ErrorKind::Other)
+    }
+}
+
+#[test]
+fn the_frame_that_answers_is_taken_out_of_others() {
+    let answer = frame(0x0B21_0112, [0x04, 0xD2, 0x41, 0x81]);
+    let bus = || Bus { sent: vec![], waiting: [frame(0x0B21_0113, [0; 4]), answer].into() };
+    let request = Status::read(Target::Winch(0x12)).expect("the winch is in range");
+    let mut can = bus();
+    let reply = ask(&mut can, &request, 2).expect("the second frame answers");
+    assert_eq!(reply.values.map(|status| status.rope_m), Ok(12.34));
+    assert_eq!(can.sent, [*request.frame()]);
+    assert!(ask(&mut bus(), &request, 1).is_none());
 }
 
 #[test]

@@ -159,18 +159,22 @@ impl Layout for Version {
 /// Label of the housing: `command` 0x06. Section 2.
 /// - [`read`](READ_ACCESS): the module answers (`single`).
 /// - Request `063#0000000000000000`.
-/// - Reply `463#4131202000000000`: `family` A1.
+/// - Reply `463#4131202032ADFB00`: `family` A1, `code` FBAD32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Label {
     /// Family: bytes 0..3.
     pub family: Text<4, 0x20>,
+    /// Code: bytes 6..4.
+    pub code: Bytes<3>,
 }
 
 impl Label {
     /// The signal `family`, to read or write it alone, or to ask for its limits.
     pub const FAMILY: Signal<Text<4, 0x20>> = Signal::new("family", Place::bytes(0, 3));
-    /// The data bits that the document reserves; requests send them as 0.
-    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
+    /// The signal `code`, to read or write it alone, or to ask for its limits.
+    pub const CODE: Signal<Bytes<3>> = Signal::new("code", Place::bytes(6, 4));
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
+    pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
 
@@ -184,9 +188,12 @@ impl Label {
 }
 
 impl Layout for Label {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FAMILY];
-    const DECODE: Decode<Self> = |data| Self { family: Self::FAMILY.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::FAMILY.put(message.family, payload);
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FAMILY, &Self::CODE];
+    const DECODE: Decode<Self> = |data| Self { family: Self::FAMILY.get(data), code: Self::CODE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| {
+        Self::FAMILY.put(message.family, payload)?;
+        Self::CODE.put(message.code, payload)
+    };
 }
 
 /// Every message that a frame can carry.
@@ -280,5 +287,5 @@ impl Protocol for Message {
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::new("Version of the firmware", &[("command", 0x05)], &[&Version::VALUE], &[&Version::READ]),
-    Entry::new("Label of the housing", &[("command", 0x06)], &[&Label::FAMILY], &[&Label::READ]),
+    Entry::new("Label of the housing", &[("command", 0x06)], &[&Label::FAMILY, &Label::CODE], &[&Label::READ]),
 ];

@@ -137,7 +137,7 @@ impl SetLimit {
         Signal::new("cold", Place::byte(3)).unit("°C").scale(1, 4).limits(-40, 40).specials(&[(-128, "unknown")]);
     /// The value of `cold` that stands for `unknown`.
     pub const COLD_UNKNOWN: i8 = -128;
-    /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_limit", FRAME.id(Identifier::COMMAND, 0x003));
@@ -179,7 +179,7 @@ pub struct SetTotal {
 impl SetTotal {
     /// The signal `total`, to read or write it alone, or to ask for its limits.
     pub const TOTAL: Signal<u64> = Signal::new("total", Place::bytes(0, 7)).limits(1, 9_007_199_254_740_995);
-    /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_total", FRAME.id(Identifier::COMMAND, 0x004));

@@ -169,7 +169,7 @@ impl SetOutput {
     pub const DELAY_FORBID: u8 = 0;
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<i16> = Signal::new("power", Place::bytes(4, 5)).unit("W").scale(10, 1);
-    /// The data bits that the document reserves: requests send them as 0, and decoding ignores them.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF];
     /// The access `write`, for filters and blank frames of it.
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x0012));

@@ -39,10 +39,11 @@ pub fn shown(manual: &Manual, signal: &Signal, value: &Value) -> Option<String> 
         Value::Integer(value) => Some(format!("{value}{unit}")),
         Value::Number(value) => Some(format!("{}{unit}", number(*value, manual.scaled, signal))),
         Value::Name(text) | Value::Text(text) => Some(text.clone()),
-        Value::Status { set, .. } => {
+        Value::Status { set, unknown } => {
             let word = &manual.protocol[signal.encoding.status_word()?];
-            let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.as_str());
-            Some(format!("{{{}}}", names.collect::<Vec<_>>().join(", ")))
+            let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.clone());
+            let unknown = (*unknown != 0).then(|| format!("{unknown:#X}"));
+            Some(format!("{{{}}}", names.chain(unknown).collect::<Vec<_>>().join(", ")))
         }
     }
 }
