@@ -14,7 +14,9 @@ use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
 use crate::hex;
-use crate::interpret::{Content, Decoded, Frame, Input, Note, Problem, Unrecognised, Value, decode, encode, physical};
+use crate::interpret::{
+    Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
+};
 use crate::model::{
     Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, SignalId, ValueExample,
 };
@@ -242,16 +244,26 @@ impl<'a> Checker<'a> {
         let mut signals = decoded.signals.iter().map(|reading| &self.protocol[decoded.message][reading.signal]);
         let by_other_order = signals.find_map(|signal| self.by_other_order(signal)).filter(|_| note.is_about_value());
         let by_notes = || {
-            if note.rule == NoteRule::ReservedBit {
-                "add the field that has these bits; \
-                 if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
-                    .to_owned()
-            } else {
-                format!("if the document shows it so, add `{}` to its `notes`", note.rule)
+            let so = format!("if the document shows it so, add `{}` to its `notes`", note.rule);
+            match note.rule {
+                NoteRule::ReservedBit => "add the field that has these bits; \
+                     if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
+                    .to_owned(),
+                NoteRule::UnknownValue if self.has_nameless(decoded) => {
+                    format!("name the value; or add a `range` if these are numbers with a few named values; {so}")
+                }
+                _ => so,
             }
         };
         let help = by_other_order.unwrap_or_else(by_notes);
         Box::new(Diagnostic::error(&rules::EXAMPLE, self.frame_at(), text).help(help))
+    }
+
+    /// Tests whether a signal of named values has a value without a name.
+    fn has_nameless(&self, decoded: &Decoded) -> bool {
+        let message = &self.protocol[decoded.message];
+        let is_named = |reading: &&Reading| message[reading.signal].encoding.enumeration().is_some();
+        decoded.signals.iter().filter(is_named).any(|reading| reading.value == Value::None)
     }
 
     fn missing(&self, index: usize, decoded: &Decoded) -> Box<Diagnostic> {

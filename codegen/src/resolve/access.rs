@@ -71,7 +71,11 @@ impl Resolver<'_> {
     fn check_answer(&mut self, at: &Path, mode: &Mode, (word, who): (&str, Who), kinds: &[Kind]) {
         if who != Who::Nobody && mode.reply(who).is_none() {
             let message = format!("the addressing mode `{}` has no `{word}`", mode.name);
-            let help = format!("add `{word}:` to `addressing.{}`, or say here who else answers", mode.name);
+            let others: Vec<_> = ANSWERS.iter().filter(|(_, who)| mode.reply(*who).is_some()).collect();
+            let help = match others.as_slice() {
+                [] => format!("add `{word}:` to `addressing.{}`, or write `nobody`", mode.name),
+                [(other, _), ..] => format!("write `{other}`, or add `{word}:` to `addressing.{}`", mode.name),
+            };
             let diagnostic = Diagnostic::error(&rules::ADDRESSING, at.at_value(), message).help(help);
             self.diagnostics.push(diagnostic.other(mode.doc.path.at_key(), "the mode"));
         }
