@@ -276,6 +276,13 @@ mod tests {
     }
 
     #[test]
+    fn bits_that_nothing_names_are_written_as_ones_and_accepted_as_they_are() {
+        let filter = Filter::EXTENDED.data(FUNCTION, 0x41).filled([0, 0xF0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(filter.frame(3).bytes(), [0x41, 0xF0, 0, 0, 0, 0, 0, 0]);
+        assert!(filter.matches(&frame(0, 0x41)) && !filter.matches(&frame(0, 0x42)));
+    }
+
+    #[test]
     fn what_says_that_a_reply_is_no_error_is_written_where_nothing_is_required() {
         const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
         let reply = Filter::EXTENDED.selectors(&[RESULT]).data(FUNCTION, 0x41);

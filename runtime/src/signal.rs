@@ -468,6 +468,37 @@ mod tests {
     }
 
     #[test]
+    fn all_ones_or_the_greatest_signed_number_say_that_there_is_no_value() {
+        let charge = Signal::<u8>::new("charge", Place::byte(0)).absent();
+        let heat = Signal::<i16, f64>::new("heat", Place::bytes(1, 2)).scale(1, 10).absent();
+        let read = |data| (charge.get_some(&data, 8), heat.decode_some(&data, 8));
+        assert_eq!(read([0xFF, 0x7F, 0xFF, 0, 0, 0, 0, 0]), (None, None));
+        assert_eq!(read([0x7F, 0xFF, 0xFF, 0, 0, 0, 0, 0]), (Some(127), Some(-0.1)));
+        let mut payload = reply();
+        assert_eq!([charge.put_some(None, &mut payload), heat.encode_some(None, &mut payload)], [Ok(()); 2]);
+        assert_eq!(payload.data(), &[0xFF, 0x7F, 0xFF, 0, 0, 0, 0, 0]);
+        assert_eq!([charge.put_some(Some(1), &mut payload), heat.encode_some(Some(0.2), &mut payload)], [Ok(()); 2]);
+        assert_eq!(payload.data(), &[1, 0, 2, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_value_is_left_out_only_where_the_frame_ends_before_it() {
+        let hours = Signal::<u16>::new("hours", Place::bytes(2, 3));
+        let read = |length| hours.get_some(&[0, 0, 1, 2, 0, 0, 0, 0], length);
+        assert_eq!([2, 3, 4, 8].map(read), [None, None, Some(0x0102), Some(0x0102)]);
+        let left_out = |length| {
+            let mut payload = reply();
+            payload.end_after(length);
+            hours.put_some(None, &mut payload)
+        };
+        assert_eq!([2, 3].map(left_out), [Ok(()); 2]);
+        let text = "`hours` of `report` is left out, but what stands behind it is not";
+        assert_eq!(refusal(left_out(4)), text);
+        assert_eq!(refusal(hours.put_some(None, &mut reply())), text);
+        assert!([4, 5].map(|length| reply().received_with(4).had(length)) == [true, false]);
+    }
+
+    #[test]
     fn limits_count_in_requests_only() {
         assert_eq!(TEMPERATURE.encode(80.5, &mut reply()), Ok(()));
         let text = refusal(TEMPERATURE.encode(80.2, &mut request()));

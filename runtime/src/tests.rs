@@ -8,8 +8,8 @@ use heaters::{FRAME, HEAT, Heat, Identifier, Message, To, decode, frame, mode_of
 
 use crate::plumbing::{Decode, Encode};
 use crate::{
-    AddressType, AnySignal, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number, Problem, Reading,
-    Received, Replies, Request, Route, Signal, StatusBit,
+    AddressType, AnySignal, Bits, Entry, Error, Exchange, Failure, Frame, Kind, Layout, Meaning, Number, Problem,
+    Reading, Received, Replies, Request, Route, Signal, StatusBit,
 };
 
 /// A request that waits for its reply, whatever that carries.
@@ -235,6 +235,18 @@ fn of_several_messages_the_length_and_then_the_addresses_choose_and_the_first_wi
 fn a_sender_is_the_usual_one_or_else_the_first_one() {
     let host = AddressType::new("host", 0xE0, 0xE3);
     assert_eq!([host, host.default_number(0xE2)].map(|host| host.sent_number()), [0xE0, 0xE2]);
+}
+
+#[test]
+fn a_message_sends_fields_and_spare_bits_of_its_own_and_accepts_any() {
+    const PRIORITY: Bits = Bits::new(28, 26);
+    let every = Exchange::new("set", &[None; 3]).request(FRAME).reply(FRAME).report(FRAME).of("boost", FRAME);
+    let own = every.send_id(PRIORITY, 4).fill_request([0xFF, 0, 0, 0, 0, 0, 0, 0]);
+    let blank = |kind| own.filter(kind).expect("all kinds are there").frame(2);
+    assert_eq!([Kind::Request, Kind::Reply, Kind::Report].map(|kind| blank(kind).raw_id() >> 26), [4; 3]);
+    assert_eq!([Kind::Request, Kind::Reply].map(|kind| blank(kind).bytes()[0]), [0xFF, 0]);
+    let masks = [own, every].map(|exchange| exchange.filter(Kind::Request).map(|filter| filter.id_mask()));
+    assert_eq!(masks[0], masks[1]);
 }
 
 #[test]

@@ -40,6 +40,14 @@ fn a_reply_takes_what_its_bits_hold_and_a_request_what_its_range_has() {
 }
 
 #[test]
+fn without_a_kind_the_identifier_says_whether_a_frame_asks_or_answers() {
+    let levels = feature("addressing");
+    for text in ["0043F003#FF00000000000000", "004303F0#3200000000000000"] {
+        assert_eq!(changed(&levels, text, |content| content.kind = None).as_deref(), Ok(text));
+    }
+}
+
+#[test]
 fn a_request_to_an_undocumented_address_is_refused() {
     let levels = feature("addressing");
     let to = |target| changed(&levels, "004303F0#3200000000000000", |content| content.identifier[3].1 = target);

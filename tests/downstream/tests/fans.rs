@@ -2,8 +2,8 @@
 
 use winch_driver::fan::embedded_can::{ExtendedId, Frame as _};
 use winch_driver::fan::{
-    Air, Error, Failure, Frame, Identifier, Message, Model, Power, Problem, Replies, Request, SetBlades, SetSpeed,
-    Target,
+    Air, Error, Failure, Frame, Hours, Identifier, Message, Model, Power, Problem, Replies, Request, SetBlades,
+    SetSpeed, Target, Text,
 };
 
 /// Raw -1501, raw 25 and raw 1.
@@ -102,6 +102,38 @@ fn a_reply_says_what_the_fan_measures_or_shows_an_error() {
     assert_eq!(reply(0x0192_E102, &[1, 0x6E, 0, 0, 0x42, 0x48, 0, 0]), None);
 }
 
+/// Raw 25 and raw -3.
+fn hours(limit_h: Option<f64>, stops: Option<u8>, load_percent: Option<i8>) -> Hours {
+    Hours { limit_h, label: Text::new("A").expect("one letter"), stops, load_percent }
+}
+
+#[test]
+fn a_frame_ends_before_what_is_not_there_and_its_spare_bits_are_ones() {
+    let set = |hours: Hours| hours.set(Target::Fan(1));
+    let whole = hours(Some(12.5), Some(7), Some(-3));
+    assert_eq!(sent(set(whole)), frame(0x00D3_01E1, &[1, 25, 0x41, 0x20, 0xF7, 0xFD]));
+    assert_eq!(sent(set(hours(None, Some(7), None))), frame(0x00D3_01E1, &[1, 0xFF, 0x41, 0x20, 0xF7]));
+    assert_eq!(sent(set(hours(None, None, None))), frame(0x00D3_01E1, &[1, 0xFF, 0x41, 0x20]));
+    let missing = set(hours(None, None, Some(0))).map(|_| ()).expect_err("there is a value behind it");
+    assert_eq!(missing, Error::Missing { message: "hours", signal: "stops" });
+}
+
+#[test]
+fn a_frame_of_any_of_its_lengths_comes_back_as_it_was() {
+    for (data, expected) in [
+        (&[1, 25, 0x41, 0x20][..], hours(Some(12.5), None, None)),
+        (&[1, 0xFF, 0x41, 0x20, 0xF7], hours(None, Some(7), None)),
+        (&[1, 0xFF, 0x41, 0x20, 0x07, 0x7F], hours(None, Some(7), None)),
+        (&[1, 0xFE, 0x41, 0x20, 0xF7, 0xFF], hours(Some(127.0), Some(7), Some(-1))),
+    ] {
+        let received = decoded(&frame(0x0193_E101, data));
+        assert_eq!(received.reply(), Some(Ok(&Message::Hours(expected))));
+        assert_eq!(received.encode(), Ok(frame(0x0193_E101, data)));
+    }
+    assert!(Message::decode(&frame(0x0193_E101, &[1, 25, 0x41])).is_err());
+    assert!(Message::decode(&frame(0x0193_E101, &[1, 25, 0x41, 0x20, 0xF7, 0xFD, 0])).is_err());
+}
+
 #[test]
 fn an_identifier_is_split_into_its_fields() {
     let identifier = Identifier { error: 1, priority: 6, command: 0x12, target: 0xE1, source: 1 };
@@ -113,7 +145,7 @@ fn what_is_no_frame_of_a_fan_is_named() {
     let problem = |id, data: &[u8]| Message::decode(&frame(id, data)).map(|_| ());
     assert_eq!(problem(0x01FF_FF00, &[]), Err(Problem::Foreign));
     assert_eq!(problem(0x0191_01DF, &[1, 0, 0, 0, 0]), Err(Problem::Identifier));
-    assert_eq!(problem(0x0193_01E1, &[1, 0, 0, 0, 0]), Err(Problem::UnknownMessage));
+    assert_eq!(problem(0x0194_01E1, &[1, 0, 0, 0, 0]), Err(Problem::UnknownMessage));
     assert_eq!(problem(0x0191_01E1, &[3, 0, 0, 0, 0]), Err(Problem::UnknownMessage));
     assert_eq!(problem(0x0191_01E1, &[1, 0, 0, 0]), Err(Problem::Length));
     assert_eq!(problem(0x0191_01E1, &[1, 0, 0, 0, 0, 0]), Err(Problem::Length));
