@@ -15,7 +15,7 @@ pub fn format<W: Word>(word: W, formatter: Formatter<'_>) {
         Meaning::Packed(text) => write!(formatter, "{}", Display2Format(&text)),
         Meaning::Status(raw, bits) => set_bits(raw, bits, formatter),
         Meaning::Number(_) | Meaning::Text(_) | Meaning::Bytes(_) | Meaning::None => {
-            write!(formatter, "{=u64:#X}", word.to_bits())
+            write!(formatter, "{=u64:#X}", word.to_bits());
         }
     }
 }

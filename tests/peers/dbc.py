@@ -146,9 +146,12 @@ def compare(signal, ours, raw, value):
 
 
 def is_text(signal, ours):
-    """Tests whether a value is a text that the DBC has as a number: its bytes."""
-    text = str(ours["value"]).encode()
-    return isinstance(ours["value"], str) and ours["raw"].to_bytes(signal.length // 8, "big").rstrip(b"\0") == text
+    """Tests whether a value is a text that the DBC has as a number: its bytes, filled up with one byte, or in hexadecimal."""
+    if not isinstance(ours["value"], str) or signal.length % 8:
+        return False
+    raw, text = ours["raw"].to_bytes(signal.length // 8, "big"), ours["value"].encode()
+    is_filled = raw.startswith(text) and len(set(raw[len(text):])) <= 1
+    return is_filled or raw.hex().upper() == ours["value"]
 
 
 def compare_parts(name, inside, ours, raw):

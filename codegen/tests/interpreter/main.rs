@@ -30,6 +30,7 @@ messages:
   single: {section: "1", match: {command: 3}, access: [set], value: {bytes: 0..3, as: float, range: 0.7..1.1}}
   scaled: {section: "1", match: {command: 4}, access: [set], value: {bytes: 0..3, scale: 1/10000, range: 0..16777.218}}
   digits: {section: "1", match: {command: 5}, access: [set], value: {bytes: 0..1, as: bcd, range: 10..500, values: {0xFFFF: never}}}
+  lock: {section: "1", match: {command: 6}, access: [set], value: {bytes: 2..0, as: bytes}}
 "#;
 
 /// Returns the specs of a folder of the workspace, in order.

@@ -288,3 +288,15 @@ messages:
     let pumps = protocol("tests/specs/devices/split_request.yaml");
     assert_eq!(targets_of(&pumps, None, "identity"), Ok(vec!["pump:N".to_owned()]));
 }
+
+#[test]
+fn raw_bytes_are_taken_in_hexadecimal_with_all_their_digits() {
+    let wide = written(WIDE);
+    let send =
+        |digits| requested(&wide, None, "lock", "counter:1", &[("value", digits)]).map_err(|why| why.to_string());
+    assert_eq!(["0A1B2C", "0a1b2c"].map(send), [(); 2].map(|()| Ok("061#2C1B0A0000000000".to_owned())));
+    let why = |digits| format!("lock.value: `{digits}` is not 3 bytes of two hexadecimal digits each for `value`");
+    for digits in ["0A1B", "0A1B2", "0A1B2C3D", "0A 1B 2C", "0A1B2G"] {
+        assert_eq!(send(digits), Err(why(digits)));
+    }
+}
