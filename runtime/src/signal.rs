@@ -170,13 +170,13 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns the raw value, if a frame of `length` data bytes has it.
     #[inline(always)]
     pub fn get_some(&self, data: &Data, length: usize) -> Option<R> {
-        self.is_there(data, length).then(|| self.get(data))
+        self.is_there(*data, length).then(|| self.get(data))
     }
 
     /// Tests whether a frame of `length` data bytes has a value.
     #[inline(always)]
-    fn is_there(&self, data: &Data, length: usize) -> bool {
-        self.place.is_within(length) && !(self.has_absent && self.place.get(data) == self.absent_bits())
+    fn is_there(&self, data: Data, length: usize) -> bool {
+        self.place.is_within(length) && !(self.has_absent && self.place.get(&data) == self.absent_bits())
     }
 
     /// Returns the bits that say that there is no value.
@@ -359,7 +359,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// Returns the physical value, if a frame of `length` data bytes has it.
     #[inline(always)]
     pub fn decode_some(&self, data: &Data, length: usize) -> Option<F> {
-        self.is_there(data, length).then(|| self.decode(data))
+        self.is_there(*data, length).then(|| self.decode(data))
     }
 
     /// Writes the raw value nearest to a physical value, if the frame has it.

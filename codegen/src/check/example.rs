@@ -245,14 +245,14 @@ impl<'a> Checker<'a> {
         let by_other_order = signals.find_map(|signal| self.by_other_order(signal)).filter(|_| note.is_about_value());
         let by_notes = || {
             let so = format!("if the document shows it so, add `{}` to its `notes`", note.rule);
-            match note.rule {
-                NoteRule::ReservedBit => "add the field that has these bits; \
-                     if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
-                    .to_owned(),
-                NoteRule::UnknownValue if self.has_nameless(decoded) => {
-                    format!("name the value; or add a `range` if these are numbers with a few named values; {so}")
-                }
-                _ => so,
+            if note.rule == NoteRule::ReservedBit {
+                "add the field that has these bits; \
+                 if the document reserves them and prints them set, add `reserved_bit` to its `notes`"
+                    .to_owned()
+            } else if note.rule == NoteRule::UnknownValue && self.has_nameless(decoded) {
+                format!("name the value; or add a `range` if these are numbers with a few named values; {so}")
+            } else {
+                so
             }
         };
         let help = by_other_order.unwrap_or_else(by_notes);

@@ -400,7 +400,7 @@ impl Resolver<'_> {
             access: owner.exchange.access,
             set: owner.exchange.set,
             kind,
-            lengths: lengths_with(owner.lengths, signals.iter().map(|id| owner.signals[*id].end())),
+            lengths: lengths_with(owner.lengths, &signals.iter().map(|id| owner.signals[*id].end())),
             constants,
             selectors,
             signals,
@@ -466,7 +466,7 @@ impl Resolver<'_> {
 }
 
 /// Returns the lengths of a kind of frame: the shortest, and those at which more of its signals end.
-fn lengths_with(lengths: &[u8], ends: impl Iterator<Item = u8> + Clone) -> Vec<u8> {
+fn lengths_with(lengths: &[u8], ends: &(impl Iterator<Item = u8> + Clone)) -> Vec<u8> {
     let mut shorter = None;
     let adds = |length: &&u8| {
         let shorter = shorter.replace(**length);

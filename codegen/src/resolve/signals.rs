@@ -76,7 +76,7 @@ impl Resolver<'_> {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
         self.leaves(path, fields, Outer { site: Site::Message, word: None, doc, owner, around: &[] }, &mut leaves);
-        leaves.signals.sort_by_key(|signal| signal.start());
+        leaves.signals.sort_by_key(Signal::start);
         leaves
     }
 
@@ -97,7 +97,7 @@ impl Resolver<'_> {
             Outer { site: Site::Message, word: None, doc, owner, around: &[] },
             &mut leaves,
         );
-        leaves.signals.sort_by_key(|signal| signal.start());
+        leaves.signals.sort_by_key(Signal::start);
         leaves
     }
 

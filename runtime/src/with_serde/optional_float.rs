@@ -9,7 +9,6 @@ use super::float;
 /// # Errors
 ///
 /// Passes on errors of the serializer.
-#[expect(clippy::ref_option, reason = "serde calls it so")]
 pub fn serialize<S: Serializer>(value: &Option<f32>, serializer: S) -> Result<S::Ok, S::Error> {
     value.map(Float).serialize(serializer)
 }

@@ -58,6 +58,7 @@ pub struct Recognised {
 
 /// What code reads: parts of the frame, and the device model.
 #[derive(Clone, Copy, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each says whether one thing is read")]
 pub struct Reads {
     /// The identifier.
     pub id: bool,
