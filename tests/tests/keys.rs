@@ -125,7 +125,7 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Bytes => &["1", "5", "3..2"],
         Key::Bits => &["1", "2..1"],
         Key::Type => &["titled"],
-        Key::As => return words(key),
+        Key::As | Key::Absent => return words(key),
         Key::Fill => &["0x20"],
         Key::Scale => &["1/4", "-1"],
         Key::Offset => &["3"],
@@ -139,7 +139,6 @@ fn samples(key: Key) -> Vec<&'static str> {
         // The second one lies in the range of the controllers.
         Key::Send => &["1", "0xF1"],
         Key::Default => &["11", "5", "bright", "busy", "x"],
-        Key::Absent => return words(key),
         Key::Outside => &["refused"],
         Key::Reply => &["{priority: 5}"],
         Key::In => &["[request]", "[reply]"],

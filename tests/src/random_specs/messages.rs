@@ -238,28 +238,11 @@ impl Draft {
         } else {
             let fields = self.fields(&site);
             if !is_member && self.chance(25) {
-                self.lengths(message, &fields, length);
+                lengths(message, &fields, length);
             }
             if !fields.is_empty() {
                 message.put("fields", fields);
             }
-        }
-    }
-
-    /// Lets frames end before the last field, if that field does not choose the message.
-    fn lengths(&mut self, message: &mut Map, fields: &Map, length: u8) {
-        let place = |field: &Mapping| -> Vec<u8> {
-            let bytes = field.get("bytes").and_then(Value::as_str).unwrap_or_default();
-            bytes.split("..").filter_map(|end| end.parse().ok()).collect()
-        };
-        let written: Vec<_> = fields.0.values().filter_map(Value::as_mapping).collect();
-        let may_choose = written.last().is_none_or(|field| field.contains_key("const") || field.contains_key("type"));
-        let starts = written.iter().map(|field| place(field).into_iter().min());
-        let Some(start) = starts.collect::<Option<Vec<_>>>().and_then(|starts| starts.into_iter().max()) else {
-            return;
-        };
-        if !may_choose && start > 0 && start < length {
-            message.put("length", list([start.to_string(), length.to_string()]));
         }
     }
 
@@ -369,5 +352,22 @@ impl Draft {
         self.remark(&mut foreign);
         let name = self.names.name(&mut Scope::default());
         traffic.foreign.put(name, foreign);
+    }
+}
+
+/// Lets frames end before the last field, if that field does not choose the message.
+fn lengths(message: &mut Map, fields: &Map, length: u8) {
+    let place = |field: &Mapping| -> Vec<u8> {
+        let bytes = field.get("bytes").and_then(Value::as_str).unwrap_or_default();
+        bytes.split("..").filter_map(|end| end.parse().ok()).collect()
+    };
+    let written: Vec<_> = fields.0.values().filter_map(Value::as_mapping).collect();
+    let may_choose = written.last().is_none_or(|field| field.contains_key("const") || field.contains_key("type"));
+    let starts = written.iter().map(|field| place(field).into_iter().min());
+    let Some(start) = starts.collect::<Option<Vec<_>>>().and_then(|starts| starts.into_iter().max()) else {
+        return;
+    };
+    if !may_choose && start > 0 && start < length {
+        message.put("length", list([start.to_string(), length.to_string()]));
     }
 }
