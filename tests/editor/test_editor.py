@@ -27,6 +27,8 @@ TYPE = "types:\n"
 ACCESS = "access:\n"
 ERRATUM = "errata:\n"
 
+UNITS = "V A W VA var Ah Wh Ω Hz °C K Pa % s ms min h rpm m".split()
+
 names = itertools.count()
 
 
@@ -133,7 +135,7 @@ class Completion(unittest.TestCase):
 
     def test_a_unit_is_one_of_the_list(self):
         # YAML wants quotes around a value that begins with a per cent sign.
-        units = {"V", "A", "W", "Hz", "°C", '"%"', "s", "ms", "min", "h", "rpm", "m"}
+        units = {'"%"' if unit == "%" else unit for unit in UNITS}
         self.assertEqual(self.offered(SIGNAL, "      current: {bytes: 2, unit: ¦}"), units)
         self.assertEqual(self.offered(SIGNAL, "      current:\n        unit: ¦"), units)
 
@@ -180,8 +182,7 @@ class Mistakes(unittest.TestCase):
         self.assert_marked(SIGNAL, "      current: {bytes: ¦true¦}", message)
 
     def test_another_word_than_those_of_the_list_is_marked(self):
-        units = ["V", "A", "W", "Hz", "°C", "%", "s", "ms", "min", "h", "rpm", "m"]
-        message = "Value is not accepted. Valid values: " + ", ".join(f'"{unit}"' for unit in units) + "."
+        message = "Value is not accepted. Valid values: " + ", ".join(f'"{unit}"' for unit in UNITS) + "."
         for unit in ["volt", "[V]", "5"]:
             self.assert_marked(SIGNAL, f"      current: {{bytes: 2, unit: ¦{unit}¦}}", message)
 
