@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use canspec_codegen::check::{Unproven, unproven};
 use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::source::Source;
 use canspec_codegen::{Outcome, Summary, compile_with_examples};
@@ -27,6 +28,9 @@ pub struct Check {
     /// Mistakes with the text underlined, one in a line, or each as a JSON object.
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Style::Human)]
     message_format: Style,
+    /// Also list the values that no example states.
+    #[arg(short, long)]
+    verbose: bool,
     /// Percentage of the messages that must have an example.
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
     min_example_coverage: Option<u8>,
@@ -74,7 +78,11 @@ impl Check {
     /// Compiles a source. If it cannot be read, only its name is known.
     fn outcome(&self, source: Result<Source, Diagnostics>) -> (Diagnostics, Object) {
         match source.map(|source| compile_with_examples(source, self.min_example_coverage)) {
-            Ok(Outcome { diagnostics, summary, .. }) => (diagnostics, summary.into()),
+            Ok(Outcome { protocol, diagnostics, summary }) => {
+                let listed =
+                    protocol.filter(|_| self.verbose).map(|protocol| unproven(&protocol).map(listed).collect());
+                (diagnostics, Object { listed: listed.unwrap_or_default(), ..summary.into() })
+            }
             Err(diagnostics) => {
                 let spec = diagnostics.source().name().to_owned();
                 let object = Object { spec, errors: diagnostics.errors(), ..Object::default() };
@@ -97,7 +105,10 @@ impl Check {
 
     fn summarise(&self, out: &mut impl Write, summary: &Object) -> io::Result<()> {
         match self.format {
-            Format::Text => writeln!(out, "{}", sentence(summary)),
+            Format::Text => {
+                writeln!(out, "{}", sentence(summary))?;
+                summary.listed.iter().try_for_each(|line| writeln!(out, "  {line}"))
+            }
             Format::Json => {
                 serde_json::to_writer(&mut *out, summary)?;
                 writeln!(out)
@@ -126,8 +137,18 @@ fn sentence(summary: &Object) -> String {
 }
 
 fn content(summary: &Object) -> String {
-    let Object { messages, signals, status_bits, examples, frames, identifiers, expected_failures, errata, .. } =
-        summary;
+    let Object {
+        messages,
+        signals,
+        status_bits,
+        examples,
+        frames,
+        identifiers,
+        expected_failures,
+        unproven,
+        errata,
+        ..
+    } = summary;
     let contents = [count(*messages, "message"), count(*signals, "signal"), count(*status_bits, "status bit")];
     let values = examples.saturating_sub(frames + identifiers + expected_failures);
     let outcomes = [
@@ -136,14 +157,21 @@ fn content(summary: &Object) -> String {
         count(values, "value"),
         count(*expected_failures, "expected failure"),
     ];
+    let unproven = if *unproven == 0 { String::new() } else { format!("; {} unproven", count(*unproven, "value")) };
     let examples = count(*examples, "example");
     let errata = if *errata == 1 { "1 erratum".to_owned() } else { format!("{errata} errata") };
-    format!("{}; {examples}: {}; {errata}", contents.join(", "), outcomes.join(", "))
+    format!("{}; {examples}: {}{unproven}; {errata}", contents.join(", "), outcomes.join(", "))
 }
 
 fn count(number: usize, noun: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} {noun}{ending}")
+}
+
+/// Names the values that an example leaves out.
+fn listed(Unproven { example, signals }: Unproven) -> String {
+    let names: Vec<_> = signals.iter().map(|name| format!("`{name}`")).collect();
+    format!("{}: unproven: {}", example.doc.path, names.join(", "))
 }
 
 /// The JSON object of a spec.
@@ -159,9 +187,13 @@ struct Object {
     frames: usize,
     identifiers: usize,
     expected_failures: usize,
+    unproven: usize,
     errata: usize,
     errors: usize,
     warnings: usize,
+    /// The unproven values, in lines of text.
+    #[serde(skip)]
+    listed: Vec<String>,
 }
 
 impl From<Summary> for Object {
@@ -177,9 +209,11 @@ impl From<Summary> for Object {
             frames: summary.frames,
             identifiers: summary.identifiers,
             expected_failures: summary.expected_failures,
+            unproven: summary.unproven,
             errata: summary.errata,
             errors: summary.errors,
             warnings: summary.warnings,
+            listed: Vec::new(),
         }
     }
 }

@@ -38,7 +38,7 @@ impl Examples {
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocol = self.protocol.load()?;
         let mut out = BufWriter::new(output()?);
-        let documented = protocol.examples.iter().filter(|example| !example.ours);
+        let documented = protocol.examples.iter().filter(|example| example.is_documented());
         match self.format {
             Format::Text => {
                 let rows: Vec<Row> = documented.map(|example| row(&protocol, example)).collect();

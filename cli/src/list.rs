@@ -59,7 +59,7 @@ fn built_in(out: &mut impl Write) -> Result<(), Failure> {
 
 fn protocol_row(name: &str, protocol: &Protocol) -> Row {
     let count = protocol.messages.len();
-    let documented: Vec<&Example> = protocol.examples.iter().filter(|example| !example.ours).collect();
+    let documented: Vec<&Example> = protocol.examples.iter().filter(|example| example.is_documented()).collect();
     let shown = |id: &MessageId| documented.iter().any(|example| example.message == Some(*id));
     let covered = protocol.messages.ids().filter(shown).count();
     let cells = vec![

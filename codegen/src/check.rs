@@ -25,7 +25,7 @@ mod special_value;
 mod stale_allowance;
 mod unreachable;
 
-pub use example::Counts;
+pub use example::{Counts, Unproven, unproven};
 pub use grid::{fits, has_exact_steps};
 pub use stale_allowance::allow;
 

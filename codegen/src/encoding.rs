@@ -16,7 +16,7 @@ mod text;
 pub use allowed::Allowed;
 
 use crate::model::{
-    Encoding, Enumeration, EnumerationId, Misfit, NoteRule, Protocol, Signal, StatusWord, StatusWordId, Table,
+    Encoding, Enumeration, EnumerationId, Misfit, NoteRule, Protocol, Said, Signal, StatusWord, StatusWordId, Table,
 };
 use crate::number::Rational;
 
@@ -126,6 +126,15 @@ impl Words<'_> {
             Encoding::Text(form) => ask(&text::Text { signal, form: *form }),
             Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),
         }
+    }
+}
+
+/// Reads what an example says about a signal: a value, or a rounded number after `~`.
+pub fn said(words: Words, signal: &Signal, text: &str) -> Result<Said, Misfit> {
+    let is_number = signal.encoding.linear().is_some() || signal.encoding.is_single();
+    match text.strip_prefix('~').filter(|_| is_number) {
+        Some(number) => quantity::rounded(signal, number).map(Said::Rounded),
+        None => words.with(signal, |room| room.parse(text, true)).map(Said::Bits),
     }
 }
 

@@ -22,7 +22,7 @@ pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
-pub use example::{Example, Failure, Meaning, Misfit, ValueExample};
+pub use example::{Example, Failure, Meaning, Misfit, Origin, Said, ValueExample};
 pub use id::{
     AccessId, AddressTypeId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId, ModelId,
     PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,

@@ -11,6 +11,7 @@ mod identifier;
 mod keys;
 mod messages;
 mod patterns;
+mod printed;
 pub(crate) mod rules;
 mod sending;
 mod sets;

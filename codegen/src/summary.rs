@@ -31,6 +31,8 @@ pub struct Summary {
     pub identifiers: usize,
     /// Printed forms that fail as stated.
     pub expected_failures: usize,
+    /// Values in frames that their examples do not state.
+    pub unproven: usize,
     /// Departures from the document.
     pub errata: usize,
     /// Diagnostics that make the spec unusable.
@@ -53,6 +55,7 @@ impl Summary {
             frames: counts.frames,
             identifiers: counts.identifiers,
             expected_failures: counts.expected_failures,
+            unproven: counts.unproven,
             errata: count(|protocol| protocol.errata.len()),
             errors: diagnostics.errors(),
             warnings: diagnostics.warnings(),

@@ -1,6 +1,6 @@
 //! The words of the language that a key chooses from.
 
-use crate::model::{Numeral, Severity, Who};
+use crate::model::{Numeral, Origin, Severity, Who};
 
 /// How a number, a text or raw bytes are written in bits.
 #[derive(Clone, Copy)]
@@ -39,7 +39,7 @@ pub const ANSWERS: [(&str, Who); 4] =
     [("one", Who::One), ("each", Who::Each), ("coordinator", Who::Coordinator), ("nobody", Who::Nobody)];
 
 /// Where an example can come from, if not from the document.
-pub const ORIGINS: [&str; 1] = ["ours"];
+pub const ORIGINS: [(&str, Origin); 2] = [("ours", Origin::Ours), ("captured", Origin::Captured)];
 
 /// What may be wrong with a document.
 pub const ERRATUM_KINDS: [&str; 6] = ["vendor", "translation", "ocr", "unclear", "gap", "note"];

@@ -39,7 +39,7 @@ fn camel_case(name: &str) -> String {
 /// Returns the frames of a message that its document prints whole, and as they are.
 fn printed(protocol: &Protocol, id: MessageId, kind: Kind) -> Vec<&Example> {
     let of_message = |example: &&Example| example.message == Some(id) && example.kind == kind;
-    let holds = |example: &&Example| !example.ours && example.fails.is_none() && example.data.is_some();
+    let holds = |example: &&Example| example.is_documented() && example.fails.is_none() && example.data.is_some();
     protocol.examples.iter().filter(of_message).filter(holds).collect()
 }
 

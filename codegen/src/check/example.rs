@@ -6,9 +6,11 @@ mod byte_order;
 mod evidence;
 mod limit;
 mod repair;
+mod unproven;
 mod unread;
 mod unreadable;
 
+pub use self::unproven::{Unproven, unproven};
 use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
@@ -17,9 +19,7 @@ use crate::hex;
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
 };
-use crate::model::{
-    Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, SignalId, ValueExample,
-};
+use crate::model::{Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, ValueExample};
 use crate::resolve::rules;
 
 crate::rule::rules! {
@@ -35,6 +35,8 @@ pub struct Counts {
     pub identifiers: usize,
     /// Printed forms that fail as stated.
     pub expected_failures: usize,
+    /// Values in frames that their examples do not state.
+    pub unproven: usize,
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
@@ -58,6 +60,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
             (Ok(()), None, None) => counts.identifiers += 1,
         }
     }
+    counts.unproven = unproven(protocol).map(|of| of.signals.len()).sum();
     for example in &protocol.value_examples {
         check_value(protocol, example, diagnostics);
     }
@@ -71,7 +74,7 @@ pub fn check_texts(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let Some(message) = example.message.map(|index| &protocol.messages[index]) else { continue };
         for meaning in &example.means {
             let field = &message.signals[meaning.signal].doc.path;
-            if let Err(misfit) = &meaning.raw
+            if let Err(misfit) = &meaning.said
                 && !diagnostics.has_errors_in(field)
             {
                 diagnostics.push(no_value(meaning, misfit).other(field.at_key(), "the field"));
@@ -143,7 +146,7 @@ impl<'a> Checker<'a> {
     /// Tests that every text is a value of its signal.
     fn fits(&self) -> Checked {
         let Some(message) = self.example.message.map(|index| &self.protocol.messages[index]) else { return Ok(()) };
-        let misfit = self.example.means.iter().find_map(|meaning| Some((meaning, meaning.raw.as_ref().err()?)));
+        let misfit = self.example.means.iter().find_map(|meaning| Some((meaning, meaning.said.as_ref().err()?)));
         misfit.map_or(Ok(()), |(meaning, misfit)| {
             let field = message.signals[meaning.signal].doc.path.at_key();
             Err(Box::new(no_value(meaning, misfit).other(field, "the field")))
@@ -177,7 +180,7 @@ impl<'a> Checker<'a> {
                 None => diagnostic.help(about_offset),
             }));
         }
-        let silent = decoded.signals.iter().find(|reading| self.meaning(reading.signal).is_none());
+        let silent = decoded.signals.first().filter(|_| self.example.means.is_empty());
         match silent {
             None => Ok(()),
             Some(reading) => {
@@ -204,19 +207,15 @@ impl<'a> Checker<'a> {
 
     /// Tests whether a digit of the frame is probably wrong, and not one of the text.
     fn is_slip_in_frame(&self, signal: &Signal, meaning: &Meaning, read: &str) -> bool {
-        let Ok(raw) = meaning.raw else { return false };
+        let Some(raw) = meaning.bits() else { return false };
         evidence::digits_apart(signal, self.frame().padded(), raw) == 1 && strsim::osa_distance(&meaning.text, read) > 1
-    }
-
-    fn meaning(&self, signal: SignalId) -> Option<&Meaning> {
-        self.example.means.iter().find(|meaning| meaning.signal == signal)
     }
 
     /// Finds the first value that the frame does not show.
     fn first_difference<'m>(&self, decoded: &Decoded, message: &'m Message) -> Option<(&'a Meaning, &'m Signal)> {
         let differs = |meaning: &&Meaning| {
             let reading = decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
-            reading.is_none_or(|reading| Ok(reading.bits) != meaning.raw)
+            reading.is_none_or(|reading| !meaning.is(&message[meaning.signal], reading.bits))
         };
         let meaning = self.example.means.iter().find(differs)?;
         Some((meaning, &message.signals[meaning.signal]))
@@ -391,9 +390,9 @@ fn no_value(meaning: &Meaning, misfit: &Misfit) -> Diagnostic {
 /// Runs an example of a type, which has only bytes and their meaning.
 fn check_value(protocol: &Protocol, example: &ValueExample, diagnostics: &mut Diagnostics) {
     let bits = example.signal.place.get(&example.data);
-    match &example.meaning.raw {
+    match &example.meaning.said {
         Err(misfit) => diagnostics.push(no_value(&example.meaning, misfit)),
-        Ok(raw) if *raw != bits => {
+        Ok(said) if !said.is(&example.signal, bits) => {
             let value = physical(protocol, &example.signal, bits);
             let read = shown(protocol, &example.signal, &value, bits);
             let text = format!("these bytes say {read}, not {}", example.meaning.text);

@@ -1,7 +1,7 @@
 //! Numbers with a unit, as people and specs write them.
 
 use super::Input;
-use crate::model::{Misfit, Signal, Unit};
+use crate::model::{Misfit, Range, Signal, Unit};
 use crate::multiples;
 use crate::number::Rational;
 
@@ -16,6 +16,31 @@ pub fn quantity(signal: &Signal, text: &str, with_unit: bool) -> Result<Rational
             converted(text, unit).map_or_else(|| what_fits(signal, unit), |value| format!("write it as `{value}`"));
         Misfit::with_help(why, help)
     })
+}
+
+/// Reads a rounded number, and returns the values that give it: those within half of its last digit.
+pub fn rounded(signal: &Signal, text: &str) -> Result<Range, Misfit> {
+    let value = quantity(signal, text, true)?;
+    let range = || {
+        let half = quantity(signal, &last_digit(text)?, true).ok()?.over(Rational::integer(2))?;
+        Some(Range { minimum: value.minus(half)?, maximum: value.plus(half)? })
+    };
+    range().ok_or_else(|| {
+        let why = format!("`~{text}` is not a rounded decimal number for `{}`", signal.name);
+        Misfit::with_help(why, "write the digits that are printed, as in `~51.4 V`")
+    })
+}
+
+/// Returns the text with 1 as the last digit of its number and 0 as all others. It is `None` if the
+/// number is hexadecimal or a fraction.
+fn last_digit(text: &str) -> Option<String> {
+    let last = text.rfind(|letter: char| letter.is_ascii_digit()).filter(|_| !text.contains(['x', '/']))?;
+    let digit = |(at, letter): (usize, char)| match letter {
+        '-' => None,
+        '0'..='9' => Some(if at == last { '1' } else { '0' }),
+        _ => Some(letter),
+    };
+    Some(text.char_indices().filter_map(digit).collect())
 }
 
 /// Reads `750V`, `750 V`, `0.75 kV`, `750` or a name.

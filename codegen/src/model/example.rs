@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Doc, Kind, MessageId, ModelId, NoteRule, Signal, SignalId};
+use crate::model::{Doc, Kind, MessageId, ModelId, NoteRule, Range, Signal, SignalId};
 use crate::syntax::tree::Path;
 
 /// A frame of the document and what it means.
@@ -23,16 +23,34 @@ pub struct Example {
     pub message: Option<MessageId>,
     /// The device model of the frame.
     pub model: Option<ModelId>,
-    /// Raw values of the message's signals, and their texts.
+    /// What the example says about signals of the message, not necessarily all.
     pub means: Vec<Meaning>,
     /// Rules of the notes that decoding must report.
     pub notes: Vec<NoteRule>,
     /// How the frame must fail, if at all.
     pub fails: Option<Failure>,
-    /// Whether the frame is ours: the document does not print it.
-    pub ours: bool,
+    /// Where the frame comes from.
+    pub origin: Origin,
     /// Its position in its list. A reply answers the request before it.
     pub position: usize,
+}
+
+impl Example {
+    /// Tests whether the document prints the frame.
+    pub fn is_documented(&self) -> bool {
+        self.origin == Origin::Document
+    }
+}
+
+/// Where an example comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Origin {
+    /// The document prints it.
+    Document,
+    /// The author of the spec made it.
+    Ours,
+    /// It was captured on a real bus.
+    Captured,
 }
 
 /// What an example says about one signal.
@@ -43,10 +61,44 @@ pub struct Meaning {
     pub signal: SignalId,
     /// As written in the spec.
     pub text: String,
-    /// The raw bits, or the reason why the text is no value of the signal.
-    pub raw: Result<u64, Misfit>,
+    /// What the text stands for, or the reason why it is no value of the signal.
+    pub said: Result<Said, Misfit>,
     /// Place in the spec.
     pub path: Path,
+}
+
+impl Meaning {
+    /// Tests whether bits of a signal mean this.
+    pub fn is(&self, signal: &Signal, bits: u64) -> bool {
+        self.said.as_ref().is_ok_and(|said| said.is(signal, bits))
+    }
+
+    /// Returns the raw bits, unless the text is rounded or no value of the signal.
+    pub fn bits(&self) -> Option<u64> {
+        match self.said {
+            Ok(Said::Bits(bits)) => Some(bits),
+            Ok(Said::Rounded(_)) | Err(_) => None,
+        }
+    }
+}
+
+/// What a text of an example stands for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Said {
+    /// Raw bits.
+    Bits(u64),
+    /// A rounded number: every value that gives it.
+    Rounded(Range),
+}
+
+impl Said {
+    /// Tests whether bits of a signal mean this.
+    pub fn is(&self, signal: &Signal, bits: u64) -> bool {
+        match self {
+            Self::Bits(said) => *said == bits,
+            Self::Rounded(range) => signal.is_in(range, bits),
+        }
+    }
 }
 
 /// Why a text is no value of a signal.

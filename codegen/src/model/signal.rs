@@ -203,6 +203,19 @@ impl Signal {
         u8::try_from(8 - last).unwrap_or(8)
     }
 
+    /// Tests whether bits are a number inside limits. It is exact but for a float, which is compared
+    /// with the doubles nearest to the limits.
+    pub fn is_in(&self, limits: &Range, bits: u64) -> bool {
+        if self.encoding.is_single() {
+            let value = u32::try_from(bits).map_or(f64::NAN, |bits| f32::from_bits(bits).into());
+            return (limits.minimum.to_f64()..=limits.maximum.to_f64()).contains(&value);
+        }
+        let raw = self.raw_of(bits);
+        let is_special = self.specials.iter().any(|special| special.raw == raw);
+        let value = self.encoding.value_of(raw).filter(|_| !is_special);
+        value.is_some_and(|value| (limits.minimum..=limits.maximum).contains(&value))
+    }
+
     /// Returns the least and the greatest raw value.
     pub fn raw_limits(&self) -> (i128, i128) {
         self.encoding.numeral().raw_limits(self.place.width())

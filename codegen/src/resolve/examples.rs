@@ -4,12 +4,14 @@ use canspec_runtime::Place;
 use indexmap::IndexSet;
 
 use super::Resolver;
+use super::printed::Printed;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
+use crate::encoding::said;
 use crate::hex;
 use crate::model::{
-    Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Signal, SignalId,
-    StatusBit, Table, ValueExample,
+    Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Origin, Said, Signal,
+    SignalId, StatusBit, Table, ValueExample,
 };
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
@@ -18,13 +20,6 @@ use crate::words::ORIGINS;
 
 /// The messages of the protocol.
 type Messages = Table<MessageId, Message>;
-
-/// A frame as an example prints it.
-struct Printed {
-    id: u32,
-    extended: bool,
-    data: Option<Vec<u8>>,
-}
 
 impl Resolver<'_> {
     pub fn examples(&mut self, identifier: &Identifier, messages: &Messages) -> Vec<Example> {
@@ -120,13 +115,15 @@ impl Resolver<'_> {
             means: means.unwrap_or_default(),
             notes: self.notes(&path.key("notes"), &example.notes),
             fails: example.fails.as_ref().and_then(|word| self.failure(&path.key("fails"), word)),
-            ours: self.is_ours(path, example.origin.as_deref()),
+            origin: self.origin(path, example.origin.as_deref()),
             position,
         })
     }
 
-    fn is_ours(&mut self, path: &Path, origin: Option<&str>) -> bool {
-        origin.is_some_and(|word| self.lookup(&path.key("origin"), "origin", word, ORIGINS.into_iter()).is_some())
+    fn origin(&mut self, path: &Path, word: Option<&str>) -> Origin {
+        let words = ORIGINS.iter().map(|(word, _)| *word);
+        let index = word.and_then(|word| self.lookup(&path.key("origin"), "origin", word, words));
+        index.map_or(Origin::Document, |index| ORIGINS[index].1)
     }
 
     /// Reads the rules of notes that decoding must report.
@@ -157,28 +154,21 @@ impl Resolver<'_> {
         first
     }
 
-    /// Reads `ID#DATA`, or `ID` alone.
+    /// Reads a frame as a document prints it, or an identifier alone.
     fn printed(&mut self, path: &Path, text: &str) -> Option<Printed> {
-        let (id, data) = text.split_once('#').map_or((text, None), |(id, data)| (id, Some(data)));
-        let extended = id.len() == 8;
-        let number = (extended || id.len() == 3).then(|| u32::from_str_radix(id, 16).ok()).flatten();
-        let number = number.filter(|number| *number <= if extended { 0x1FFF_FFFF } else { 0x7FF });
-        let bytes = data.map(|data| hex::bytes(data).filter(|bytes| bytes.len() <= 8));
-        if number.is_none() && matches!(id.len(), 8 | 3) && u32::from_str_radix(id, 16).is_ok() {
-            let (bits, digits) = if extended { (29, "0 or 1") } else { (11, "0 to 7") };
-            let message = format!("the identifier `{id}` has more than {bits} bits");
-            self.error_with_help(&rules::EXAMPLE, path.at_value(), message, format!("its first digit is {digits}"));
+        let Some(printed) = Printed::read(text) else {
+            let help =
+                "write 8 or 3 hexadecimal digits, `#`, `:` or a blank, and two digits for each of up to 8 data bytes";
+            self.error_with_help(&rules::EXAMPLE, path.at_value(), format!("`{text}` is not a frame"), help);
+            return None;
+        };
+        let (width, digits, first) = if printed.extended { (29, 8, "0 or 1") } else { (11, 3, "0 to 7") };
+        if printed.id >> width != 0 {
+            let message = format!("the identifier `{:0digits$X}` has more than {width} bits", printed.id);
+            self.error_with_help(&rules::EXAMPLE, path.at_value(), message, format!("its first digit is {first}"));
             return None;
         }
-        match (number, bytes) {
-            (Some(id), None) => Some(Printed { id, extended, data: None }),
-            (Some(id), Some(Some(bytes))) => Some(Printed { id, extended, data: Some(bytes) }),
-            _ => {
-                let help = "write 8 or 3 hexadecimal digits, `#`, and two digits for each of up to 8 data bytes";
-                self.error_with_help(&rules::EXAMPLE, path.at_value(), format!("`{text}` is not a frame"), help);
-                None
-            }
-        }
+        Some(printed)
     }
 
     /// Tests that an example with the other identifier width must fail.
@@ -245,16 +235,18 @@ impl Resolver<'_> {
     }
 
     fn meaning(&mut self, path: &Path, id: SignalId, signal: &Signal, means: &Means) -> Option<Meaning> {
-        let (text, raw) = match means {
-            Means::Value(text) => (text.clone(), self.words().with(signal, |room| room.parse(text, true))),
-            Means::Bits(names) => (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?),
+        let (text, said) = match means {
+            Means::Value(text) => (text.clone(), said(self.words(), signal, text)),
+            Means::Bits(names) => {
+                (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?.map(Said::Bits))
+            }
             Means::Signals(_) => {
                 let text = format!("`{}` is one value, not a map", signal.name);
                 self.error_with_help(&rules::EXAMPLE, path.at_key(), text, "write its value alone");
                 return None;
             }
         };
-        Some(Meaning { signal: id, text, raw, path: path.clone() })
+        Some(Meaning { signal: id, text, said, path: path.clone() })
     }
 
     fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
@@ -303,9 +295,9 @@ impl Resolver<'_> {
         let remarks = remarks_of_value(example);
         let doc = remarks.doc(path, Some(outer));
         let signal = self.signal(name, &merged, Place::bytes(0, last), outer.clone(), "")?;
-        let raw = self.words().with(&signal, |room| room.parse(&example.means, true));
+        let said = said(self.words(), &signal, &example.means);
         debug_assert_eq!(signal.start(), 0);
-        let meaning = Meaning { signal: SignalId::new(0), text: example.means.clone(), raw, path: path.key("means") };
+        let meaning = Meaning { signal: SignalId::new(0), text: example.means.clone(), said, path: path.key("means") };
         Some(ValueExample { doc, signal, data, meaning })
     }
 }

@@ -59,7 +59,7 @@ fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 11] {
         ("Erratum", "kind", ERRATUM_KINDS.to_vec()),
         ("Example", "fails", Failure::ALL.map(|(_, word)| word).to_vec()),
         ("Example", "notes", NoteRule::ALL.map(|(_, name)| name).to_vec()),
-        ("Example", "origin", ORIGINS.to_vec()),
+        ("Example", "origin", ORIGINS.map(|(word, _)| word).to_vec()),
         ("Message", "answers", answers),
         ("Message", "in", vec![Kind::Request.name(), Kind::Reply.name()]),
         ("Reserved", "expect", EXPECTED.map(|(word, _)| word).to_vec()),

@@ -66,13 +66,17 @@ impl Draft {
         if model.is_none() && !message.models.is_empty() || !comes_back && decoded.notes.is_empty() {
             return None;
         }
-        let mut map = Map::of([(decoded.kind.name(), written(frame))]);
+        let printed = written(frame).replacen('#', self.one(&["#", "#", ": ", " "]), 1);
+        let mut map = Map::of([(decoded.kind.name(), printed)]);
         if !decoded.signals.is_empty() {
             let means = decoded.signals.iter().map(|reading| means(protocol, &message[reading.signal], reading));
-            let means: Vec<_> = means.collect::<Option<_>>()?;
+            let means: Vec<_> = means.collect::<Option<Vec<_>>>()?;
+            let said = means.into_iter().zip(&decoded.signals);
+            let means: Vec<_> = said.map(|(text, reading)| self.rounded(text, &reading.value)).collect();
             let short = message.signals.len() == 1 && self.random.bool();
             let names = decoded.signals.iter().map(|reading| message[reading.signal].name.clone());
-            let all = Map::of(names.zip(means.clone()));
+            let first = if self.chance(20) { self.random.usize(..means.len()) } else { 0 };
+            let all = Map::of(names.zip(means.clone()).skip(first));
             map.put("means", if short { means[0].clone() } else { all.into() });
         }
         if let Some(model) = model {
@@ -86,6 +90,15 @@ impl Draft {
         let outer = decoded.set.map_or_else(|| name.clone(), |set| protocol[set].name.clone());
         let inner = decoded.set.map(|_| name.clone());
         Some(Example { map, kind: decoded.kind, of: Some((outer, inner)), message: Some(name) })
+    }
+
+    /// Writes some numbers as rounded ones.
+    fn rounded(&mut self, text: Value, value: &Meaning) -> Value {
+        let number = text.as_str().filter(|number| !number.contains('/'));
+        match (number, value) {
+            (Some(number), Meaning::Integer(_) | Meaning::Number(_)) if self.chance(20) => format!("~{number}").into(),
+            _ => text,
+        }
     }
 
     /// Returns a frame that lacks its last byte.
@@ -113,7 +126,7 @@ impl Draft {
 
     fn say_more(&mut self, map: &mut Map) {
         if self.chance(50) {
-            map.put("origin", "ours");
+            map.put("origin", self.one(&["ours", "captured"]));
         }
         if self.chance(20) {
             let note = self.text();

@@ -73,7 +73,7 @@ impl<'a> Accused<'a> {
         let own =
             protocol.value_examples.iter().filter(|example| example.doc.path.ancestors().any(|outer| outer == path));
         let is_borne_out =
-            own.clone().any(|example| example.meaning.raw == Ok(example.signal.place.get(&example.data)));
+            own.clone().any(|example| example.meaning.is(&example.signal, example.signal.place.get(&example.data)));
         (is_denied && !is_borne_out).then(|| Self {
             protocol,
             name: format!("the type `{name}`"),
@@ -113,7 +113,7 @@ impl<'a> Accused<'a> {
 
     /// No example holds, and there are several.
     fn contradicted(&self, diagnostics: &Diagnostics) -> Option<Diagnostic> {
-        let is_misfit = |denial: &Evidence| denial.meaning.raw.is_err();
+        let is_misfit = |denial: &Evidence| denial.meaning.said.is_err();
         let says_what_bits_mean = MEANING.iter().any(|key| self.written(key, diagnostics).is_some());
         let is_several = self.denials().count() > 1 && (self.fields.len() == 1 || says_what_bits_mean);
         if self.fields.iter().any(|field| is_status(field.signal))

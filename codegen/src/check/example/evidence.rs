@@ -23,19 +23,17 @@ pub struct Evidence<'a> {
     reserved: [u8; 8],
     /// The field's bits in these bytes.
     bits: u64,
+    /// Whether these bits mean what the example says.
+    agrees: bool,
     /// The value of these bits as text.
     pub read: String,
 }
 
 impl Evidence<'_> {
-    fn agrees(&self) -> bool {
-        self.meaning.raw == Ok(self.bits)
-    }
-
     /// Tests whether one digit of the frame separates bytes and meaning. Set bits that no field
     /// holds count as well.
     pub fn is_slip(&self, signal: &Signal) -> bool {
-        let Ok(raw) = self.meaning.raw else { return false };
+        let Some(raw) = self.meaning.bits() else { return false };
         digits_apart(signal, self.data, raw) + nibbles(self.reserved).filter(|nibble| *nibble != 0).count() <= 1
     }
 }
@@ -98,6 +96,7 @@ pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evide
                 data,
                 reserved: decoded.reserved,
                 bits: *bits,
+                agrees: meaning.is(signal, *bits),
                 read,
             });
         }
@@ -135,12 +134,12 @@ impl<'a> Field<'a> {
     }
 
     pub fn denials(&self) -> impl Iterator<Item = &'a Evidence<'a>> + use<'a> {
-        self.evidence.iter().filter(|evidence| !evidence.agrees())
+        self.evidence.iter().filter(|evidence| !evidence.agrees)
     }
 
     /// Tests whether an example agrees in bits that count.
     pub fn is_borne_out(&self, counts: impl Fn(u64) -> bool) -> bool {
-        self.evidence.iter().any(|evidence| evidence.agrees() && counts(evidence.bits))
+        self.evidence.iter().any(|evidence| evidence.agrees && counts(evidence.bits))
     }
 
     /// Finds the place of a key in the field, or else in one of its types.
@@ -150,7 +149,7 @@ impl<'a> Field<'a> {
 
     /// Reports that the frame sets a bit without a name in place of the one that the example names.
     pub fn moved_bit(&self, denial: &Evidence, bits: &[StatusBit]) -> Option<Diagnostic> {
-        let said = denial.meaning.raw.as_ref().ok()?;
+        let said = denial.meaning.bits()?;
         let (missing, surplus) = (said & !denial.bits, denial.bits & !said);
         let is_moved = missing.is_power_of_two() && surplus.is_power_of_two();
         let has_name = |bit: u32| bits.iter().any(|known| u32::from(known.bit) == bit);
@@ -173,7 +172,7 @@ impl<'a> Field<'a> {
 
     /// Reports that the frame has a number without a name where the example has a name.
     pub fn misnumbered(&self, denial: &Evidence, diagnostics: &Diagnostics) -> Option<Diagnostic> {
-        let raw = *denial.meaning.raw.as_ref().ok()?;
+        let raw = denial.meaning.bits()?;
         let at = self.written("values", diagnostics)?;
         let Content::Map(values) = &diagnostics.tree()?.get(&at)?.content else { return None };
         let name = Content::Text(denial.meaning.text.clone());

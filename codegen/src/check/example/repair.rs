@@ -5,7 +5,7 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::evidence::{Evidence, Field};
 use crate::diagnostic::Diagnostics;
-use crate::encoding::Words;
+use crate::encoding::{Words, said};
 use crate::model::{Encoding, Linear, Meaning, Protocol, Signal, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
@@ -76,11 +76,11 @@ pub fn find(
     let holds = |repair: &Repair| {
         fields.iter().all(|field| {
             let signal = repair.change.of(field.signal);
-            let parse = |text: &str| Words::from(protocol).with(&signal, |room| room.parse(text, true));
             let bears_out = |evidence: &Evidence| {
-                let Meaning { raw, text, .. } = evidence.meaning;
-                let raw = if repair.change.keeps_raw(field.signal) { raw.clone() } else { parse(text) };
-                raw == Ok(signal.place.get(&evidence.data))
+                let Meaning { said: as_is, text, .. } = evidence.meaning;
+                let keeps = repair.change.keeps_raw(field.signal);
+                let said = if keeps { as_is.clone() } else { said(Words::from(protocol), &signal, text) };
+                said.is_ok_and(|said| said.is(&signal, signal.place.get(&evidence.data)))
             };
             !repair.change.overlaps(field) && field.evidence.iter().all(bears_out)
         })

@@ -109,7 +109,8 @@ impl Manual<'_> {
 impl<'a> Printed<'a> {
     /// Reads a frame; `None` if the document does not print it, or something about it is odd.
     fn new(protocol: &'a Protocol, example: &'a Example) -> Option<Self> {
-        let is_printed = !example.ours && example.fails.is_none() && example.model.is_none() && example.data.is_some();
+        let is_printed =
+            example.is_documented() && example.fails.is_none() && example.model.is_none() && example.data.is_some();
         let decoded = decode(protocol, None, &Frame::of(protocol, example)).ok().filter(|_| is_printed)?;
         (decoded.notes.is_empty() && decoded.set.is_none()).then_some(Self { protocol, example, decoded })
     }

@@ -38,7 +38,7 @@ fn sentence(protocol: &Protocol, message: &Message) -> String {
 /// Returns the first frame of a kind that the document prints whole, and that holds.
 pub fn printed(protocol: &Protocol, id: MessageId, kind: Kind) -> Option<&Example> {
     let mut examples = protocol.examples.iter().filter(|example| example.message == Some(id) && example.kind == kind);
-    examples.find(|example| !example.ours && example.fails.is_none() && example.data.is_some())
+    examples.find(|example| example.is_documented() && example.fails.is_none() && example.data.is_some())
 }
 
 /// Writes a frame as documents print it.
