@@ -8,6 +8,7 @@ mod example;
 mod grid;
 mod model_range;
 mod no_example;
+mod no_limit;
 mod no_unit;
 mod nobody_replies;
 mod outside_frame;
@@ -45,6 +46,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 25] = [
     (&range_width::RANGE_WIDTH, Some(range_width::check)),
     (&range_step::RANGE_STEP, Some(range_step::check)),
     (&read_only_range::READ_ONLY_RANGE, Some(read_only_range::check)),
+    (&no_limit::NO_LIMIT, Some(no_limit::check)),
     (&no_unit::NO_UNIT, Some(no_unit::check)),
     (&rules::MODEL_RANGE, Some(model_range::check)),
     (&special_value::SPECIAL_VALUE, Some(special_value::check)),

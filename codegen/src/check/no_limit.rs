@@ -1,0 +1,40 @@
+#![doc = include_str!("../rules/no_limit.md")]
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Kind, Message, Protocol, Signal, SignalId};
+use crate::rule::rules;
+
+rules! {
+    NO_LIMIT "no_limit" Check WARNING;
+}
+
+/// Units of what can do harm if a device is told to give too much of it.
+const HARMFUL: [&str; 3] = ["V", "A", "W"];
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        for (id, signal) in message.signals.entries() {
+            if is_harmful(signal) && signal.ranges().next().is_none() && is_set(protocol, message, id) {
+                diagnostics.push(unlimited(message, signal));
+            }
+        }
+    }
+}
+
+fn is_harmful(signal: &Signal) -> bool {
+    signal.unit.is_some_and(|unit| HARMFUL.contains(&unit.symbol))
+}
+
+fn is_set(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {
+    protocol.frames_of(message).any(|frame| frame.kind == Kind::Request && frame.signals.contains(&signal))
+}
+
+fn unlimited(message: &Message, signal: &Signal) -> Diagnostic {
+    let text = format!("a request sets `{}.{}` without a limit", message.name, signal.name);
+    let place = signal.types.first().map_or_else(String::new, |name| format!(", or that of its type `{name}`"));
+    let help = format!(
+        "write its `range`{place}, as the document or the device's ratings state it; \
+         if nothing does, say so in an entry of `allow`"
+    );
+    Diagnostic::warning(&NO_LIMIT, signal.doc.path.at_key(), text).help(help)
+}
