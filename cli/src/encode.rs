@@ -40,12 +40,12 @@ pub struct Encode {
     /// Read decoded lines from the file, or from standard input.
     #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["to", "source"])]
     from: Option<Format>,
-    /// Whom to address: `module:3`, `broadcast`, or `MODE:N` with an addressing mode; needed where there is a choice.
+    /// Whom to address: `module:3`, `host:NAME`, `broadcast`, or `MODE:N` with an addressing mode; needed where there is a choice.
     #[arg(long, value_name = "TARGET")]
     to: Option<String>,
-    /// The sender's address, instead of the one that the spec names.
-    #[arg(long, value_name = "ADDRESS", value_parser = address)]
-    source: Option<i64>,
+    /// The sender's address or its name, instead of the one that the spec says is sent.
+    #[arg(long, value_name = "ADDRESS")]
+    source: Option<String>,
     /// `[ACCESS] MESSAGE NAME=VALUE...`, or the file after --from.
     #[arg(value_name = "WORD")]
     words: Vec<String>,
@@ -54,15 +54,6 @@ pub struct Encode {
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     Jsonl,
-}
-
-/// Reads a decimal or `0x` hexadecimal number.
-fn address(text: &str) -> Result<i64, String> {
-    let number = match text.strip_prefix("0x") {
-        Some(digits) => i64::from_str_radix(digits, 16),
-        None => text.parse(),
-    };
-    number.map_err(|_| "an address is a number such as 240 or 0xF0".to_owned())
 }
 
 impl Encode {
@@ -109,7 +100,8 @@ impl Encode {
             access::refuse_several(message, &interpret::accesses(protocol, message, &signals).map_err(refused)?)?;
         }
         let target = self.target(protocol, access, message)?;
-        let frames = interpret::requests(protocol, model, access, message, &target, self.source, &signals);
+        let source = self.source.as_ref().map(|text| interpret::source(protocol, text)).transpose().map_err(refused)?;
+        let frames = interpret::requests(protocol, model, access, message, &target, source, &signals);
         let frames = frames.map_err(refused)?;
         let mut out = output()?;
         frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
@@ -121,7 +113,7 @@ impl Encode {
     /// Returns the target of the call, or the only one that there is.
     fn target(&self, protocol: &Protocol, access: Option<&str>, message: &str) -> Result<Target, Failure> {
         match &self.to {
-            Some(to) => Target::parse(to).map_err(|refusal| Failure::Call(refusal.to_string())),
+            Some(to) => Target::parse(protocol, to).map_err(|refusal| Failure::Call(refusal.to_string())),
             None => match interpret::targets(protocol, access, message) {
                 Err(refusal) => Err(Failure::Call(refusal.to_string())),
                 Ok(Targets::One(target)) => Ok(target),

@@ -9,7 +9,7 @@ mod value;
 pub use decode::decode;
 pub(crate) use decode::failed_tests;
 pub use encode::encode;
-pub use request::{Target, Targets, accesses, request, requests, targets};
+pub use request::{Target, Targets, accesses, request, requests, source, targets};
 pub use value::{Limits, physical, raw_of};
 
 use std::fmt;

@@ -4,12 +4,13 @@ use core::ptr;
 
 use crate::{Bits, Error};
 
-/// A kind of address: a documented range of numbers.
+/// A kind of address: a documented range of numbers, or a few numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AddressType {
     name: &'static str,
     first: i32,
     last: i32,
+    only: &'static [i32],
     offset: i32,
     descending: bool,
     strict: bool,
@@ -19,7 +20,13 @@ pub struct AddressType {
 impl AddressType {
     /// Returns addresses from `first` to `last`, which are the values of the field.
     pub const fn new(name: &'static str, first: i32, last: i32) -> Self {
-        Self { name, first, last, offset: 0, descending: false, strict: false, default: None }
+        Self { name, first, last, only: &[], offset: 0, descending: false, strict: false, default: None }
+    }
+
+    /// Documents only these numbers of the range.
+    #[must_use]
+    pub const fn only(self, only: &'static [i32]) -> Self {
+        Self { only, ..self }
     }
 
     /// Adds the number of field value 0.
@@ -62,7 +69,7 @@ impl AddressType {
     /// Tests whether the document names this number.
     #[inline(always)]
     pub const fn documents(&self, number: i32) -> bool {
-        self.first <= number && number <= self.last
+        self.first <= number && number <= self.last && (self.only.is_empty() || has(self.only, number))
     }
 
     /// Returns the number that is sent unless the caller says otherwise.
@@ -92,9 +99,24 @@ impl AddressType {
     /// Refuses a number that the document does not name.
     #[inline(always)]
     pub(crate) const fn documented(&self, number: i32) -> Result<(), Error> {
-        let Self { name: address, first, last, .. } = *self;
-        if self.documents(number) { Ok(()) } else { Err(Error::Address { address, number, first, last }) }
+        let Self { name: address, first, last, only, .. } = *self;
+        match only {
+            _ if self.documents(number) => Ok(()),
+            [] => Err(Error::Address { address, number, first, last }),
+            _ => Err(Error::UnnamedAddress { address, number }),
+        }
     }
+}
+
+/// Tests whether a number is one of some.
+const fn has(mut numbers: &[i32], number: i32) -> bool {
+    while let [first, rest @ ..] = numbers {
+        if *first == number {
+            return true;
+        }
+        numbers = rest;
+    }
+    false
 }
 
 /// A field of the identifier that holds an address.
@@ -289,5 +311,24 @@ impl Addressing {
     /// Refuses addresses that the document does not name.
     pub(crate) fn documented(&self, id: u32) -> Result<(), Error> {
         self.pattern.addresses.iter().try_for_each(|address| address.kind.documented(address.number(id)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn only_single_numbers_are_documented_if_a_type_has_some() {
+        let host = AddressType::new("host", 0x20, 0x60).only(&[0x20, 0x40, 0x60]);
+        let documented = [0x1F, 0x20, 0x21, 0x40, 0x41, 0x60, 0x61].map(|number| host.documented(number).is_ok());
+        assert_eq!(documented, [false, true, false, true, false, true, false]);
+        let refused = host.documented(0x30).expect_err("a number without a name");
+        assert_eq!(refused.to_string(), "`host` is 0x30, which has no name");
+        let module = AddressType::new("module", 1, 3);
+        let refused = module.documented(4).expect_err("a number outside the range");
+        assert_eq!(refused.to_string(), "`module` is 0x04, but its limits are 0x01..=0x03");
     }
 }

@@ -85,6 +85,13 @@ pub enum Error {
         /// The last address.
         last: i32,
     },
+    /// The document names other addresses only.
+    UnnamedAddress {
+        /// Name of the kind of address.
+        address: &'static str,
+        /// The refused address.
+        number: i32,
+    },
     /// The identifier belongs to another message, kind of frame or protocol.
     Identifier {
         /// Name of the message.
@@ -123,6 +130,9 @@ impl fmt::Display for Error {
             Self::Address { address, number, first, last } => {
                 let [number, first, last] = [number, first, last].map(Hexadecimal);
                 write!(formatter, "`{address}` is {number}, but its limits are {first}..={last}")
+            }
+            Self::UnnamedAddress { address, number } => {
+                write!(formatter, "`{address}` is {}, which has no name", Hexadecimal(number))
             }
             Self::Identifier { message, id } => write!(formatter, "the identifier 0x{id:X} is none of `{message}`"),
         }

@@ -220,7 +220,8 @@ impl<'a> Frames<'a> {
         }
         for address in &pattern.addresses {
             let field = &self.protocol[address.field];
-            let (first, last) = self.protocol[address.address_type].raw_range();
+            let ranges = self.protocol[address.address_type].raw_ranges();
+            let (first, last) = ranges[self.random.usize(..ranges.len())];
             if self.random.u8(..8) > 0 {
                 id = id & !field.mask() | self.random.u32(first..=last) << field.shift;
             }

@@ -31,7 +31,7 @@ header:
   spare:  {bytes: 7}
   flags:  {bytes: 1, fields: {more: {bits: 7..4, continues: 2}, page: {bits: 3..0}}}
 types:
-  controller: {range: 0xF0..0xF1, send: 0xF0, outside: refused}
+  controller: {values: {0xF0: main, 0xF1: other}, send: 0xF0, outside: refused}
   module:     {range: 0..0x3F}
   level:      {bytes: 2, range: 0..30}
   alarms:     {bytes: 2, status: {hot: {bit: 3}}}
@@ -131,7 +131,8 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Offset => &["3"],
         Key::Unit => &["V"],
         Key::Range => &["1..15"],
-        Key::Values => &["{5: five, 6: six}"],
+        // The second one names the addresses of the controllers.
+        Key::Values => &["{5: five, 6: six}", "{0xF0: five, 0xF1: six}"],
         Key::Fields => &["{inner: {bits: 0}}", "{letter: {bytes: 4, as: text}, year: {bytes: 5}, day: {bytes: 6}}"],
         Key::Status => &["{late: {bit: 2}}"],
         Key::Format => &["\"{inner}\"", "\"{letter}/{number}\"", "\"{letter}.{year:2}.{day}\""],

@@ -159,13 +159,13 @@ pub fn accepted(protocol: &Protocol, pattern: &AddressPattern, field: FieldId) -
         return vec![(0, greatest)];
     };
     let address_type = &protocol[address.address_type];
-    let documented = address_type.raw_range();
-    if address_type.strict { vec![documented] } else { without(greatest, &address.excluded, documented) }
+    let documented = address_type.raw_ranges();
+    if address_type.strict { documented } else { without(greatest, &address.excluded, documented) }
 }
 
 /// Returns the values up to `greatest` that are not excluded, and the documented ones.
-fn without(greatest: u32, excluded: &[(u32, u32)], documented: (u32, u32)) -> Ranges {
-    let mut ranges = vec![documented];
+fn without(greatest: u32, excluded: &[(u32, u32)], documented: Ranges) -> Ranges {
+    let mut ranges = documented;
     let mut next = 0;
     for (first, last) in excluded {
         if *first > next {

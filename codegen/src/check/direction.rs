@@ -124,7 +124,8 @@ impl Known<'_> {
 
     /// Returns numbers that show what the pattern says of a field.
     fn samples(&self, protocol: &Protocol, field: FieldId) -> impl Iterator<Item = u32> {
-        let documented = self.address(field).map(|address| protocol[address.address_type].raw_range().0);
+        let address = self.address(field).map(|address| protocol[address.address_type].raw_ranges());
+        let documented = address.into_iter().flatten().take(1).map(|(first, _)| first);
         self.constant(protocol, field).into_iter().chain(documented)
     }
 
@@ -261,8 +262,9 @@ impl Pair<'_> {
     fn by_type(&self, protocol: &Protocol, field: FieldId) -> Option<String> {
         let of = |known: &Known| Some(&protocol[known.address(field)?.address_type]);
         let (asked, answered) = (of(self.request)?, of(self.reply)?);
-        let ((first, last), (start, end)) = (asked.raw_range(), answered.raw_range());
-        (last < start || end < first).then(|| {
+        let apart = |(first, last): &(u32, u32), (start, end): &(u32, u32)| last < start || end < first;
+        let others = answered.raw_ranges();
+        asked.raw_ranges().iter().all(|range| others.iter().all(|other| apart(range, other))).then(|| {
             format!(
                 "give one field different constants in requests and replies. \
                  If no `{}` has a number of `{}`, write `outside: refused` in the type `{}`",

@@ -32,21 +32,24 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 fn shared(protocol: &Protocol, frame: &FrameLayout, one: Asked, other: Asked) -> Option<Diagnostic> {
     let mut identifier = 0;
     for (id, field) in protocol.identifier.fields.entries() {
-        let [(first, last), (start, end)] = [one, other].map(|(_, pattern)| sent(protocol, frame, pattern, id));
-        let lowest = first.max(start);
-        if lowest > last.min(end) {
-            return None;
-        }
-        identifier = field.put(identifier, lowest);
+        let [numbers, others] = [one, other].map(|(_, pattern)| sent(protocol, frame, pattern, id));
+        identifier = field.put(identifier, lowest_shared(&numbers, &others)?);
     }
     Some(report(protocol, identifier, [one, other].map(|(mode, _)| &protocol[mode])))
 }
 
-/// Returns the least and the greatest value of a field that the document names for a request.
-fn sent(protocol: &Protocol, frame: &FrameLayout, pattern: &AddressPattern, field: FieldId) -> (u32, u32) {
+/// Returns the values of a field that the document names for a request, as inclusive ranges.
+fn sent(protocol: &Protocol, frame: &FrameLayout, pattern: &AddressPattern, field: FieldId) -> Vec<(u32, u32)> {
     let value = protocol[field].get(protocol.base_identifier(frame, pattern));
     let address = pattern.addresses.iter().find(|address| address.field == field);
-    address.map_or((value, value), |address| protocol[address.address_type].raw_range())
+    address.map_or_else(|| vec![(value, value)], |address| protocol[address.address_type].raw_ranges())
+}
+
+/// Returns the lowest number that lies in a range of both lists.
+fn lowest_shared(ranges: &[(u32, u32)], others: &[(u32, u32)]) -> Option<u32> {
+    let pairs = ranges.iter().flat_map(|range| others.iter().map(move |other| (range, other)));
+    let shared = pairs.map(|(range, other)| (range.0.max(other.0), range.1.min(other.1)));
+    shared.filter(|(first, last)| first <= last).map(|(first, _)| first).min()
 }
 
 fn report(protocol: &Protocol, identifier: u32, [one, other]: [&Mode; 2]) -> Diagnostic {
@@ -60,10 +63,11 @@ fn report(protocol: &Protocol, identifier: u32, [one, other]: [&Mode; 2]) -> Dia
     let known = &protocol[address.address_type];
     let (name, number) = (&known.name, known.number(protocol[address.field].get(identifier)));
     let text = format!("a request to `{name}` {number} is also one in the mode `{}`", second.name);
-    let help = format!("if no `{name}` has the address {number}, take it out of the range of `{name}`");
+    let key = if known.names.is_empty() { "range" } else { "values" };
+    let help = format!("if no `{name}` has the address {number}, take it out of the {key} of `{name}`");
     let diagnostic = Diagnostic::warning(&SHARED_ADDRESS, at(second), text).help(help);
     let diagnostic = diagnostic.other(at(mode), format!("here `{name}` is addressed"));
-    diagnostic.other(known.doc.path.key("range").at_value(), "the range")
+    diagnostic.other(known.doc.path.key(key).at_value(), format!("the {key}"))
 }
 
 /// Returns the address that requests of a mode leave to the caller.

@@ -452,10 +452,13 @@ impl<'a> Decoder<'a> {
             let address_type = &self.protocol[address.address_type];
             let raw = self.field(address.field);
             if !address_type.documents(raw) {
-                let (first, last) = address_type.raw_range();
+                let shown = |(first, last): &(u32, u32)| {
+                    let [first, last] = [*first, *last].map(hexadecimal);
+                    if first == last { first } else { format!("{first}..{last}") }
+                };
                 let field = &self.protocol[address.field].name;
-                let range = format!("{}..{}", hexadecimal(first), hexadecimal(last));
-                let text = format!("{field} {} is outside {range} of `{}`", hexadecimal(raw), address_type.name);
+                let ranges = address_type.raw_ranges().iter().map(shown).collect::<Vec<_>>().join(", ");
+                let text = format!("{field} {} is outside {ranges} of `{}`", hexadecimal(raw), address_type.name);
                 notes.push(Note { rule: NoteRule::Address, text });
             }
         }

@@ -18,20 +18,50 @@ pub struct Target {
 }
 
 impl Target {
-    /// Reads `broadcast`, `module:3` or `module:0x3B`.
+    /// Reads `broadcast`, `module:3`, `module:0x3B`, or `host:gprs` if the address has a name.
     ///
     /// # Errors
     ///
-    /// Says that the text after the colon is no number.
-    pub fn parse(text: &str) -> Result<Self, Refusal> {
+    /// Says that the text after the colon is neither a number nor a name.
+    pub fn parse(protocol: &Protocol, text: &str) -> Result<Self, Refusal> {
         let Some((name, number)) = text.split_once(':') else {
             return Ok(Self { name: text.to_owned(), number: None });
         };
-        let whole =
-            Rational::parse(number).and_then(Rational::to_integer).and_then(|number| i64::try_from(number).ok());
-        let number = whole.ok_or_else(|| Refusal(format!("`{number}` is not an address; write `{name}:3`")))?;
-        Ok(Self { name: name.to_owned(), number: Some(number) })
+        let is_meant = |mode: &&Mode| mode.name == name || protocol.target_name(mode) == name;
+        let chosen = protocol.modes.iter().filter(is_meant).filter_map(|mode| Some(&protocol[mode.target?]));
+        Ok(Self { name: name.to_owned(), number: Some(address(chosen, number, &format!("{name}:3"))?) })
     }
+}
+
+/// Reads the address of a sender: a number, or its name.
+///
+/// # Errors
+///
+/// Says that the text is neither.
+pub fn source(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
+    let requests = protocol.modes.iter().filter_map(|mode| Some((mode, mode.request.as_ref()?)));
+    let senders = requests.flat_map(|(mode, request)| {
+        let others = request.addresses.iter().filter(|address| Some(address.address_type) != mode.target);
+        others.map(|address| &protocol[address.address_type])
+    });
+    address(senders, text, "240` or `0xF0")
+}
+
+/// Reads an address: a number, or a name of one of the types.
+fn address<'a>(types: impl Iterator<Item = &'a AddressType>, text: &str, form: &str) -> Result<i64, Refusal> {
+    let whole = Rational::parse(text).and_then(Rational::to_integer).and_then(|number| i64::try_from(number).ok());
+    if let Some(number) = whole {
+        return Ok(number);
+    }
+    let types: Vec<_> = types.collect();
+    types.iter().find_map(|known| known.named(text)).ok_or_else(|| {
+        let names = types.iter().flat_map(|known| &known.names);
+        let mut quoted: Vec<_> = names.map(|(_, name)| format!("`{name}`")).collect();
+        quoted.dedup();
+        let others =
+            if quoted.is_empty() { String::new() } else { format!(", or one of the names {}", quoted.join(", ")) };
+        Refusal(format!("`{text}` is not an address; write `{form}`{others}"))
+    })
 }
 
 /// Whom a request can go to.
@@ -295,10 +325,17 @@ fn identifier(
 fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64>) -> Result<u32, Refusal> {
     let number = number.unwrap_or(address_type.first);
     let raw = u32::try_from(address_type.raw(number)).ok();
-    let documented = raw.filter(|_| (address_type.first..=address_type.last).contains(&number));
+    let documented = raw.filter(|_| address_type.has(number));
     documented.ok_or_else(|| {
-        let AddressType { name, first, last, .. } = address_type;
-        refuse(message, &format!("{name} {number} is outside {first}..{last} ({first:#04X}..{last:#04X})"))
+        let AddressType { name, first, last, names, .. } = address_type;
+        let named: Vec<_> = names.iter().map(|(number, name)| format!("{number:#04X} ({name})")).collect();
+        refuse(
+            message,
+            &match named.as_slice() {
+                [] => format!("{name} {number} is outside {first}..{last} ({first:#04X}..{last:#04X})"),
+                _ => format!("{name} {number} ({number:#04X}) is none of {}", named.join(", ")),
+            },
+        )
     })
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::{AddressTypeId, Doc, FieldId, IdentifierField, Kind, Table, Who};
 
-/// A kind of address: a range of numbers in a field of the identifier.
+/// A kind of address: a range of numbers in a field of the identifier, or a few numbers with names.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct AddressType {
@@ -16,11 +16,14 @@ pub struct AddressType {
     pub first: i64,
     /// Last number that the document names.
     pub last: i64,
+    /// The only numbers that the document names, in rising order, with their names. If there are
+    /// none, it names all from the first to the last.
+    pub names: Vec<(i64, String)>,
     /// Number of raw 0.
     pub offset: i64,
     /// Step of the number from one raw value to the next, 1 or -1: raw = (number - offset) * sign.
     pub sign: i64,
-    /// A number outside the range is no address of this type, not even an undocumented one.
+    /// A number that the document does not name is no address of this type, not even an undocumented one.
     pub strict: bool,
     /// Number sent unless the caller says otherwise.
     pub send: Option<i64>,
@@ -37,15 +40,37 @@ impl AddressType {
         i64::from(raw) * self.sign + self.offset
     }
 
-    /// Returns the documented raw values as an inclusive range.
-    pub fn raw_range(&self) -> (u32, u32) {
-        let ends = [self.raw(self.first), self.raw(self.last)].map(|end| u32::try_from(end).unwrap_or(0));
-        (ends[0].min(ends[1]), ends[0].max(ends[1]))
+    /// Returns the documented raw values as inclusive ranges, in rising order.
+    pub fn raw_ranges(&self) -> Vec<(u32, u32)> {
+        let raw = |number| u32::try_from(self.raw(number)).unwrap_or(0);
+        if self.names.is_empty() {
+            let (one, other) = (raw(self.first), raw(self.last));
+            return vec![(one.min(other), one.max(other))];
+        }
+        let mut ranges: Vec<_> = self.names.iter().map(|(number, _)| (raw(*number), raw(*number))).collect();
+        ranges.sort_unstable();
+        ranges
     }
 
     /// Tests whether the document names this raw value.
     pub fn documents(&self, raw: u32) -> bool {
-        (self.first..=self.last).contains(&self.number(raw))
+        self.has(self.number(raw))
+    }
+
+    /// Tests whether the document names this number.
+    pub fn has(&self, number: i64) -> bool {
+        let is_named = self.names.is_empty() || self.names.iter().any(|(known, _)| *known == number);
+        is_named && (self.first..=self.last).contains(&number)
+    }
+
+    /// Returns the number with this name.
+    pub fn named(&self, name: &str) -> Option<i64> {
+        self.names.iter().find(|(_, known)| known == name).map(|(number, _)| *number)
+    }
+
+    /// Returns the key that says which numbers the document names.
+    pub fn key(&self) -> &'static str {
+        if self.names.is_empty() { "range" } else { "values" }
     }
 }
 

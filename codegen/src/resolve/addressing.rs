@@ -7,7 +7,7 @@ use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
     Address, AddressPattern, AddressType, AddressTypeId, Direction, FieldId, FieldTest, Identifier, IdentifierField,
-    Mode, ModeId, Table, exclude,
+    Mode, ModeId, Numeral, Table, exclude,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -17,6 +17,9 @@ use crate::words::OUTSIDE;
 
 /// The kinds of addresses.
 type AddressTypes = Table<AddressTypeId, AddressType>;
+
+/// Numbers of addresses and their names.
+type Names = Vec<(i64, String)>;
 
 impl Resolver<'_> {
     /// Reads the types that addressing patterns name.
@@ -29,17 +32,7 @@ impl Resolver<'_> {
     fn address_type(&mut self, name: &str, field: &ast::Field) -> Option<AddressType> {
         let path = Path::default().key("types").key(name);
         self.check_own_keys(&path, field, Role::Address);
-        let Some(text) = &field.range else {
-            let help = "say which numbers the document names, for instance `range: 0..0x3B`";
-            self.error_with_help(
-                &rules::ADDRESSING,
-                path.at_key(),
-                format!("the address type `{name}` has no range"),
-                help,
-            );
-            return None;
-        };
-        let (first, last) = self.whole_range(&path.key("range"), text)?;
+        let (first, last, names) = self.numbers(&path, name, field)?;
         let sign = match field.scale.as_deref() {
             None | Some("1") => 1,
             Some("-1") => -1,
@@ -59,12 +52,47 @@ impl Resolver<'_> {
         };
         let offset = whole("offset", &field.offset).unwrap_or(0);
         let send = whole("send", &field.send);
-        if send.is_some_and(|number| !(first..=last).contains(&number)) {
-            self.diagnostics.push(unnamed_sender(&path, name));
-        }
         let strict = self.strict(&path, field.outside.as_deref());
         let doc = remarks!(field).doc(&path, None);
-        Some(AddressType { name: name.to_owned(), doc, first, last, offset, sign, strict, send })
+        let known = AddressType { name: name.to_owned(), doc, first, last, names, offset, sign, strict, send };
+        if send.is_some_and(|number| !known.has(number)) {
+            self.diagnostics.push(unnamed_sender(&path, &known));
+        }
+        Some(known)
+    }
+
+    /// Reads the first and the last number of an address type, and the names of single ones.
+    fn numbers(&mut self, path: &Path, name: &str, field: &ast::Field) -> Option<(i64, i64, Names)> {
+        match (&field.range, field.values.is_empty()) {
+            (Some(text), true) => {
+                self.whole_range(&path.key("range"), text).map(|(first, last)| (first, last, Vec::new()))
+            }
+            (None, false) => {
+                let names = self.named_numbers(path, field);
+                Some((names.first()?.0, names.last()?.0, names))
+            }
+            (None, true) => {
+                let text = format!("the address type `{name}` has neither a range nor values");
+                let help = "say which numbers the document names, for instance `range: 0..0x3B`";
+                self.error_with_help(&rules::ADDRESSING, path.at_key(), text, help);
+                None
+            }
+            (Some(_), false) => {
+                let text = format!("the address type `{name}` has both a range and values");
+                let help = "keep `values` if the document names only these numbers, and else `range`";
+                self.error_with_help(&rules::ADDRESSING, path.key("values").at_key(), text, help);
+                None
+            }
+        }
+    }
+
+    /// Reads the names of addresses, in the order of their numbers.
+    fn named_numbers(&mut self, path: &Path, field: &ast::Field) -> Names {
+        let named = self.values(&path.key("values"), &field.values, 32, Numeral::Signed);
+        let numbers = named.into_iter().filter_map(|value| Some((i64::try_from(value.raw).ok()?, value.name)));
+        let mut numbers: Vec<_> = numbers.collect();
+        numbers.sort_unstable();
+        numbers
     }
 
     /// Reads a range of whole numbers.
@@ -88,7 +116,7 @@ impl Resolver<'_> {
 
     /// Tests that the field holds all addresses that can be sent.
     fn check_address_width(&mut self, at: &Path, address_type: &AddressType, field: &IdentifierField) {
-        let ends = [address_type.first, address_type.last].map(|number| (number, "range"));
+        let ends = [address_type.first, address_type.last].map(|number| (number, address_type.key()));
         let numbers = ends.into_iter().chain(address_type.send.map(|number| (number, "send")));
         let mut raw = numbers.map(|(number, key)| (address_type.raw(number), key));
         if let Some((raw, key)) = raw.find(|(raw, _)| *raw < 0 || *raw >> field.width != 0) {
@@ -239,7 +267,7 @@ fn could_be_address(field: &ast::Field) -> bool {
 fn claimed(spec: &ast::Spec, field: &str, types: &AddressTypes) -> Vec<(u32, u32)> {
     let strict = types.iter().filter(|known| known.strict);
     let used = strict.filter(|known| patterns(spec).any(|(_, pattern)| pattern.get(field) == Some(&known.name)));
-    let mut ranges: Vec<_> = used.map(AddressType::raw_range).collect();
+    let mut ranges: Vec<_> = used.flat_map(AddressType::raw_ranges).collect();
     ranges.sort_unstable();
     ranges.dedup();
     ranges
@@ -313,7 +341,7 @@ fn direction_tests(
         let address = pattern.addresses.iter().find(|address| address.field == id);
         let claimed = strict_ranges(id, types, modes);
         if let Some(address) = address.filter(|address| types[address.address_type].strict) {
-            tests.push(FieldTest { field: id, ranges: vec![types[address.address_type].raw_range()], inside: true });
+            tests.push(FieldTest { field: id, ranges: types[address.address_type].raw_ranges(), inside: true });
         } else if pattern.mask & field.mask() != 0 && others.iter().all(|other| differs(pattern, other, field.mask())) {
             tests.push(FieldTest::constant(id, field.get(pattern.value)));
         } else if (address.is_some() || pattern.mask & field.mask() != 0) && !claimed.is_empty() {
@@ -332,16 +360,26 @@ fn strict_ranges(field: FieldId, types: &AddressTypes, modes: &Table<ModeId, Mod
     let patterns = modes.iter().flat_map(|mode| [&mode.request, &mode.one, &mode.each, &mode.coordinator]);
     let addresses = patterns.flatten().flat_map(|pattern| &pattern.addresses).filter(|address| address.field == field);
     let strict = addresses.map(|address| &types[address.address_type]).filter(|known| known.strict);
-    let mut ranges: Vec<_> = strict.map(AddressType::raw_range).collect();
+    let mut ranges: Vec<_> = strict.flat_map(AddressType::raw_ranges).collect();
     ranges.sort_unstable();
     ranges.dedup();
     ranges
 }
 
 /// Refuses requests with an address that the document does not name.
-fn unnamed_sender(address_type: &Path, name: &str) -> Diagnostic {
-    let message = format!("requests are sent with an address outside the range of `{name}`");
-    Diagnostic::error(&rules::ADDRESSING, address_type.key("send").at_value(), message)
-        .other(address_type.key("range").at_value(), "the range")
-        .help("correct `send`, or widen the range")
+fn unnamed_sender(path: &Path, known: &AddressType) -> Diagnostic {
+    let (name, key) = (&known.name, known.key());
+    let (message, help) = if known.names.is_empty() {
+        (
+            format!("requests are sent with an address outside the range of `{name}`"),
+            "correct `send`, or widen the range",
+        )
+    } else {
+        (
+            format!("requests are sent with an address that `{name}` does not name"),
+            "correct `send`, or name the address",
+        )
+    };
+    let error = Diagnostic::error(&rules::ADDRESSING, path.key("send").at_value(), message);
+    error.other(path.key(key).at_value(), format!("the {key}")).help(help)
 }

@@ -102,7 +102,9 @@ impl Role {
             Key::Unit => among(QUANTITIES),
             Key::Range => among(QUANTITIES) || among(PACKED_NUMBERS) || among(&[Self::Address, Self::OfModel]),
             Key::Values => {
-                among(IDENTIFIER) || among(&[Self::Header, Self::Constant, Self::Number, Self::Decimal, Self::Named])
+                among(IDENTIFIER)
+                    || among(&[Self::Address, Self::Header, Self::Constant])
+                    || among(&[Self::Number, Self::Decimal, Self::Named])
             }
             Key::Absent => among(&[Self::Number, Self::Decimal, Self::Named]),
             Key::Fields => among(WORDS) || self == Self::Packed,

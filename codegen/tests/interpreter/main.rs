@@ -127,6 +127,6 @@ fn requested(
     let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
     let (access, message) =
         message.split_once(' ').map_or((None, message), |(access, message)| (Some(access), message));
-    let made = request(protocol, model, access, message, &Target::parse(to)?, None, &signals)?;
+    let made = request(protocol, model, access, message, &Target::parse(protocol, to)?, None, &signals)?;
     Ok(printed(&made))
 }

@@ -1,6 +1,6 @@
 //! Requests by name, with values as a person types them.
 
-use canspec_codegen::interpret::{Target, Targets, requests, targets};
+use canspec_codegen::interpret::{Target, Targets, requests, source, targets};
 use canspec_codegen::model::Protocol;
 
 use super::{WIDE, feature, model, notes, printed, protocol, requested, written};
@@ -215,7 +215,7 @@ fn the_written_limit_of_a_float_is_legal_although_the_nearest_float_lies_beside_
 /// Makes the requests of a message that may be a set.
 fn frames(protocol: &Protocol, access: Option<&str>, message: &str, signals: &[(&str, &str)]) -> Vec<String> {
     let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-    let target = Target::parse("oven:3").expect("a target");
+    let target = Target::parse(protocol, "oven:3").expect("a target");
     let made = requests(protocol, None, access, message, &target, None, &signals);
     made.map_or_else(|refusal| vec![refusal.to_string()], |frames| frames.iter().map(printed).collect())
 }
@@ -231,7 +231,7 @@ fn a_set_is_asked_for_in_one_frame_or_in_one_a_member_of_which_the_last_says_so(
     let refused = frames(&ovens, None, "identity", &[("value", "1"), ("other", "1")]);
     assert_eq!(refused, ["identity: there is no signal `value` to send; it has none"]);
     let pumps = protocol("tests/specs/devices/split_request.yaml");
-    let target = Target::parse("pump:3").expect("a target");
+    let target = Target::parse(&pumps, "pump:3").expect("a target");
     let made = requests(&pumps, None, None, "identity", &target, None, &[]).expect("a legal request");
     assert_eq!(made.iter().map(printed).collect::<Vec<_>>(), ["503#01AA000000", "503#0200000000"]);
 }
@@ -287,6 +287,21 @@ messages:
     assert_eq!(targets_of(&all, None, "keep_alive"), Ok(vec!["=all None".to_owned()]));
     let pumps = protocol("tests/specs/devices/split_request.yaml");
     assert_eq!(targets_of(&pumps, None, "identity"), Ok(vec!["pump:N".to_owned()]));
+}
+
+#[test]
+fn a_request_takes_the_names_of_addresses_and_no_number_without_a_name() {
+    let named = feature("named_addresses");
+    let to = |target: &str| requested(&named, None, "switch_relay", target, &[("power", "on")]);
+    let charge = Some("00915140#0100000000000000".to_owned());
+    assert_eq!(["relay:charge", "relay:0x51"].map(|target| to(target).ok()), [charge.clone(), charge]);
+    let refusal = |target: &str| to(target).expect_err("no such address").to_string();
+    let why = "switch_relay: relay 82 (0x52) is none of 0x50 (main), 0x51 (charge)";
+    assert_eq!(refusal("relay:0x52"), why);
+    let why = "`gprs` is not an address; write `relay:3`, or one of the names `main`, `charge`";
+    assert_eq!(refusal("relay:gprs"), why);
+    let senders = ["gprs", "0x20", "32", "main"].map(|text| source(&named, text).ok());
+    assert_eq!(senders, [Some(32), Some(32), Some(32), None]);
 }
 
 #[test]

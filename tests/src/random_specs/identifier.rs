@@ -224,7 +224,16 @@ impl Draft {
         let (sign, offset) = self.one(&[(1, 0), (1, 0), (1, 1000), (1, -20), (-1, 0xFF), (-1, 70_000)]);
         let number = |raw: i64| raw * sign + offset;
         let (first, last) = (number(first).min(number(last)), number(first).max(number(last)));
-        keys.put("range", format!("{first}..{last}"));
+        if self.chance(20) {
+            let mut numbers = vec![first, i64::midpoint(first, last), last];
+            numbers.dedup();
+            let mut scope = Scope::default();
+            let names = numbers.into_iter().map(|number| (number.to_string(), self.names.name(&mut scope)));
+            let names: Vec<_> = names.collect();
+            keys.put("values", Map::of(names));
+        } else {
+            keys.put("range", format!("{first}..{last}"));
+        }
         if sign < 0 || self.chance(10) {
             keys.put("scale", sign.to_string());
         }

@@ -51,12 +51,15 @@ fn undirected(protocol: &Protocol, example: &Example, at: At, wrongly: &str) -> 
     let has = if *inside { "has" } else { "never has" };
     let text = format!("`{name}` is {found:#04X}, where a {kind} {has} {allowed}");
     let is_named = |range: &(u32, u32)| ranges.contains(&range);
-    let mut types = protocol.address_types.iter().filter(|known| known.strict && is_named(&known.raw_range()));
+    let mut types =
+        protocol.address_types.iter().filter(|known| known.strict && known.raw_ranges().iter().any(is_named));
     let diagnostic = Diagnostic::error(&rules::EXAMPLE, at, text);
     Some(match types.next() {
-        Some(known) => diagnostic
-            .other(known.doc.path.key("range").at_value(), "its addresses")
-            .help(format!("correct the frame, or the range of the type `{}`; {wrongly}", known.name)),
+        Some(known) => diagnostic.other(known.doc.path.key(known.key()).at_value(), "its addresses").help(format!(
+            "correct the frame, or the {} of the type `{}`; {wrongly}",
+            known.key(),
+            known.name
+        )),
         None => diagnostic.help(format!("correct the frame, or add an addressing mode for it; {wrongly}")),
     })
 }

@@ -74,8 +74,9 @@ fn number(protocol: &Protocol, address: &Address, node: Option<i64>) -> Option<(
     let known = &protocol[address.address_type];
     let raw = u32::try_from(known.raw(known.send.or(node).unwrap_or(known.first))).ok();
     let raw = raw.filter(|raw| known.documents(*raw))?;
-    let (first, last) = known.raw_range();
-    let varying = u32::MAX.checked_shr((first ^ last).leading_zeros()).unwrap_or(0);
+    let varying = known.raw_ranges().into_iter().fold(0, |varying, (first, last)| {
+        varying | raw ^ first | u32::MAX.checked_shr((first ^ last).leading_zeros()).unwrap_or(0)
+    });
     Some((raw, varying))
 }
 

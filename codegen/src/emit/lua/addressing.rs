@@ -52,11 +52,9 @@ fn ranges(ranges: &[(u32, u32)]) -> Value {
 
 /// Returns an address type with the documented raw values.
 pub fn address_type(known: &AddressType) -> Value {
-    let ends = [known.raw(known.first), known.raw(known.last)];
     Value::record()
         .with("name", Value::text(&known.name))
-        .with("first", Value::number(ends[0].min(ends[1])))
-        .with("last", Value::number(ends[0].max(ends[1])))
+        .with("ranges", ranges(&known.raw_ranges()))
         .maybe("strict", known.strict.then(|| Value::flag(true)))
 }
 

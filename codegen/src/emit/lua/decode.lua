@@ -229,7 +229,7 @@ local function pattern_fit(frame, pattern)
   local fit = "documented"
   for _, address in ipairs(pattern.addresses) do
     local kind, raw = protocol.address_types[address.type], identifier_field(frame, address.field)
-    if raw < kind.first or raw > kind.last then
+    if not lies_within(raw, kind.ranges) then
       if kind.strict or lies_within(raw, address.excluded) then return nil end
       fit = "tolerated"
     end
@@ -509,10 +509,14 @@ local function address_notes(frame, decoded, note)
   end
   for _, address in ipairs(known.pattern.addresses) do
     local kind, raw = protocol.address_types[address.type], identifier_field(frame, address.field)
-    if raw < kind.first or raw > kind.last then
-      local range = hexadecimal(kind.first) .. ".." .. hexadecimal(kind.last)
-      local field = protocol.identifier.fields[address.field].name
-      note("address", field .. " " .. hexadecimal(raw) .. " is outside " .. range .. " of `" .. kind.name .. "`")
+    if not lies_within(raw, kind.ranges) then
+      local ranges = {}
+      for _, range in ipairs(kind.ranges) do
+        local first, last = hexadecimal(range[1]), hexadecimal(range[2])
+        table.insert(ranges, first == last and first or first .. ".." .. last)
+      end
+      local field, named = protocol.identifier.fields[address.field].name, table.concat(ranges, ", ")
+      note("address", field .. " " .. hexadecimal(raw) .. " is outside " .. named .. " of `" .. kind.name .. "`")
     end
   end
 end

@@ -4,7 +4,9 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
-use super::plan::address::{Address, AddressType, Mode, Number, Pattern, Sender, Shown, Target, Targets, Value};
+use super::plan::address::{
+    Address, AddressType, Mode, NamedAddress, Number, Pattern, Sender, Shown, Target, Targets, Value,
+};
 use crate::model::Id;
 
 /// Emits a kind of address.
@@ -14,11 +16,20 @@ pub fn address_type(address: &AddressType) -> TokenStream {
     let descending = address.descending.then(|| quote!(.descending()));
     let strict = address.strict.then(|| quote!(.strict()));
     let send = address.send.iter().map(|send| quote!(.default_number(#send)));
+    let numbers = address.named.iter().map(|known| &known.number);
+    let only = (!address.named.is_empty()).then(|| quote!(.only(&[#(#numbers),*])));
+    let named = address.named.iter().map(|known| named_address(known, address.number));
     quote! {
         #comment
         pub const #constant: AddressType =
-            AddressType::new(#name, #first, #last) #(#offset)* #descending #strict #(#send)*;
+            AddressType::new(#name, #first, #last) #only #(#offset)* #descending #strict #(#send)*;
+        #(#named)*
     }
+}
+
+fn named_address(NamedAddress { constant, comment, number }: &NamedAddress, kind: Number) -> TokenStream {
+    let kind = number_type(kind);
+    quote!(#comment pub const #constant: #kind = #number;)
 }
 
 /// Emits a mode.

@@ -105,7 +105,9 @@ impl Plan {
             identifier: Identifier::new(protocol, types),
             continuation: continuation(protocol, &selectors),
             targets: Targets::new(protocol, addresses),
-            address_types: address_types.map(|(known, name)| AddressType::new(protocol, name, known)).collect(),
+            address_types: address_types
+                .map(|(known, name)| AddressType::new(protocol, name, known, &mut constants))
+                .collect(),
             modes: addressing,
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),

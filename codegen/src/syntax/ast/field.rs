@@ -146,12 +146,13 @@ keys! {
     /// `Wh`, `Ω`, `Hz`, `°C`, `K`, `Pa`, `%`, `s`, `ms`, `min`, `h`, `rpm` and `m`.
     Unit "unit": unit: Option<String>, inherited;
     /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`. The unit
-    /// may follow, also with a prefix: `0.2..0.75 kV`. If absent, all that the bits hold is allowed. An address type must have it, with the addresses
-    /// that the document names: `0x00..0x3B`.
+    /// may follow, also with a prefix: `0.2..0.75 kV`. If absent, all that the bits hold is allowed. An address type has it, with the addresses
+    /// that the document names, `0x00..0x3B`, or else `values`.
     Range "range": range: Option<String>, inherited;
     /// Names of raw values, before scale and offset: `{0: standby, 1: running}`; none if absent.
     /// Beside `unit`, `scale`, `offset` or `range` these are special values, and lie outside the
-    /// range.
+    /// range. Of an address type they are the only numbers that the document names:
+    /// `{0x20: gprs, 0x40: upper_computer}`.
     Values "values": values: Map<String>, inherited;
     /// What stands for a value that the device does not have: `ones` or `none`; the protocol's
     /// `absent` if absent. `ones` are bits that are all 1, and the greatest signed number.
@@ -183,7 +184,7 @@ keys! {
     /// Value that the device starts with, a name or a number without its unit: `60` or `automatic`;
     /// none if absent. It is sent if the caller leaves the signal out.
     Default "default": default: Option<String>, inherited;
-    /// What to do with a number outside the `range` of an address type: with `refused` it is not
+    /// What to do with a number that an address type does not name: with `refused` it is not
     /// such an address. If absent, it is accepted with the note `address`.
     Outside "outside": outside: Option<String>, inherited;
     /// Raw values that fields of the identifier and the header have in every reply of a message with this field:

@@ -28,6 +28,20 @@ pub struct AddressType {
     pub strict: bool,
     /// The number that is sent unless the caller says otherwise.
     pub send: Option<TokenStream>,
+    /// The only documented numbers, if they have names.
+    pub named: Vec<NamedAddress>,
+    /// Type of the numbers.
+    pub number: Number,
+}
+
+/// An address with a name.
+pub struct NamedAddress {
+    /// Its constant.
+    pub constant: Ident,
+    /// Comment of the constant.
+    pub comment: Comment,
+    /// The number.
+    pub number: TokenStream,
 }
 
 /// An addressing mode.
@@ -147,7 +161,7 @@ pub fn addresses(protocol: &Protocol, constants: &mut Pool) -> Addresses {
 
 impl AddressType {
     /// Plans a kind of address.
-    pub fn new(protocol: &Protocol, constant: &Ident, address: &model::AddressType) -> Self {
+    pub fn new(protocol: &Protocol, constant: &Ident, address: &model::AddressType, constants: &mut Pool) -> Self {
         let title = doc::title(&address.doc, &address.name);
         let sentence = doc::sentence_of(&format!("{title}: {}", range(address)));
         Self {
@@ -160,13 +174,29 @@ impl AddressType {
             descending: address.sign < 0,
             strict: address.strict,
             send: address.send.map(number),
+            named: address.names.iter().map(|known| NamedAddress::new(address, known, constants)).collect(),
+            number: Number::of(address),
+        }
+    }
+}
+
+impl NamedAddress {
+    fn new(address: &model::AddressType, (known, name): &(i64, String), constants: &mut Pool) -> Self {
+        Self {
+            constant: constants.constant(&format!("{}_{name}", address.name)),
+            comment: Comment::line(format!("The `{}` called `{name}`.", address.name)),
+            number: number(*known),
         }
     }
 }
 
 /// Writes the documented numbers for people.
 fn range(address: &model::AddressType) -> String {
-    format!("`0x{:02X}..=0x{:02X}`", address.first, address.last)
+    let shown = |(number, name): &(i64, String)| format!("`0x{number:02X}` (`{name}`)");
+    match address.names.as_slice() {
+        [] => format!("`0x{:02X}..=0x{:02X}`", address.first, address.last),
+        names => names.iter().map(shown).collect::<Vec<_>>().join(", "),
+    }
 }
 
 /// Writes an address number: hexadecimal as in documents, decimal if it is negative.

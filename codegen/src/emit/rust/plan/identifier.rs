@@ -177,11 +177,12 @@ fn documented(protocol: &Protocol) -> Vec<Test> {
 
 /// Returns the tests of a pattern whose addresses the document names.
 fn shown(protocol: &Protocol, pattern: &AddressPattern) -> Vec<Comparison> {
-    let inside = |field, ends| field_test(protocol, &FieldTest { field, inside: true, ranges: vec![ends] });
+    let inside = |field, ranges| field_test(protocol, &FieldTest { field, inside: true, ranges });
     let fields = protocol.identifier.fields.entries().filter(|(_, field)| pattern.mask & field.mask() != 0);
     let constants =
-        fields.map(|(id, field)| (id, field.get(pattern.value))).map(|(id, value)| inside(id, (value, value)));
-    let addresses = pattern.addresses.iter().map(|known| inside(known.field, protocol[known.address_type].raw_range()));
+        fields.map(|(id, field)| (id, field.get(pattern.value))).map(|(id, value)| inside(id, vec![(value, value)]));
+    let addresses =
+        pattern.addresses.iter().map(|known| inside(known.field, protocol[known.address_type].raw_ranges()));
     constants.chain(addresses).collect()
 }
 
