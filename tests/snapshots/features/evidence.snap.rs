@@ -144,7 +144,7 @@ impl Battery {
     pub const CURRENT: Signal<i16, f64> = Signal::new("current", Place::bytes(2, 3)).unit("A").scale(1, 10);
     /// The signal `level`, to read or write it alone, or to ask for its limits.
     pub const LEVEL: Signal<u8> = Signal::new("level", Place::byte(4)).unit("%");
-    /// The data bits that the document reserves; requests send them as 0.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("battery", FRAME.id(Identifier::COMMAND, 0x01));

@@ -223,7 +223,7 @@ pub struct SwitchRelay {
 impl SwitchRelay {
     /// The signal `power`, to read or write it alone, or to ask for its limits.
     pub const POWER: Signal<SwitchRelayPower> = Signal::new("power", Place::byte(0));
-    /// The data bits that the document reserves; requests send them as 0.
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
     /// The access `set`, for filters and blank frames of it.
     pub const SET: Exchange = SET_ACCESS.of("switch_relay", FRAME.id(Identifier::COMMAND, 0x91));

@@ -156,13 +156,14 @@ pub const WRITE_ACCESS: Exchange = Exchange::new("write", &[Some(Who::One)]).wit
 /// - Reply `18124003#00FF0000`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetCurrent {
-    /// Current in A: bytes 1..0, steps of 0.1 A.
+    /// Current in A: bytes 1..0, steps of 0.1 A, `0..=1000`.
     pub current_a: f64,
 }
 
 impl SetCurrent {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
-    pub const CURRENT: Signal<u16, f64> = Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10);
+    pub const CURRENT: Signal<u16, f64> =
+        Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10).limits(0.0, 1000.0);
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `write`, for filters and blank frames of it.
