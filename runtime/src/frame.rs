@@ -77,6 +77,12 @@ impl Frame {
     pub(crate) const fn byte_count(&self) -> u8 {
         self.length
     }
+
+    /// Tests whether it has one of several numbers of data bytes, or `length` if there are none.
+    #[inline(always)]
+    pub(crate) fn has_length(&self, length: usize, several: &[u8]) -> bool {
+        if several.is_empty() { self.length() == length } else { several.contains(&self.length) }
+    }
 }
 
 impl embedded_can::Frame for Frame {

@@ -125,18 +125,8 @@ impl<M: Protocol> Recognised<M> {
 
     #[inline(always)]
     pub(crate) fn has_length_of(&self, frame: &Frame) -> bool {
-        if self.lengths.is_empty() {
-            usize::from(self.exchange.data_length()) == frame.length()
-        } else {
-            has(self.lengths, frame)
-        }
+        frame.has_length(self.exchange.data_length().into(), self.lengths)
     }
-}
-
-/// Tests whether a frame has one of these numbers of data bytes.
-#[inline(always)]
-pub fn has(lengths: &[u8], frame: &Frame) -> bool {
-    lengths.iter().any(|length| usize::from(*length) == frame.length())
 }
 
 /// Why a frame is not recognised, in the order of the tests.

@@ -3,7 +3,6 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use crate::protocol::has;
 use crate::{Frame, IdentifierFields, Layout, Protocol, Selector};
 
 /// A frame that answers a request.
@@ -35,8 +34,7 @@ impl<P: Protocol, R: Layout> Reply<P, R> {
     /// Decodes a reply, which should have `length` data bytes, or one of those of its layout.
     #[inline(always)]
     pub(crate) fn decode(selectors: &'static [Selector], length: usize, frame: Frame) -> Self {
-        let is_right = if R::LENGTHS.is_empty() { frame.length() == length } else { has(R::LENGTHS, &frame) };
-        let values = match failure::<P>(selectors, is_right, &frame) {
+        let values = match failure::<P>(selectors, frame.has_length(length, R::LENGTHS), &frame) {
             Some(failure) => Err(failure),
             None => Ok(R::read(&frame)),
         };

@@ -13,6 +13,11 @@ local function prepare(place)
   place.mask = UInt64.max():rshift(64 - place.width)
 end
 
+-- Tests whether a frame is long enough to have a place.
+local function has(frame, place)
+  return place.first + place.count <= frame.length
+end
+
 -- Returns the raw value at a place, without its sign.
 local function get(frame, place)
   local word = place.big and frame.big or frame.little
@@ -371,7 +376,7 @@ local function selectors(frame, indices)
   local found = {}
   for _, index in ipairs(indices) do
     local selector = protocol.selectors[index]
-    if selector.place.first + selector.place.count <= frame.length then
+    if has(frame, selector.place) then
       found[#found + 1] = { index = index, selector = selector, value = get(frame, selector.place) }
     end
   end
@@ -533,7 +538,7 @@ local function decode(frame)
   address_notes(frame, decoded, note)
   for _, index in ipairs(layout.signals) do
     local signal = layout.message.signals[index]
-    if signal.place.first + signal.place.count <= frame.length then
+    if has(frame, signal.place) then
       local known = reading(frame, signal)
       table.insert(decoded.readings, known)
       if known.rule then note(known.rule, known.text) end

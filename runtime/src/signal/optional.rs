@@ -1,0 +1,76 @@
+//! Signals that a frame can lack, since it ends before them or since bits say that there is no value.
+
+use super::Signal;
+use crate::physical::{Physical, Scaled};
+use crate::raw::Raw;
+use crate::{Data, Error, Payload};
+
+impl<R: Raw, F: Physical<R>> Signal<R, F> {
+    /// Returns the raw value, if a frame of `length` data bytes has it.
+    #[inline(always)]
+    pub fn get_some(&self, data: &Data, length: usize) -> Option<R> {
+        self.is_there(*data, length).then(|| self.get(data))
+    }
+
+    /// Tests whether a frame of `length` data bytes has a value.
+    #[inline(always)]
+    fn is_there(&self, data: Data, length: usize) -> bool {
+        self.place.is_within(length) && !(self.has_absent && self.place.get(&data) == self.absent_bits())
+    }
+
+    /// Returns the bits that say that there is no value.
+    #[inline(always)]
+    const fn absent_bits(&self) -> u64 {
+        if R::SIGNED { self.place.max() >> 1 } else { self.place.max() }
+    }
+
+    /// Writes a raw value, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`put`](Self::put). It also refuses to leave out what the frame is long enough
+    /// for, if no bits say that there is no value.
+    #[inline(always)]
+    pub fn put_some(&self, raw: Option<R>, payload: &mut Payload) -> Result<(), Error> {
+        match raw {
+            Some(raw) => self.put(raw, payload),
+            None => self.left_out(payload),
+        }
+    }
+
+    /// Writes that there is no value, unless the frame ends before it.
+    fn left_out(&self, payload: &mut Payload) -> Result<(), Error> {
+        match payload.length() {
+            Some(length) if !self.place.is_within(length.into()) => Ok(()),
+            _ if self.has_absent => {
+                let mut data = *payload.data();
+                self.place.put(&mut data, self.absent_bits());
+                payload.replace(data);
+                Ok(())
+            }
+            _ => Err(Error::Missing { message: payload.message(), signal: self.name }),
+        }
+    }
+}
+
+impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
+    /// Returns the physical value, if a frame of `length` data bytes has it.
+    #[inline(always)]
+    pub fn decode_some(&self, data: &Data, length: usize) -> Option<F> {
+        self.is_there(*data, length).then(|| self.decode(data))
+    }
+
+    /// Writes the raw value nearest to a physical value, if the frame has it.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`encode`](Self::encode). It also refuses to leave out what the frame is long
+    /// enough for.
+    #[inline(always)]
+    pub fn encode_some(&self, physical: Option<F>, payload: &mut Payload) -> Result<(), Error> {
+        match physical {
+            Some(physical) => self.encode(physical, payload),
+            None => self.left_out(payload),
+        }
+    }
+}
