@@ -44,14 +44,24 @@ pub fn pull(winch: u8, speed_rpm: i16) -> Result<Request<Run>, Error> {
     Run { speed_rpm, ramp_s: 2.5 }.set(Target::Winch(winch))
 }
 
-/// Sends a request, and takes the first frame that answers it out of the next `patience` frames.
-pub fn ask<C, R>(can: &mut C, request: &Request<R>, patience: usize) -> Option<Reply<R>>
+/// Sends a request, and waits for the frame that answers it until `is_late`.
+pub fn ask<C, R>(can: &mut C, request: &Request<R>, is_late: impl Fn() -> bool) -> Option<Reply<R>>
 where
-    C: embedded_can::blocking::Can,
+    C: embedded_can::nb::Can,
     R: Layout,
 {
-    can.transmit(&request.frame().to()?).ok()?;
-    (0..patience).find_map(|_| request.reply(&can.receive().ok()?))
+    let frame = request.frame().to()?;
+    while can.transmit(&frame).is_err() {
+        if is_late() {
+            return None;
+        }
+    }
+    while !is_late() {
+        if let Some(reply) = can.receive().ok().and_then(|frame| request.reply(&frame)) {
+            return Some(reply);
+        }
+    }
+    None
 }
 
 /// Returns how much rope is out, if a frame of the bus says so.

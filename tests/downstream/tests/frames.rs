@@ -1,8 +1,10 @@
 //! The frames that the manual of the winches prints.
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 
-use winch_driver::winch::embedded_can::{self, ExtendedId, Frame as _, blocking};
+use winch_driver::winch::embedded_can::nb::Can;
+use winch_driver::winch::embedded_can::{self, ExtendedId, Frame as _};
 use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, Target};
 use winch_driver::{ask, pull, rope_m};
 
@@ -33,18 +35,24 @@ struct Bus {
     waiting: VecDeque<Frame>,
 }
 
-impl blocking::Can for Bus {
+impl Can for Bus {
     type Frame = Frame;
     type Error = embedded_can::ErrorKind;
 
-    fn transmit(&mut self, frame: &Frame) -> Result<(), Self::Error> {
+    fn transmit(&mut self, frame: &Frame) -> nb::Result<Option<Frame>, Self::Error> {
         self.sent.push(*frame);
-        Ok(())
+        Ok(None)
     }
 
-    fn receive(&mut self) -> Result<Frame, Self::Error> {
-        self.waiting.pop_front().ok_or(embedded_can::ErrorKind::Other)
+    fn receive(&mut self) -> nb::Result<Frame, Self::Error> {
+        self.waiting.pop_front().ok_or(nb::Error::WouldBlock)
     }
+}
+
+/// Returns a clock that is late when it was asked more often than this.
+fn patience(times: u32) -> impl Fn() -> bool {
+    let asked = Cell::new(0);
+    move || asked.replace(asked.get() + 1) >= times
 }
 
 #[test]
@@ -53,10 +61,10 @@ fn the_frame_that_answers_is_taken_out_of_others() {
     let bus = || Bus { sent: vec![], waiting: [frame(0x0B21_0113, [0; 4]), answer].into() };
     let request = Status::read(Target::Winch(0x12)).expect("the winch is in range");
     let mut can = bus();
-    let reply = ask(&mut can, &request, 2).expect("the second frame answers");
+    let reply = ask(&mut can, &request, patience(2)).expect("the second frame answers");
     assert_eq!(reply.values.map(|status| status.rope_m), Ok(12.34));
     assert_eq!(can.sent, [*request.frame()]);
-    assert!(ask(&mut bus(), &request, 1).is_none());
+    assert!(ask(&mut bus(), &request, patience(1)).is_none());
 }
 
 #[test]
