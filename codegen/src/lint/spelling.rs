@@ -49,7 +49,7 @@ pub fn lint(Written { tree, tables, .. }: &Written) -> Vec<Diagnostic> {
 
 fn mistyped(name: &Name, meant: &str) -> Diagnostic {
     let text = format!("`{}`: is `{meant}` meant?", name.text);
-    let help = format!("write `{meant}`; if `{}` is right, use the word in its `title`", name.text);
+    let help = format!("write `{meant}`; if `{}` is right, use the word in a `title` or `note`", name.text);
     let label = "the spec has no such word elsewhere";
     Diagnostic::warning(&SPELLING, name.at.clone(), text).label(label).help(help)
 }
@@ -86,7 +86,7 @@ fn swapped(name: &str) -> impl Iterator<Item = String> {
 }
 
 /// Tests whether a swap turned known words into a strange one. A single word must be long or in
-/// other names, because short words are too similar.
+/// other names, because short words are too similar. Words of two letters are all similar.
 fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
     let before: Vec<_> = words(name).collect();
     let after: Vec<_> = words(other).collect();
@@ -95,7 +95,7 @@ fn is_meant(vocabulary: &Vocabulary, name: &str, other: &str) -> bool {
     let is_regrouped = found.clone().count() > 1;
     let is_certain = |word: &str| is_regrouped || word.len() >= LONG_WORD || vocabulary.has_in_names(word);
     lost.any(|word| !vocabulary.has_elsewhere(word, name))
-        && found.all(|word| vocabulary.has_often(word, name) && is_certain(word))
+        && found.all(|word| word.len() > 2 && vocabulary.has_often(word, name) && is_certain(word))
 }
 
 /// Finds a number in a name that is not in its title, if the title has the same words and other

@@ -6,7 +6,8 @@ use super::super::table::Table;
 use crate::syntax::tree::{Content, Node};
 
 /// Keys of the language with words for people.
-const PROSE: [&str; 9] = ["title", "note", "because", "prints", "uses", "set_when", "clear_when", "effect", "led"];
+const PROSE: [&str; 10] =
+    ["title", "note", "because", "prints", "uses", "set_when", "clear_when", "effect", "led", "steps"];
 
 /// How often each word of a spec occurs, in lower case.
 pub struct Vocabulary {
@@ -15,10 +16,14 @@ pub struct Vocabulary {
 }
 
 impl Vocabulary {
-    /// Counts the words of all names and texts, without keys of the language.
+    /// Counts the words of all names and texts, without keys of the language. Reasons of allowances
+    /// do not count, since a reason with the word would end the warning that it allows.
     pub fn new(tree: &Node, tables: &[Table]) -> Self {
         let mut vocabulary = Self { in_names: HashMap::new(), in_prose: HashMap::new() };
-        vocabulary.add_texts(tree, false);
+        let Content::Map(entries) = &tree.content else { return vocabulary };
+        for (key, entry) in entries.iter().filter(|(key, _)| *key != "allow") {
+            vocabulary.add_texts(&entry.value, PROSE.contains(&key.as_str()));
+        }
         for name in tables.iter().flat_map(|table| table.entries.keys()) {
             count(&mut vocabulary.in_names, name);
         }
@@ -65,7 +70,7 @@ impl Vocabulary {
             Content::List(items) => items.iter().for_each(|item| self.add_texts(item, is_prose)),
             Content::Map(entries) => {
                 for (key, entry) in entries {
-                    self.add_texts(&entry.value, PROSE.contains(&key.as_str()) || key == "steps");
+                    self.add_texts(&entry.value, PROSE.contains(&key.as_str()));
                 }
             }
             Content::Refused => {}
