@@ -51,6 +51,9 @@ pub struct Encode {
     words: Vec<String>,
 }
 
+/// How a value is written in a call.
+const PAIR: &str = "write NAME=VALUE without a blank or in quotes, with the unit or without";
+
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     Jsonl,
@@ -89,6 +92,9 @@ impl Encode {
         let signals = pairs(signals)?;
         let (access, message) = match names {
             [message] => (None, message),
+            [message, value] if has_message(protocol, message) && !has_message(protocol, value) => {
+                return Err(Failure::Call(format!("`{value}` stands alone behind `{message}`; {PAIR}")));
+            }
             [access, message] => (Some(access.as_str()), message),
             _ => {
                 let why = "name one message, or an access and a message, and then each value as NAME=VALUE";
@@ -126,12 +132,15 @@ impl Encode {
     }
 }
 
+fn has_message(protocol: &Protocol, name: &str) -> bool {
+    protocol.messages.iter().any(|message| message.name == name)
+}
+
 /// Splits words of the form NAME=VALUE. The first one has that form.
 fn pairs(words: &[String]) -> Result<Vec<(String, String)>, Failure> {
     if let Some([before, word]) = words.array_windows().find(|[_, word]| !word.contains('=')) {
         let why = format!("`{word}` stands alone behind `{before}`");
-        let help = "write NAME=VALUE without a blank or in quotes, with the unit or without";
-        return Err(Failure::Call(format!("{why}; {help}")));
+        return Err(Failure::Call(format!("{why}; {PAIR}")));
     }
     let pair = |word: &String| word.split_once('=').map(|(name, value)| (name.to_owned(), value.to_owned()));
     Ok(words.iter().filter_map(pair).collect())
