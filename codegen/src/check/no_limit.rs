@@ -33,8 +33,7 @@ fn unlimited(message: &Message, signal: &Signal) -> Diagnostic {
     let text = format!("a request sets `{}.{}` without a limit", message.name, signal.name);
     let place = signal.types.first().map_or_else(String::new, |name| format!(", or that of its type `{name}`"));
     let help = format!(
-        "write its `range`{place}, as the document or the device's ratings state it; \
-         if nothing does, say so in an entry of `allow`"
+        "write its `range`{place}, as the document or the ratings state it; if neither does, `allow` the warning"
     );
     Diagnostic::warning(&NO_LIMIT, signal.doc.path.at_key(), text).help(help)
 }
