@@ -22,9 +22,16 @@ pub struct Enumeration {
     pub width: u8,
     /// Named values in the order of the spec.
     pub values: Vec<NamedValue>,
+    /// Whether the last of them says that there is no value.
+    pub has_absent: bool,
 }
 
 impl Enumeration {
+    /// Returns the value that says that there is none.
+    pub fn absent(&self) -> Option<&NamedValue> {
+        self.values.last().filter(|_| self.has_absent)
+    }
+
     /// Finds the named value of raw bits.
     pub fn named(&self, bits: u64) -> Option<&NamedValue> {
         self.values.iter().find(|value| value.raw == i128::from(bits))

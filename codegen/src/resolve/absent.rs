@@ -9,7 +9,7 @@ use crate::syntax::tree::Path;
 use crate::words::ABSENT;
 
 /// The name of that raw value.
-pub const NOT_AVAILABLE: &str = "not_available";
+const NOT_AVAILABLE: &str = "not_available";
 
 impl Resolver<'_> {
     /// Reads what all fields have that do not say it themselves.

@@ -220,6 +220,11 @@ impl Resolver<'_> {
         let absent = encoding.linear().and_then(|linear| self.absent(merged, linear.numeral, place.width(), &specials));
         let has_absent = absent.is_some();
         specials.extend(absent);
+        let unavailable = match encoding.enumeration() {
+            Some(index) => self.tables.enumerations[index].absent(),
+            None => specials.last().filter(|_| has_absent),
+        };
+        let default = unavailable.map(|value| value.raw);
         let unit = field.unit.as_ref();
         let unit = unit.and_then(|text| self.unit_of_field(&merged.path(self.diagnostics, Key::Unit), text, field));
         let (range_path, default_path) =
@@ -235,7 +240,7 @@ impl Resolver<'_> {
             unit,
             range,
             range_path,
-            default: specials.last().filter(|_| has_absent).map(|absent| absent.raw),
+            default,
             specials,
             has_absent,
             default_path: default_path.clone(),

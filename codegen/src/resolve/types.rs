@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use super::Resolver;
-use super::absent::NOT_AVAILABLE;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
@@ -170,16 +169,16 @@ impl Resolver<'_> {
         let mut values =
             self.values(&merged.path(self.diagnostics, Key::Values), &merged.field.values, width, Numeral::Unsigned);
         let absent = self.absent(merged, Numeral::Unsigned, width, &values);
+        let has_absent = absent.is_some();
         values.extend(absent);
         let doc = self.type_doc(&name, &source, doc);
-        Some(self.tables.enumerations.push(Enumeration { name, doc, width, values }))
+        Some(self.tables.enumerations.push(Enumeration { name, doc, width, values, has_absent }))
     }
 
     /// Tests that named values with one for "not available" have one width, since it has all ones.
     fn check_same_width(&mut self, merged: &Merged, width: u8, index: EnumerationId) {
         let known = &self.tables.enumerations[index];
-        let has_absent = known.values.last().is_some_and(|value| value.name == NOT_AVAILABLE);
-        if has_absent && known.width != width {
+        if known.has_absent && known.width != width {
             let text = format!("`{}` has {} bits elsewhere, and here {width}", known.name, known.width);
             let help =
                 "all ones are another number in each width; write `absent: none` into the type, and name the value";

@@ -315,3 +315,24 @@ fn raw_bytes_are_taken_in_hexadecimal_with_all_their_digits() {
         assert_eq!(send(digits), Err(why(digits)));
     }
 }
+
+#[test]
+fn a_request_is_as_long_as_the_values_that_it_is_given() {
+    let lengths = feature("optional_fields");
+    let send = |signals: &[(&str, &str)]| requested(&lengths, None, "limit", "charger:3", signals).ok();
+    assert_eq!(send(&[("current", "64 A")]).as_deref(), Some("133#40"));
+    assert_eq!(send(&[("current", "64 A"), ("ramp", "5 s")]).as_deref(), Some("133#4005"));
+    assert_eq!(send(&[("ramp", "5 s")]), None);
+}
+
+#[test]
+fn what_is_left_out_of_a_long_enough_request_is_sent_as_all_ones() {
+    let absent = feature("not_available");
+    let send = |signals: &[(&str, &str)]| {
+        requested(&absent, None, "limits", "vehicle:1", signals).map_err(|why| why.to_string())
+    };
+    let given = [("ready", "0"), ("counter", "1")];
+    assert_eq!(send(&given), Ok("121#FFFF7F0301".to_owned()));
+    assert_eq!(send(&[given[0], given[1], ("day", "90")]), Ok("121#FFFF7F03015A".to_owned()));
+    assert!(send(&given[..1]).is_err(), "`counter` has `absent: none`");
+}
