@@ -18,6 +18,8 @@ mod protocol;
 mod set;
 mod word;
 
+use std::iter;
+
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -34,7 +36,7 @@ pub(crate) use plan::naming::{camel_case, member};
 /// Returns the content of a module that encodes and decodes the protocol, as text to include.
 pub fn rust(protocol: &Protocol, options: &Options) -> String {
     let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file.for_people());
-    header + &formatted(&tokens(protocol, options))
+    header + &formatted(items(&Plan::new(protocol, options), Derives::new(options)))
 }
 
 /// Returns the documentation of that module, as inner doc comments to stand before its content.
@@ -44,19 +46,25 @@ pub fn manual(protocol: &Protocol, options: &Options) -> String {
 
 /// Returns the same content as tokens, for macros and for build scripts that go on with it.
 pub fn tokens(protocol: &Protocol, options: &Options) -> TokenStream {
-    let derives = Derives::new(options);
-    let items = items(&Plan::new(protocol, options), derives);
-    let optional = derives.imports();
-    quote! {
-        use canspec_runtime::plumbing::prelude::*;
-        #[doc(no_inline)]
-        pub use canspec_runtime::prelude::*;
-        #optional
-        #items
-    }
+    items(&Plan::new(protocol, options), Derives::new(options)).collect()
 }
 
-fn items(plan: &Plan, derives: Derives) -> TokenStream {
+/// Emits the items in their order, those of one message after the other.
+fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
+    let enumerations = plan.enumerations.iter().map(move |known| word::enumeration(known, derives));
+    let status_words = plan.status_words.iter().map(move |known| word::status_word(known, derives));
+    let packed = plan.packed.iter().map(move |known| word::packed(known, derives));
+    let messages = plan.messages.iter().zip(&plan.sets).map(move |(message, set)| match set {
+        None => message::message(message, derives),
+        Some(set) => set::set(message, set, derives),
+    });
+    let types = enumerations.chain(status_words).chain(packed);
+    iter::once(head(plan, derives)).chain(types).chain(messages).chain(protocol::protocol(plan, derives))
+}
+
+/// Emits what comes before the types and messages: imports, identifier, addresses, accesses and device models.
+fn head(plan: &Plan, derives: Derives) -> TokenStream {
+    let optional = derives.imports();
     let frame = filter::base(&plan.base);
     let selectors = plan.in_data.iter().map(filter::in_data);
     let identifier = identifier::identifier(&plan.identifier, derives);
@@ -65,17 +73,12 @@ fn items(plan: &Plan, derives: Derives) -> TokenStream {
     let addresses = plan.address_types.iter().map(address::address_type);
     let modes = plan.modes.iter().map(address::mode);
     let (accesses, of_models) = (plan.accesses.iter().map(exchange::access), model::models(&plan.models, derives));
-    let enumerations = plan.enumerations.iter().map(|known| word::enumeration(known, derives));
-    let status_words = plan.status_words.iter().map(|known| word::status_word(known, derives));
-    let packed = plan.packed.iter().map(|known| word::packed(known, derives));
-    let messages = plan.messages.iter().zip(&plan.sets).map(|(message, set)| match set {
-        None => message::message(message, derives),
-        Some(set) => set::set(message, set, derives),
-    });
-    let protocol = protocol::protocol(plan, derives);
     quote! {
+        use canspec_runtime::plumbing::prelude::*;
+        #[doc(no_inline)]
+        pub use canspec_runtime::prelude::*;
+        #optional
         #frame #(#selectors)* #identifier #continuation #targets #(#addresses)* #(#modes)* #(#accesses)* #of_models
-        #(#enumerations)* #(#status_words)* #(#packed)* #(#messages)* #protocol
     }
 }
 
@@ -127,7 +130,7 @@ errata:
         let protocol = outcome.protocol.expect("a spec without errors");
         let options = super::Options::default();
         let tokens = syn::parse2::<syn::File>(super::tokens(&protocol, &options)).expect("the tokens are Rust");
-        assert!(super::rust(&protocol, &options).ends_with(&super::formatted(&quote::quote!(#tokens))));
+        assert!(super::rust(&protocol, &options).ends_with(&super::formatted([quote::quote!(#tokens)])));
         assert!(tokens.items.iter().any(|item| matches!(item, syn::Item::Struct(known) if known.ident == "Heat")));
     }
 

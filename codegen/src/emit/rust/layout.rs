@@ -19,13 +19,19 @@ use syn::{Block, Expr, Ident, ImplItem, Item, Stmt};
 
 use shape::Shape;
 
-/// Lays the code out. If it is no Rust, it stays unchanged, so that its compiler can say why.
-pub fn formatted(code: &TokenStream) -> String {
-    let Ok(mut file) = syn::parse2::<syn::File>(code.clone()) else { return code.to_string() };
+/// Lays items out, group after group, so that one group at a time takes memory.
+///
+/// A group that is no Rust stays unchanged, so that its compiler can say why.
+pub fn formatted(groups: impl IntoIterator<Item = TokenStream>) -> String {
+    spacing::spaced(&groups.into_iter().map(laid_out).collect::<String>())
+}
+
+fn laid_out(items: TokenStream) -> String {
+    let text = items.clone();
+    let Ok(mut file) = syn::parse2::<syn::File>(items) else { return text.to_string() };
     let mut computed = Computed::default();
     file.items.iter_mut().for_each(|item| computed.take_out(item));
-    let items = prettyplease::unparse(&file);
-    spacing::spaced(&computed.put_back(&items))
+    computed.put_back(&prettyplease::unparse(&file))
 }
 
 /// The expressions of items, while the items are laid out without them.
@@ -132,7 +138,7 @@ mod tests {
 
     /// Tests that code which rustfmt laid out is laid out in the same way.
     fn stays(code: &str) {
-        assert_eq!(formatted(&code.parse().expect("the tokens of Rust")), code);
+        assert_eq!(formatted([code.parse().expect("the tokens of Rust")]), code);
     }
 
     /// Returns a name of `length` letters.
@@ -186,6 +192,6 @@ mod tests {
     #[test]
     fn what_is_no_item_and_comments_stay_as_they_are() {
         stays("/// Takes (\n/// both) <\npub struct A(pub u8);\n");
-        assert_eq!(formatted(&quote::quote!(no Rust)), "no Rust");
+        assert_eq!(formatted([quote::quote!(no Rust)]), "no Rust\n");
     }
 }

@@ -35,7 +35,7 @@ pub fn part_name(name: &str, index: usize) -> Ident {
 /// Returns how many lines an arm has in a function of an `impl`.
 fn height(arm: &TokenStream) -> usize {
     let around = |arm| quote!(impl Message { fn decode() { match id { #arm _ => last(), } } });
-    let lines = |arm| formatted(&around(arm)).lines().count();
+    let lines = |arm| formatted([around(arm)]).lines().count();
     lines(Some(arm)).saturating_sub(lines(None))
 }
 

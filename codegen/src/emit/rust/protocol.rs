@@ -13,7 +13,7 @@ use super::plan::recognition::Direction;
 use super::plan::variant::Variant;
 
 /// Emits `Message`, last in the file.
-pub fn protocol(plan: &Plan, derives: Derives) -> TokenStream {
+pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 3] {
     let definition = definition(plan, derives);
     let decode_for = (!plan.models.rows.is_empty()).then(decode_for);
     let functions = functions(plan);
@@ -21,7 +21,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> TokenStream {
     let implementation = implementation(plan, first);
     let entries = entries(&plan.messages);
     let further = functions.iter().flat_map(|parts| parts.iter().skip(1));
-    quote! {
+    let decoding = quote! {
         #definition
 
         /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -46,11 +46,8 @@ pub fn protocol(plan: &Plan, derives: Derives) -> TokenStream {
 
             #(#further)*
         }
-
-        #implementation
-
-        #entries
-    }
+    };
+    [decoding, implementation, entries]
 }
 
 /// Emits how a frame of a device model is recognised.
