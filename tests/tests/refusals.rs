@@ -1,5 +1,6 @@
 //! Refusals in the generated code: another message's reply that answers a request.
 
+use canspec_protocols::megmeet::{self, RealTimeData};
 use canspec_runtime::{Failure, Frame, Replies};
 use canspec_tests::devices_refusals::{Message, Refusal, RefusalValue, Speed, Target, Temperature};
 
@@ -47,4 +48,15 @@ fn a_filter_for_refusals_stands_beside_that_for_replies() {
     let broadcast = Speed { value_rpm: 300 }.write(Target::All).expect("the limit");
     assert_eq!((broadcast.replies(), broadcast.refusal()), (Replies::Nobody, None));
     assert!(!broadcast.is_reply(&frame(0x450, [0x80, 7, 0, 3])));
+}
+
+#[test]
+fn a_refusal_in_place_of_a_frame_of_a_set_is_no_success() {
+    let request = RealTimeData::read_all(megmeet::Target::Module(1)).expect("a module");
+    let answer = |error: u8| Frame::new_raw(0x1081_407F, true, [error << 4 | 1, 0x83, 0, 0, 0, 0, 0, 0], 8);
+    let values = |error| request.reply(&answer(error)).expect("a frame of the set").values;
+    assert_eq!([0, 1, 3].map(values), [Ok(()), Err(Failure::Error), Err(Failure::Error)]);
+    let reply = request.reply(&answer(3)).expect("a frame of the set");
+    let selectors: Vec<_> = reply.selectors().map(|(selector, raw)| (selector.name, raw)).collect();
+    assert_eq!(selectors, [("error_type", 3), ("signal", 0x183)]);
 }

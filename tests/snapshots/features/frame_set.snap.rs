@@ -139,7 +139,8 @@ pub const SINGLE_MODE: Mode = Mode {
 };
 
 /// Scan. Section 3.
-pub const SCAN_ACCESS: Exchange = Exchange::new("scan", &[Some(Who::One)]).request(FRAME).reply(FRAME);
+pub const SCAN_ACCESS: Exchange =
+    Exchange::new("scan", &[Some(Who::One)]).request(FRAME).reply(FRAME.selectors(&[SIGNAL_SELECTOR]));
 
 /// Scan in the set `all`. Section 3.
 ///

@@ -251,14 +251,17 @@ pub const READ_ALL_REAL_TIME_DATA_ACCESS: Exchange = Exchange::new("read_all", &
 /// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
 /// addresses are assigned", used is "the error type in the frames of the members", because error type 3
 /// stands for it in general; a reply of signal 0 would be an unknown message.
-pub const READ_ALL_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None]).reply(FRAME);
+pub const READ_ALL_ACCESS: Exchange =
+    Exchange::new("read_all", &[Some(Who::One), None]).reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
 
 /// Read several signals from one module. Section 2.1, 3.3, 3.4.
 ///
 /// Erratum M51: printed is "nothing about how a module refuses 0x40 or 0x50, for instance while
 /// addresses are assigned", used is "the error type in the frames of the members", because error type 3
 /// stands for it in general; a reply of signal 0 would be an unknown message.
-pub const READ_ALL_ACCESS_2: Exchange = Exchange::new("read_all", &[Some(Who::One), None]).request(FRAME).reply(FRAME);
+pub const READ_ALL_ACCESS_2: Exchange = Exchange::new("read_all", &[Some(Who::One), None])
+    .request(FRAME)
+    .reply(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]));
 
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

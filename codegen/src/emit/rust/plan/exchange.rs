@@ -11,7 +11,7 @@ use super::models::Models;
 use super::naming::{Pool, ident, screaming};
 use super::selector::{Filter, Selectors};
 use crate::model::{
-    AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Table, Who,
+    AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Set, Table, Who,
 };
 
 /// The shared parts of accesses, and the part that each message uses.
@@ -134,7 +134,7 @@ impl Way {
 fn frames(protocol: &Protocol, message: &Message, exchange: ExchangeId) -> Vec<Shown> {
     let frames = protocol.frames_of(message).filter(|frame| frame.exchange == exchange);
     let frames = frames.map(|frame| Shown::new(message, frame));
-    frames.chain(Shown::whole(message)).collect()
+    frames.chain(Shown::whole(protocol, message)).collect()
 }
 
 impl Shown {
@@ -148,13 +148,29 @@ impl Shown {
     }
 
     /// Returns what every reply of the message shows, if it is a set.
-    fn whole(message: &Message) -> Option<Self> {
-        let constants = message.set.as_ref()?.replies.clone();
-        let payload = constants.iter().filter(|constant| constant.in_payload().is_some());
-        let selectors = payload.map(|constant| constant.selector).collect();
-        let constants = constants.into_iter().filter(|known| !message.constants.contains(known)).collect();
-        Some(Self { kind: Kind::Reply, has_values: false, selectors, constants })
+    fn whole(protocol: &Protocol, message: &Message) -> Option<Self> {
+        let set = message.set.as_ref()?;
+        let constants = set.replies.iter().filter(|known| !message.constants.contains(known));
+        Some(Self {
+            kind: Kind::Reply,
+            has_values: false,
+            selectors: shared_selectors(protocol, message, set),
+            constants: constants.copied().collect(),
+        })
     }
+}
+
+/// Returns the selectors in the data that the replies of all members have. One of them may tell an error.
+fn shared_selectors(protocol: &Protocol, message: &Message, set: &Set) -> Vec<SelectorId> {
+    let members = set.members.iter().map(|member| &protocol[*member]);
+    let is_of_set = |id: Option<MessageId>| id.is_some_and(|id| protocol[id].name == message.name);
+    let mut replies = members.flat_map(|member| {
+        let frames = protocol.frames_of(member).filter(|frame| frame.kind == Kind::Reply);
+        frames.filter(|frame| is_of_set(member[frame.exchange].set))
+    });
+    let mut shared = replies.next().map_or_else(Vec::new, |frame| frame.selectors.clone());
+    replies.for_each(|frame| shared.retain(|selector| frame.selectors.contains(selector)));
+    shared
 }
 
 impl Access {
