@@ -18,7 +18,7 @@ use crate::syntax::rules;
 const DEPTH_LIMIT: usize = 64;
 
 /// Most values in one file.
-const NODE_LIMIT: usize = 200_000;
+const NODE_LIMIT: usize = 600_000;
 
 /// The reader stops after this number of errors.
 const PROBLEM_LIMIT: usize = 1000;
