@@ -59,7 +59,9 @@ fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
         Some(set) => set::set(message, set, derives),
     });
     let types = enumerations.chain(status_words).chain(packed);
-    iter::once(head(plan, derives)).chain(types).chain(messages).chain(protocol::protocol(plan, derives))
+    let protocol = iter::once_with(move || protocol::protocol(plan, derives)).flatten();
+    let entries = iter::once_with(|| entries::entries(&plan.messages));
+    iter::once(head(plan, derives)).chain(types).chain(messages).chain(protocol).chain(entries)
 }
 
 /// Emits what comes before the types and messages: imports, identifier, addresses, accesses and device models.

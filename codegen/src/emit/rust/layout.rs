@@ -27,8 +27,8 @@ pub fn formatted(groups: impl IntoIterator<Item = TokenStream>) -> String {
 }
 
 fn laid_out(items: TokenStream) -> String {
-    let text = items.clone();
-    let Ok(mut file) = syn::parse2::<syn::File>(items) else { return text.to_string() };
+    let Ok(mut file) = syn::parse2::<syn::File>(items.clone()) else { return items.to_string() };
+    drop(items);
     let mut computed = Computed::default();
     file.items.iter_mut().for_each(|item| computed.take_out(item));
     computed.put_back(&prettyplease::unparse(&file))

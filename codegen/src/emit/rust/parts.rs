@@ -11,7 +11,8 @@ const LINES: usize = 72;
 
 /// Distributes items evenly over the fewest parts that are short enough, at least one.
 pub fn parts<T>(items: Vec<T>, arm: impl Fn(&T) -> TokenStream) -> Vec<Vec<T>> {
-    let heights: Vec<_> = items.iter().map(|item| height(&arm(item))).collect();
+    let around = lines(None);
+    let heights: Vec<_> = items.iter().map(|item| lines(Some(&arm(item))).saturating_sub(around)).collect();
     let total = heights.iter().sum::<usize>();
     let enough = total.div_ceil(total.div_ceil(LINES).max(1));
     let (mut parts, mut part, mut lines) = (Vec::new(), Vec::new(), 0);
@@ -32,11 +33,10 @@ pub fn part_name(name: &str, index: usize) -> Ident {
     if index == 0 { ident(name) } else { ident(&format!("{name}_{}", index + 1)) }
 }
 
-/// Returns how many lines an arm has in a function of an `impl`.
-fn height(arm: &TokenStream) -> usize {
-    let around = |arm| quote!(impl Message { fn decode() { match id { #arm _ => last(), } } });
-    let lines = |arm| formatted([around(arm)]).lines().count();
-    lines(Some(arm)).saturating_sub(lines(None))
+/// Returns how many lines a function of an `impl` has with an arm, or without it.
+fn lines(arm: Option<&TokenStream>) -> usize {
+    let function = quote!(impl Message { fn decode() { match id { #arm _ => last(), } } });
+    formatted([function]).lines().count()
 }
 
 #[cfg(test)]

@@ -5,21 +5,19 @@ use quote::quote;
 
 use super::derives::Derives;
 use super::dispatch::{measuring, recognising};
-use super::entries::entries;
 use super::filter::normal;
 use super::parts::{part_name, parts};
 use super::plan::Plan;
 use super::plan::recognition::Direction;
 use super::plan::variant::Variant;
 
-/// Emits `Message`, last in the file.
-pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 3] {
+/// Emits `Message`: its type, then how a frame is recognised.
+pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
     let definition = definition(plan, derives);
     let decode_for = (!plan.models.rows.is_empty()).then(decode_for);
     let functions = functions(plan);
     let first = functions.iter().filter_map(|parts| parts.first());
     let implementation = implementation(plan, first);
-    let entries = entries(&plan.messages);
     let further = functions.iter().flat_map(|parts| parts.iter().skip(1));
     let decoding = quote! {
         #definition
@@ -47,7 +45,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 3] {
             #(#further)*
         }
     };
-    [decoding, implementation, entries]
+    [decoding, implementation]
 }
 
 /// Emits how a frame of a device model is recognised.

@@ -2,7 +2,7 @@
 
 use quote::ToTokens;
 use syn::punctuated::Punctuated;
-use syn::{Expr, FieldValue, Member, Pat, RangeLimits, Stmt};
+use syn::{Expr, FieldValue, Member, Pat, Path, RangeLimits, Stmt};
 
 /// Writes an expression on one line; `None` if it never stands on one.
 pub fn flat(expr: &Expr) -> Option<String> {
@@ -22,7 +22,7 @@ pub fn flat(expr: &Expr) -> Option<String> {
         }
         Expr::MethodCall(call) => format!("{}.{}({})", flat(&call.receiver)?, call.method, all(&call.args)?),
         Expr::Paren(paren) => format!("({})", flat(&paren.expr)?),
-        Expr::Path(path) => tokens(path),
+        Expr::Path(known) if known.qself.is_none() => path(&known.path),
         Expr::Range(range) => {
             let [start, end] =
                 [&range.start, &range.end].map(|end| end.as_ref().map_or_else(|| Some(String::new()), |end| flat(end)));
@@ -36,7 +36,7 @@ pub fn flat(expr: &Expr) -> Option<String> {
         },
         Expr::Struct(known) => {
             let fields: Option<Vec<_>> = known.fields.iter().map(field).collect();
-            format!("{} {{ {} }}", tokens(&known.path), fields?.join(", "))
+            format!("{} {{ {} }}", path(&known.path), fields?.join(", "))
         }
         Expr::Try(tried) => format!("{}?", flat(&tried.expr)?),
         Expr::Tuple(tuple) => format!("({})", all(&tuple.elems)?),
@@ -80,7 +80,7 @@ pub fn pattern(known: &Pat) -> String {
             format!("{start}{}{end}", limits(&range.limits))
         }
         Pat::Tuple(tuple) => format!("({})", patterns(&tuple.elems)),
-        Pat::TupleStruct(known) => format!("{}({})", tokens(&known.path), patterns(&known.elems)),
+        Pat::TupleStruct(known) => format!("{}({})", path(&known.path), patterns(&known.elems)),
         other => tokens(other),
     }
 }
@@ -92,10 +92,18 @@ fn limits(limits: &RangeLimits) -> &'static str {
     }
 }
 
+/// Writes a path. Most have no arguments, so their names suffice.
+fn path(known: &Path) -> String {
+    if known.leading_colon.is_some() || known.segments.iter().any(|segment| !segment.arguments.is_none()) {
+        return tokens(known);
+    }
+    known.segments.iter().map(|segment| segment.ident.to_string()).collect::<Vec<_>>().join("::")
+}
+
 /// Writes tokens without blanks round the separators of a path, and before and in brackets.
 pub fn tokens(code: &impl ToTokens) -> String {
     let text = code.to_token_stream().to_string();
-    if text.starts_with('"') {
+    if text.starts_with('"') || !text.contains(' ') {
         return text;
     }
     text.replace(" :: ", "::")
