@@ -3,7 +3,7 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use crate::{AnySignal, Destination, Error, Exchange, Protocol, Request, Route};
+use crate::{AnySignal, Destination, Error, Exchange, Layout, Protocol, Request, Route};
 
 /// An entry of the list of messages.
 pub struct Entry<P: 'static> {
@@ -28,6 +28,15 @@ impl<P: Protocol> Entry<P> {
         exchanges: &'static [&'static Exchange],
     ) -> Self {
         Self { title, constants, signals, exchanges, protocol: PhantomData }
+    }
+
+    /// Returns the entry of a message that has all of its signals in one struct.
+    pub const fn of<L: Layout>(
+        title: &'static str,
+        constants: &'static [(&'static str, u64)],
+        exchanges: &'static [&'static Exchange],
+    ) -> Self {
+        Self::new(title, constants, L::SIGNALS, exchanges)
     }
 
     /// Returns the name of the message.

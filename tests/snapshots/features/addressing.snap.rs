@@ -337,4 +337,4 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Level of the output", &[("command", 0x03)], &[&Level::VALUE], &[&Level::SET])];
+    &[Entry::of::<Level>("Level of the output", &[("command", 0x03)], &[&Level::SET])];

@@ -332,6 +332,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("Delay of the start", &[("command", 0x01)], &[&Delay::VALUE], &[&Delay::SET]),
-    Entry::new("Month of the last reading", &[("command", 0x02)], &[&Month::VALUE], &[&Month::SET]),
+    Entry::of::<Delay>("Delay of the start", &[("command", 0x01)], &[&Delay::SET]),
+    Entry::of::<Month>("Month of the last reading", &[("command", 0x02)], &[&Month::SET]),
 ];

@@ -241,9 +241,5 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
-    "State of the battery",
-    &[("command", 0x01)],
-    &[&Battery::VOLTAGE, &Battery::CURRENT, &Battery::LEVEL],
-    &[&Battery::READ],
-)];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<Battery>("State of the battery", &[("command", 0x01)], &[&Battery::READ])];

@@ -325,6 +325,6 @@ impl Protocol for Message {
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::new("All that an oven measures", &[("command", 0x04)], &[], &[&All::SCAN]),
-    Entry::new("heat", &[("signal", 0x01)], &[&Heat::VALUE], &[&Heat::SCAN_ALL]),
-    Entry::new("power", &[("signal", 0x02)], &[&Power::VALUE], &[&Power::SCAN_ALL]),
+    Entry::of::<Heat>("heat", &[("signal", 0x01)], &[&Heat::SCAN_ALL]),
+    Entry::of::<Power>("power", &[("signal", 0x02)], &[&Power::SCAN_ALL]),
 ];

@@ -205,17 +205,5 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
-    "What a rectifier measures",
-    &[("function", 0x1)],
-    &[
-        &Measurement::VOLTAGE,
-        &Measurement::CURRENT,
-        &Measurement::TEMPERATURE,
-        &Measurement::POWER,
-        &Measurement::OUTPUT,
-        &Measurement::MODE,
-        &Measurement::COUNTER,
-    ],
-    &[&Measurement::REPORT],
-)];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<Measurement>("What a rectifier measures", &[("function", 0x1)], &[&Measurement::REPORT])];

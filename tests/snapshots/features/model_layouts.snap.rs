@@ -256,6 +256,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("supply ac", &[("command", 0x001)], &[&SupplyAc::VOLTAGE], &[&SupplyAc::REPORT]),
-    Entry::new("supply dc", &[("command", 0x001)], &[&SupplyDc::VOLTAGE], &[&SupplyDc::REPORT]),
+    Entry::of::<SupplyAc>("supply ac", &[("command", 0x001)], &[&SupplyAc::REPORT]),
+    Entry::of::<SupplyDc>("supply dc", &[("command", 0x001)], &[&SupplyDc::REPORT]),
 ];

@@ -283,5 +283,4 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("set speed", &[("command", 0x002)], &[&SetSpeed::SPEED, &SetSpeed::FLOW], &[&SetSpeed::SET])];
+pub const MESSAGES: &[Entry<Message>] = &[Entry::of::<SetSpeed>("set speed", &[("command", 0x002)], &[&SetSpeed::SET])];

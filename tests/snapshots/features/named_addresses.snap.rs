@@ -312,4 +312,4 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Switch a relay", &[("command", 0x91)], &[&SwitchRelay::POWER], &[&SwitchRelay::SET])];
+    &[Entry::of::<SwitchRelay>("Switch a relay", &[("command", 0x91)], &[&SwitchRelay::SET])];

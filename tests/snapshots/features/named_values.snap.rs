@@ -336,4 +336,4 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Switch a heater", &[("command", 0x1A)], &[&Switch::POWER, &Switch::LAMP], &[&Switch::SET])];
+    &[Entry::of::<Switch>("Switch a heater", &[("command", 0x1A)], &[&Switch::SET])];

@@ -331,9 +331,5 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
-    "Limits of the vehicle",
-    &[("command", 0x12)],
-    &[&Limits::VOLTAGE, &Limits::TEMPERATURE, &Limits::LAMP, &Limits::READY, &Limits::COUNTER, &Limits::DAY],
-    &[&Limits::SET],
-)];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<Limits>("Limits of the vehicle", &[("command", 0x12)], &[&Limits::SET])];

@@ -322,11 +322,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
-        "State of the charger",
-        &[("command", 0x12)],
-        &[&State::VOLTAGE, &State::PHASE, &State::ALLOWED, &State::HOURS, &State::CYCLES],
-        &[&State::REPORT],
-    ),
-    Entry::new("Set the limit", &[("command", 0x13)], &[&Limit::CURRENT, &Limit::RAMP], &[&Limit::SET]),
+    Entry::of::<State>("State of the charger", &[("command", 0x12)], &[&State::REPORT]),
+    Entry::of::<Limit>("Set the limit", &[("command", 0x13)], &[&Limit::SET]),
 ];

@@ -285,4 +285,4 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Label on the housing", &[("command", 0x06)], &[&Label::VALUE], &[&Label::READ])];
+    &[Entry::of::<Label>("Label on the housing", &[("command", 0x06)], &[&Label::READ])];

@@ -253,6 +253,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("speed", &[("index", 0x07)], &[&Speed::VALUE], &[&Speed::WRITE]),
-    Entry::new("refusal", &[], &[&Refusal::VALUE], &[&Refusal::REFUSE]),
+    Entry::of::<Speed>("speed", &[("index", 0x07)], &[&Speed::WRITE]),
+    Entry::of::<Refusal>("refusal", &[], &[&Refusal::REFUSE]),
 ];

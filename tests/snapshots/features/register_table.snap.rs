@@ -291,9 +291,8 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
+pub const MESSAGES: &[Entry<Message>] = &[Entry::of::<VoltageLimit>(
     "Voltage limit",
     &[("register", 0x0021)],
-    &[&VoltageLimit::VALUE],
     &[&VoltageLimit::READ, &VoltageLimit::WRITE],
 )];

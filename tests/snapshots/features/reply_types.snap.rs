@@ -277,6 +277,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("voltage", &[("register", 0x0001)], &[&Voltage::VALUE], &[&Voltage::READ]),
-    Entry::new("revision", &[("register", 0x0056)], &[&Revision::HARDWARE, &Revision::SOFTWARE], &[&Revision::READ]),
+    Entry::of::<Voltage>("voltage", &[("register", 0x0001)], &[&Voltage::READ]),
+    Entry::of::<Revision>("revision", &[("register", 0x0056)], &[&Revision::READ]),
 ];

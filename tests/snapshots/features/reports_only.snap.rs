@@ -142,5 +142,4 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Voltage of a battery", &[], &[&Voltage::VALUE], &[&Voltage::REPORT])];
+pub const MESSAGES: &[Entry<Message>] = &[Entry::of::<Voltage>("Voltage of a battery", &[], &[&Voltage::REPORT])];

@@ -313,6 +313,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("Set the current", &[("command", 0x012)], &[&SetCurrent::CURRENT], &[&SetCurrent::WRITE]),
-    Entry::new("Stop", &[("command", 0x013)], &[&Stop::REASON], &[&Stop::WRITE]),
+    Entry::of::<SetCurrent>("Set the current", &[("command", 0x012)], &[&SetCurrent::WRITE]),
+    Entry::of::<Stop>("Stop", &[("command", 0x013)], &[&Stop::WRITE]),
 ];

@@ -269,9 +269,5 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
-    "Set the output",
-    &[("command", 0x0012)],
-    &[&SetOutput::VOLTAGE, &SetOutput::TEMPERATURE, &SetOutput::DELAY, &SetOutput::POWER],
-    &[&SetOutput::WRITE],
-)];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<SetOutput>("Set the output", &[("command", 0x0012)], &[&SetOutput::WRITE])];

@@ -300,6 +300,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("Keeps the outputs on", &[("sign", 0x55)], &[&KeepAlive::OUTPUTS], &[&KeepAlive::TELL]),
-    Entry::new("Signed numbers across byte borders", &[], &[&Drift::DRIFT, &Drift::TURNS], &[&Drift::ASK]),
+    Entry::of::<KeepAlive>("Keeps the outputs on", &[("sign", 0x55)], &[&KeepAlive::TELL]),
+    Entry::of::<Drift>("Signed numbers across byte borders", &[], &[&Drift::ASK]),
 ];

@@ -334,5 +334,4 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::new("Failures", &[("command", 0x18)], &[&Failures::FAILURE, &Failures::MAKER], &[&Failures::READ])];
+pub const MESSAGES: &[Entry<Message>] = &[Entry::of::<Failures>("Failures", &[("command", 0x18)], &[&Failures::READ])];

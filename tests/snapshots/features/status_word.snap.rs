@@ -293,9 +293,5 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
-    "Status of a heater",
-    &[("command", 0x04)],
-    &[&Status::STATE, &Status::RED, &Status::GREEN],
-    &[&Status::READ],
-)];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<Status>("Status of a heater", &[("command", 0x04)], &[&Status::READ])];

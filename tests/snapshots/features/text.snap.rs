@@ -286,6 +286,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("Version of the firmware", &[("command", 0x05)], &[&Version::VALUE], &[&Version::READ]),
-    Entry::new("Label of the housing", &[("command", 0x06)], &[&Label::FAMILY, &Label::CODE], &[&Label::READ]),
+    Entry::of::<Version>("Version of the firmware", &[("command", 0x05)], &[&Version::READ]),
+    Entry::of::<Label>("Label of the housing", &[("command", 0x06)], &[&Label::READ]),
 ];

@@ -1946,89 +1946,54 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
+    Entry::of::<SystemOutput>(
         "Output voltage and total current of the system or of a group",
         &[("command", 0x01)],
-        &[&SystemOutput::VOLTAGE, &SystemOutput::CURRENT],
         &[&SystemOutput::READ_TOTAL],
     ),
-    Entry::new(
+    Entry::of::<ModuleCount>(
         "Number of modules in the system or in a group",
         &[("command", 0x02)],
-        &[&ModuleCount::COUNT],
         &[&ModuleCount::READ_TOTAL],
     ),
-    Entry::new(
-        "Output voltage and current of one module",
-        &[("command", 0x03)],
-        &[&ModuleOutput::VOLTAGE, &ModuleOutput::CURRENT],
-        &[&ModuleOutput::READ],
-    ),
-    Entry::new(
+    Entry::of::<ModuleOutput>("Output voltage and current of one module", &[("command", 0x03)], &[&ModuleOutput::READ]),
+    Entry::of::<ModuleStatus>(
         "Group, temperature and status of one module",
         &[("command", 0x04)],
-        &[
-            &ModuleStatus::GROUP,
-            &ModuleStatus::TEMPERATURE,
-            &ModuleStatus::STATUS_2,
-            &ModuleStatus::STATUS_1,
-            &ModuleStatus::STATUS_0,
-        ],
         &[&ModuleStatus::READ],
     ),
-    Entry::new(
+    Entry::of::<InputVoltage>(
         "Line-to-line AC input voltages of one module",
         &[("command", 0x06)],
-        &[&InputVoltage::AB, &InputVoltage::BC, &InputVoltage::CA],
         &[&InputVoltage::READ],
     ),
-    Entry::new(
-        "DC input voltages of one module",
-        &[("command", 0x06)],
-        &[&InputVoltageDc::PLUS_MINUS, &InputVoltageDc::PLUS_PE, &InputVoltageDc::MINUS_PE],
-        &[&InputVoltageDc::READ],
-    ),
-    Entry::new(
+    Entry::of::<InputVoltageDc>("DC input voltages of one module", &[("command", 0x06)], &[&InputVoltageDc::READ]),
+    Entry::of::<ExternalVoltage>(
         "External voltage of one module and the current that the module can deliver",
         &[("command", 0x0C)],
-        &[&ExternalVoltage::VOLTAGE, &ExternalVoltage::ALLOWED_CURRENT],
         &[&ExternalVoltage::READ],
     ),
-    Entry::new(
+    Entry::of::<LimitInputCurrent>(
         "Limit the input current of AC/DC modules",
         &[("command", 0x0F), ("sub_command", 0x1205)],
-        &[&LimitInputCurrent::CURRENT],
         &[&LimitInputCurrent::SET_UNANSWERED],
     ),
-    Entry::new(
+    Entry::of::<SetOperatingMode>(
         "Set the DC input of DC/DC modules to DC/DC or MPPT mode",
         &[("command", 0x0F), ("sub_command", 0x1111)],
-        &[&SetOperatingMode::MODE],
         &[&SetOperatingMode::SET_UNANSWERED],
     ),
-    Entry::new(
-        "Enable or disable slow startup",
-        &[("command", 0x13)],
-        &[&SetWalkIn::WALK_IN, &SetWalkIn::INTERVAL],
-        &[&SetWalkIn::SET],
-    ),
-    Entry::new("Make the green LED flash", &[("command", 0x14)], &[&SetLed::LED], &[&SetLed::SET]),
-    Entry::new(
-        "Switch operational readiness on or off",
-        &[("command", 0x1A)],
-        &[&SwitchModules::POWER],
-        &[&SwitchModules::SET],
-    ),
-    Entry::new(
+    Entry::of::<SetWalkIn>("Enable or disable slow startup", &[("command", 0x13)], &[&SetWalkIn::SET]),
+    Entry::of::<SetLed>("Make the green LED flash", &[("command", 0x14)], &[&SetLed::SET]),
+    Entry::of::<SwitchModules>("Switch operational readiness on or off", &[("command", 0x1A)], &[&SwitchModules::SET]),
+    Entry::of::<SetTotalOutput>(
         "Set voltage and total current of the system or of a group",
         &[("command", 0x1B)],
-        &[&SetTotalOutput::VOLTAGE, &SetTotalOutput::CURRENT],
         &[&SetTotalOutput::SET_TOTAL],
     ),
-    Entry::new(
+    Entry::of::<SetModuleOutput>(
         "Set voltage and current of every module addressed",
         &[("command", 0x1C)],
-        &[&SetModuleOutput::VOLTAGE, &SetModuleOutput::CURRENT],
         &[&SetModuleOutput::SET],
     ),
 ];

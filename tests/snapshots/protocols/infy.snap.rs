@@ -2135,93 +2135,62 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
+    Entry::of::<SystemOutput>(
         "Output voltage and total current of the system or of a group",
         &[("command", 0x01)],
-        &[&SystemOutput::VOLTAGE, &SystemOutput::CURRENT],
         &[&SystemOutput::READ_TOTAL],
     ),
-    Entry::new(
+    Entry::of::<ModuleCount>(
         "Number of modules in the system or in a group",
         &[("command", 0x02)],
-        &[&ModuleCount::COUNT],
         &[&ModuleCount::READ_TOTAL],
     ),
-    Entry::new(
-        "Output voltage and current of one module",
-        &[("command", 0x03)],
-        &[&ModuleOutput::VOLTAGE, &ModuleOutput::CURRENT],
-        &[&ModuleOutput::READ],
-    ),
-    Entry::new(
+    Entry::of::<ModuleOutput>("Output voltage and current of one module", &[("command", 0x03)], &[&ModuleOutput::READ]),
+    Entry::of::<ModuleStatus>(
         "Group, temperature and status of one module",
         &[("command", 0x04)],
-        &[
-            &ModuleStatus::GROUP,
-            &ModuleStatus::TEMPERATURE,
-            &ModuleStatus::STATUS_2,
-            &ModuleStatus::STATUS_1,
-            &ModuleStatus::STATUS_0,
-        ],
         &[&ModuleStatus::READ],
     ),
-    Entry::new(
+    Entry::of::<InputVoltage>(
         "Line-to-line AC input voltages of one module",
         &[("command", 0x06)],
-        &[&InputVoltage::AB, &InputVoltage::BC, &InputVoltage::CA],
         &[&InputVoltage::READ],
     ),
-    Entry::new(
+    Entry::of::<SystemOutputFixed>(
         "Output voltage and total current of the system or of a group in fixed point",
         &[("command", 0x08)],
-        &[&SystemOutputFixed::VOLTAGE, &SystemOutputFixed::CURRENT],
         &[&SystemOutputFixed::READ_TOTAL],
     ),
-    Entry::new(
+    Entry::of::<ModuleOutputFixed>(
         "Output voltage and current of one module in fixed point",
         &[("command", 0x09)],
-        &[&ModuleOutputFixed::VOLTAGE, &ModuleOutputFixed::CURRENT],
         &[&ModuleOutputFixed::READ],
     ),
-    Entry::new(
-        "Limits of one module",
-        &[("command", 0x0A)],
-        &[
-            &ModuleLimits::MAXIMUM_VOLTAGE,
-            &ModuleLimits::MINIMUM_VOLTAGE,
-            &ModuleLimits::MAXIMUM_CURRENT,
-            &ModuleLimits::RATED_POWER,
-        ],
-        &[&ModuleLimits::READ],
-    ),
-    Entry::new("Barcode of one module", &[("command", 0x0B)], &[&Barcode::VALUE], &[&Barcode::READ]),
-    Entry::new(
+    Entry::of::<ModuleLimits>("Limits of one module", &[("command", 0x0A)], &[&ModuleLimits::READ]),
+    Entry::of::<Barcode>("Barcode of one module", &[("command", 0x0B)], &[&Barcode::READ]),
+    Entry::of::<ExternalVoltage>(
         "External voltage of one module and the current that the module can deliver",
         &[("command", 0x0C)],
-        &[&ExternalVoltage::VOLTAGE, &ExternalVoltage::ALLOWED_CURRENT],
         &[&ExternalVoltage::READ],
     ),
-    Entry::new("Enable or disable soft start", &[("command", 0x13)], &[&SetWalkIn::WALK_IN], &[&SetWalkIn::SET]),
-    Entry::new("Make the green LED flash", &[("command", 0x14)], &[&SetLed::LED], &[&SetLed::SET]),
-    Entry::new("Put modules into a group", &[("command", 0x16)], &[&SetGroup::GROUP], &[&SetGroup::SET]),
-    Entry::new("Send modules to sleep", &[("command", 0x19)], &[&SetSleep::SLEEP], &[&SetSleep::SET]),
-    Entry::new("Switch modules on or off", &[("command", 0x1A)], &[&SwitchModules::POWER], &[&SwitchModules::SET]),
-    Entry::new(
+    Entry::of::<SetWalkIn>("Enable or disable soft start", &[("command", 0x13)], &[&SetWalkIn::SET]),
+    Entry::of::<SetLed>("Make the green LED flash", &[("command", 0x14)], &[&SetLed::SET]),
+    Entry::of::<SetGroup>("Put modules into a group", &[("command", 0x16)], &[&SetGroup::SET]),
+    Entry::of::<SetSleep>("Send modules to sleep", &[("command", 0x19)], &[&SetSleep::SET]),
+    Entry::of::<SwitchModules>("Switch modules on or off", &[("command", 0x1A)], &[&SwitchModules::SET]),
+    Entry::of::<SetTotalOutput>(
         "Set voltage and total current of the system or of a group",
         &[("command", 0x1B)],
-        &[&SetTotalOutput::VOLTAGE, &SetTotalOutput::CURRENT],
         &[&SetTotalOutput::SET_TOTAL],
     ),
-    Entry::new(
+    Entry::of::<SetModuleOutput>(
         "Set voltage and current of every module addressed",
         &[("command", 0x1C)],
-        &[&SetModuleOutput::VOLTAGE, &SetModuleOutput::CURRENT],
         &[&SetModuleOutput::SET],
     ),
-    Entry::new(
+    Entry::of::<SetAddressMode>(
         "Choose where modules get their address from",
         &[("command", 0x1F)],
-        &[&SetAddressMode::MODE],
         &[&SetAddressMode::SET],
     ),
 ];

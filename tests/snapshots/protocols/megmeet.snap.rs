@@ -5943,73 +5943,54 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
+    Entry::of::<CharacteristicWord>(
         "Characteristic word",
         &[("signal", 0x001)],
-        &[
-            &CharacteristicWord::SUPPLY,
-            &CharacteristicWord::PHASES,
-            &CharacteristicWord::INPUT_TYPE,
-            &CharacteristicWord::RATED_CURRENT,
-            &CharacteristicWord::OUTPUT_TYPE,
-            &CharacteristicWord::EFFICIENCY,
-            &CharacteristicWord::MINOR_VERSION,
-            &CharacteristicWord::GENERATION,
-        ],
         &[&CharacteristicWord::READ, &CharacteristicWord::READ_ALL_INHERENT_INFORMATION],
     ),
-    Entry::new(
+    Entry::of::<Versions>(
         "Versions of hardware and software",
         &[("signal", 0x005)],
-        &[&Versions::HARDWARE, &Versions::DCDC, &Versions::PFC],
         &[&Versions::READ, &Versions::READ_ALL_INHERENT_INFORMATION],
     ),
-    Entry::new(
+    Entry::of::<HardwareAddress>(
         "Place of the module in the system",
         &[("signal", 0x006)],
-        &[&HardwareAddress::GROUP, &HardwareAddress::SLAVE],
         &[&HardwareAddress::READ, &HardwareAddress::READ_ALL_INHERENT_INFORMATION],
     ),
-    Entry::new(
+    Entry::of::<OutputVoltageSetting>(
         "DC output voltage set",
         &[("signal", 0x100)],
-        &[&OutputVoltageSetting::VALUE],
         &[&OutputVoltageSetting::READ, &OutputVoltageSetting::SET],
     ),
-    Entry::new(
+    Entry::of::<DefaultOutputVoltage>(
         "DC output voltage by default",
         &[("signal", 0x101)],
-        &[&DefaultOutputVoltage::VALUE],
         &[&DefaultOutputVoltage::READ, &DefaultOutputVoltage::SET, &DefaultOutputVoltage::STORE],
     ),
-    Entry::new(
+    Entry::of::<OvervoltageProtectionPoint>(
         "DC output overvoltage protection point",
         &[("signal", 0x102)],
-        &[&OvervoltageProtectionPoint::VALUE],
         &[&OvervoltageProtectionPoint::READ, &OvervoltageProtectionPoint::SET, &OvervoltageProtectionPoint::STORE],
     ),
-    Entry::new(
+    Entry::of::<CurrentLimitSetting>(
         "DC output current limit set",
         &[("signal", 0x103)],
-        &[&CurrentLimitSetting::VALUE],
         &[&CurrentLimitSetting::READ, &CurrentLimitSetting::SET],
     ),
-    Entry::new(
+    Entry::of::<DefaultCurrentLimit>(
         "Current limit by default",
         &[("signal", 0x104)],
-        &[&DefaultCurrentLimit::VALUE],
         &[&DefaultCurrentLimit::READ, &DefaultCurrentLimit::SET, &DefaultCurrentLimit::STORE],
     ),
-    Entry::new(
+    Entry::of::<WalkInTime>(
         "Walk-in time",
         &[("signal", 0x10C)],
-        &[&WalkInTime::VALUE],
         &[&WalkInTime::READ, &WalkInTime::SET, &WalkInTime::STORE],
     ),
-    Entry::new(
+    Entry::of::<TotalRunningTime>(
         "Total running time",
         &[("signal", 0x10E)],
-        &[&TotalRunningTime::VALUE],
         &[
             &TotalRunningTime::READ,
             &TotalRunningTime::SET,
@@ -6017,273 +5998,198 @@ pub const MESSAGES: &[Entry<Message>] = &[
             &TotalRunningTime::READ_ALL_REAL_TIME_DATA,
         ],
     ),
-    Entry::new("Switch modules on or off", &[("signal", 0x132)], &[&SwitchModules::VALUE], &[&SwitchModules::SET]),
-    Entry::new(
+    Entry::of::<SwitchModules>("Switch modules on or off", &[("signal", 0x132)], &[&SwitchModules::SET]),
+    Entry::of::<ResetOvervoltageLockout>(
         "Reset the lockout after an overvoltage",
         &[("signal", 0x133)],
-        &[&ResetOvervoltageLockout::VALUE],
         &[&ResetOvervoltageLockout::SET],
     ),
-    Entry::new(
+    Entry::of::<FlashGreenLight>(
         "Make the green light of a module flash",
         &[("signal", 0x135)],
-        &[&FlashGreenLight::VALUE],
         &[&FlashGreenLight::SET],
     ),
-    Entry::new(
+    Entry::of::<AssignAddresses>(
         "Make modules assign their addresses anew",
         &[("signal", 0x13A)],
-        &[&AssignAddresses::VALUE],
         &[&AssignAddresses::SET],
     ),
-    Entry::new(
-        "Control the lights of modules",
-        &[("signal", 0x140)],
-        &[&ControlLights::RED, &ControlLights::YELLOW, &ControlLights::GREEN],
-        &[&ControlLights::SET],
-    ),
-    Entry::new(
-        "Choose the alarms that are shielded",
-        &[("signal", 0x142)],
-        &[&ShieldAlarms::EXTENDED, &ShieldAlarms::ALARMS],
-        &[&ShieldAlarms::SET],
-    ),
-    Entry::new(
+    Entry::of::<ControlLights>("Control the lights of modules", &[("signal", 0x140)], &[&ControlLights::SET]),
+    Entry::of::<ShieldAlarms>("Choose the alarms that are shielded", &[("signal", 0x142)], &[&ShieldAlarms::SET]),
+    Entry::of::<ShieldCommunicationAlarm>(
         "Shield the yellow light while the controller is not heard",
         &[("signal", 0x143)],
-        &[&ShieldCommunicationAlarm::VALUE],
         &[&ShieldCommunicationAlarm::SET, &ShieldCommunicationAlarm::STORE],
     ),
-    Entry::new(
+    Entry::of::<InputPower>(
         "Input power",
         &[("signal", 0x170)],
-        &[&InputPower::VALUE],
         &[&InputPower::READ, &InputPower::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<InputFrequency>(
         "Input frequency",
         &[("signal", 0x171)],
-        &[&InputFrequency::VALUE],
         &[&InputFrequency::READ, &InputFrequency::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<InputCurrent>(
         "Input current",
         &[("signal", 0x172)],
-        &[&InputCurrent::VALUE],
         &[&InputCurrent::READ, &InputCurrent::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<OutputPower>(
         "DC output power",
         &[("signal", 0x173)],
-        &[&OutputPower::VALUE],
         &[&OutputPower::READ, &OutputPower::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<OutputVoltage>(
         "DC output voltage measured",
         &[("signal", 0x175)],
-        &[&OutputVoltage::VALUE],
         &[&OutputVoltage::READ, &OutputVoltage::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<ActualCurrentLimit>(
         "Output current limit in effect",
         &[("signal", 0x176)],
-        &[&ActualCurrentLimit::VALUE],
         &[&ActualCurrentLimit::READ, &ActualCurrentLimit::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
-        "Output power limit in effect",
-        &[("signal", 0x177)],
-        &[&ActualPowerLimit::VALUE],
-        &[&ActualPowerLimit::READ],
-    ),
-    Entry::new(
+    Entry::of::<ActualPowerLimit>("Output power limit in effect", &[("signal", 0x177)], &[&ActualPowerLimit::READ]),
+    Entry::of::<InputVoltage>(
         "Input voltage of a single-phase module",
         &[("signal", 0x178)],
-        &[&InputVoltage::VALUE],
         &[&InputVoltage::READ, &InputVoltage::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<AmbientTemperature>(
         "Ambient temperature at the air inlet",
         &[("signal", 0x180)],
-        &[&AmbientTemperature::VALUE],
         &[&AmbientTemperature::READ, &AmbientTemperature::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<OutputCurrent>(
         "Output current shown",
         &[("signal", 0x182)],
-        &[&OutputCurrent::VALUE],
         &[&OutputCurrent::READ, &OutputCurrent::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new(
+    Entry::of::<ModuleStatus>(
         "Alarms and states",
         &[("signal", 0x183)],
-        &[&ModuleStatus::EXTENDED, &ModuleStatus::ALARMS],
         &[&ModuleStatus::READ, &ModuleStatus::READ_ALL_REAL_TIME_DATA],
     ),
-    Entry::new("Output external voltage", &[("signal", 0x184)], &[&ExternalVoltage::VALUE], &[&ExternalVoltage::READ]),
-    Entry::new("Rated current", &[("signal", 0x188)], &[&RatedCurrent::VALUE], &[&RatedCurrent::READ]),
-    Entry::new(
+    Entry::of::<ExternalVoltage>("Output external voltage", &[("signal", 0x184)], &[&ExternalVoltage::READ]),
+    Entry::of::<RatedCurrent>("Rated current", &[("signal", 0x188)], &[&RatedCurrent::READ]),
+    Entry::of::<AddressModeSwitch>(
         "Which addresses modules use",
         &[("signal", 0x21D)],
-        &[&AddressModeSwitch::VALUE],
         &[&AddressModeSwitch::READ, &AddressModeSwitch::SET, &AddressModeSwitch::STORE],
     ),
-    Entry::new(
+    Entry::of::<BarcodeVersion>(
         "Version of the barcode",
         &[("signal", 0x222)],
-        &[&BarcodeVersion::VALUE],
         &[&BarcodeVersion::READ, &BarcodeVersion::SET, &BarcodeVersion::STORE],
     ),
-    Entry::new(
-        "Barcode part 1",
-        &[("signal", 0x223)],
-        &[&Barcode1::VALUE],
-        &[&Barcode1::READ, &Barcode1::SET, &Barcode1::STORE],
-    ),
-    Entry::new(
-        "Barcode part 2",
-        &[("signal", 0x224)],
-        &[&Barcode2::VALUE],
-        &[&Barcode2::READ, &Barcode2::SET, &Barcode2::STORE],
-    ),
-    Entry::new(
-        "Barcode part 3",
-        &[("signal", 0x225)],
-        &[&Barcode3::VALUE],
-        &[&Barcode3::READ, &Barcode3::SET, &Barcode3::STORE],
-    ),
-    Entry::new(
-        "Barcode part 4",
-        &[("signal", 0x226)],
-        &[&Barcode4::VALUE],
-        &[&Barcode4::READ, &Barcode4::SET, &Barcode4::STORE],
-    ),
-    Entry::new("Duty cycle of the fan", &[("signal", 0x22B)], &[&FanDutyCycle::VALUE], &[&FanDutyCycle::READ]),
-    Entry::new(
+    Entry::of::<Barcode1>("Barcode part 1", &[("signal", 0x223)], &[&Barcode1::READ, &Barcode1::SET, &Barcode1::STORE]),
+    Entry::of::<Barcode2>("Barcode part 2", &[("signal", 0x224)], &[&Barcode2::READ, &Barcode2::SET, &Barcode2::STORE]),
+    Entry::of::<Barcode3>("Barcode part 3", &[("signal", 0x225)], &[&Barcode3::READ, &Barcode3::SET, &Barcode3::STORE]),
+    Entry::of::<Barcode4>("Barcode part 4", &[("signal", 0x226)], &[&Barcode4::READ, &Barcode4::SET, &Barcode4::STORE]),
+    Entry::of::<FanDutyCycle>("Duty cycle of the fan", &[("signal", 0x22B)], &[&FanDutyCycle::READ]),
+    Entry::of::<RectifierCurrentLimitSetting>(
         "Output current limit set in rectifier modules",
         &[("signal", 0x22D)],
-        &[&RectifierCurrentLimitSetting::VALUE],
         &[&RectifierCurrentLimitSetting::READ, &RectifierCurrentLimitSetting::SET],
     ),
-    Entry::new(
+    Entry::of::<PvCurrentLimitSetting>(
         "Output current limit set in PV modules",
         &[("signal", 0x22E)],
-        &[&PvCurrentLimitSetting::VALUE],
         &[&PvCurrentLimitSetting::READ, &PvCurrentLimitSetting::SET],
     ),
-    Entry::new(
+    Entry::of::<RectifierOutputVoltageSetting>(
         "Output voltage set in rectifier modules",
         &[("signal", 0x22F)],
-        &[&RectifierOutputVoltageSetting::VALUE],
         &[&RectifierOutputVoltageSetting::READ, &RectifierOutputVoltageSetting::SET],
     ),
-    Entry::new(
+    Entry::of::<PvOutputVoltageSetting>(
         "Output voltage set in PV modules",
         &[("signal", 0x230)],
-        &[&PvOutputVoltageSetting::VALUE],
         &[&PvOutputVoltageSetting::READ, &PvOutputVoltageSetting::SET],
     ),
-    Entry::new("Alarm word of the PFC side", &[("signal", 0x236)], &[&PfcAlarmWord::VALUE], &[&PfcAlarmWord::READ]),
-    Entry::new("Fault word of the PFC side", &[("signal", 0x237)], &[&PfcFaultWord::VALUE], &[&PfcFaultWord::READ]),
-    Entry::new("Status word of the PFC side", &[("signal", 0x238)], &[&PfcStatusWord::VALUE], &[&PfcStatusWord::READ]),
-    Entry::new("Alarm word of the DC/DC side", &[("signal", 0x239)], &[&DcdcAlarmWord::VALUE], &[&DcdcAlarmWord::READ]),
-    Entry::new("Fault word of the DC/DC side", &[("signal", 0x23A)], &[&DcdcFaultWord::VALUE], &[&DcdcFaultWord::READ]),
-    Entry::new(
-        "Status word of the DC/DC side",
-        &[("signal", 0x23B)],
-        &[&DcdcStatusWord::VALUE],
-        &[&DcdcStatusWord::READ],
-    ),
-    Entry::new(
+    Entry::of::<PfcAlarmWord>("Alarm word of the PFC side", &[("signal", 0x236)], &[&PfcAlarmWord::READ]),
+    Entry::of::<PfcFaultWord>("Fault word of the PFC side", &[("signal", 0x237)], &[&PfcFaultWord::READ]),
+    Entry::of::<PfcStatusWord>("Status word of the PFC side", &[("signal", 0x238)], &[&PfcStatusWord::READ]),
+    Entry::of::<DcdcAlarmWord>("Alarm word of the DC/DC side", &[("signal", 0x239)], &[&DcdcAlarmWord::READ]),
+    Entry::of::<DcdcFaultWord>("Fault word of the DC/DC side", &[("signal", 0x23A)], &[&DcdcFaultWord::READ]),
+    Entry::of::<DcdcStatusWord>("Status word of the DC/DC side", &[("signal", 0x23B)], &[&DcdcStatusWord::READ]),
+    Entry::of::<AutoBootSetting>(
         "Whether modules start by themselves, by default",
         &[("signal", 0x24E)],
-        &[&AutoBootSetting::VALUE],
         &[&AutoBootSetting::SET, &AutoBootSetting::STORE],
     ),
-    Entry::new(
+    Entry::of::<PvVoltageSetting>(
         "PV voltage set",
         &[("signal", 0x270)],
-        &[&PvVoltageSetting::VALUE],
         &[&PvVoltageSetting::READ, &PvVoltageSetting::SET],
     ),
     Entry::new("Reserved", &[("signal", 0x271)], &[], &[&Reserved271::READ]),
     Entry::new("Reserved", &[("signal", 0x272)], &[], &[&Reserved272::READ]),
-    Entry::new(
+    Entry::of::<MpptSingleScan>(
         "One scan for the maximum power point",
         &[("signal", 0x273)],
-        &[&MpptSingleScan::VALUE],
         &[&MpptSingleScan::READ, &MpptSingleScan::SET],
     ),
-    Entry::new(
+    Entry::of::<MpptScanCycle>(
         "Cycle of scans for the maximum power point",
         &[("signal", 0x274)],
-        &[&MpptScanCycle::VALUE],
         &[&MpptScanCycle::READ, &MpptScanCycle::SET, &MpptScanCycle::STORE],
     ),
-    Entry::new(
+    Entry::of::<WindVoltageSetting>(
         "Wind energy voltage set",
         &[("signal", 0x275)],
-        &[&WindVoltageSetting::VALUE],
         &[&WindVoltageSetting::READ, &WindVoltageSetting::SET],
     ),
-    Entry::new(
+    Entry::of::<WindVoltageUpperLimit>(
         "Upper limit of the voltage range for wind energy",
         &[("signal", 0x276)],
-        &[&WindVoltageUpperLimit::VALUE],
         &[&WindVoltageUpperLimit::READ, &WindVoltageUpperLimit::SET],
     ),
-    Entry::new(
+    Entry::of::<WindVoltageLowerLimit>(
         "Lower limit of the voltage range for wind energy",
         &[("signal", 0x277)],
-        &[&WindVoltageLowerLimit::VALUE],
         &[&WindVoltageLowerLimit::READ, &WindVoltageLowerLimit::SET],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation1>(
         "Customer information part 1",
         &[("signal", 0x301)],
-        &[&CustomerInformation1::VALUE],
         &[&CustomerInformation1::READ, &CustomerInformation1::SET, &CustomerInformation1::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation2>(
         "Customer information part 2",
         &[("signal", 0x302)],
-        &[&CustomerInformation2::VALUE],
         &[&CustomerInformation2::READ, &CustomerInformation2::SET, &CustomerInformation2::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation3>(
         "Customer information part 3",
         &[("signal", 0x303)],
-        &[&CustomerInformation3::VALUE],
         &[&CustomerInformation3::READ, &CustomerInformation3::SET, &CustomerInformation3::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation4>(
         "Customer information part 4",
         &[("signal", 0x304)],
-        &[&CustomerInformation4::VALUE],
         &[&CustomerInformation4::READ, &CustomerInformation4::SET, &CustomerInformation4::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation5>(
         "Customer information part 5",
         &[("signal", 0x305)],
-        &[&CustomerInformation5::VALUE],
         &[&CustomerInformation5::READ, &CustomerInformation5::SET, &CustomerInformation5::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation6>(
         "Customer information part 6",
         &[("signal", 0x306)],
-        &[&CustomerInformation6::VALUE],
         &[&CustomerInformation6::READ, &CustomerInformation6::SET, &CustomerInformation6::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation7>(
         "Customer information part 7",
         &[("signal", 0x307)],
-        &[&CustomerInformation7::VALUE],
         &[&CustomerInformation7::READ, &CustomerInformation7::SET, &CustomerInformation7::STORE],
     ),
-    Entry::new(
+    Entry::of::<CustomerInformation8>(
         "Customer information part 8",
         &[("signal", 0x308)],
-        &[&CustomerInformation8::VALUE],
         &[&CustomerInformation8::READ, &CustomerInformation8::SET, &CustomerInformation8::STORE],
     ),
     Entry::new("Inherent information", &[("command", 0x50)], &[], &[&InherentInformation::READ_ALL]),

@@ -2563,125 +2563,88 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("Output voltage", &[("register", 0x0001)], &[&OutputVoltage::VALUE], &[&OutputVoltage::READ]),
-    Entry::new("Output current", &[("register", 0x0002)], &[&OutputCurrent::VALUE], &[&OutputCurrent::READ]),
-    Entry::new(
+    Entry::of::<OutputVoltage>("Output voltage", &[("register", 0x0001)], &[&OutputVoltage::READ]),
+    Entry::of::<OutputCurrent>("Output current", &[("register", 0x0002)], &[&OutputCurrent::READ]),
+    Entry::of::<CurrentLimit>(
         "Current limit (1 is the rated current)",
         &[("register", 0x0003)],
-        &[&CurrentLimit::VALUE],
         &[&CurrentLimit::READ],
     ),
-    Entry::new(
+    Entry::of::<DcBoardTemperature>(
         "Temperature of the DC board",
         &[("register", 0x0004)],
-        &[&DcBoardTemperature::VALUE],
         &[&DcBoardTemperature::READ],
     ),
-    Entry::new("Input voltage (phase or DC)", &[("register", 0x0005)], &[&InputVoltage::VALUE], &[&InputVoltage::READ]),
-    Entry::new(
-        "PFC 0 voltage (positive half bus)",
-        &[("register", 0x0008)],
-        &[&Pfc0Voltage::VALUE],
-        &[&Pfc0Voltage::READ],
-    ),
-    Entry::new(
-        "PFC 1 voltage (negative half bus)",
-        &[("register", 0x000A)],
-        &[&Pfc1Voltage::VALUE],
-        &[&Pfc1Voltage::READ],
-    ),
-    Entry::new(
+    Entry::of::<InputVoltage>("Input voltage (phase or DC)", &[("register", 0x0005)], &[&InputVoltage::READ]),
+    Entry::of::<Pfc0Voltage>("PFC 0 voltage (positive half bus)", &[("register", 0x0008)], &[&Pfc0Voltage::READ]),
+    Entry::of::<Pfc1Voltage>("PFC 1 voltage (negative half bus)", &[("register", 0x000A)], &[&Pfc1Voltage::READ]),
+    Entry::of::<AmbientTemperature>(
         "Ambient temperature at the panel",
         &[("register", 0x000B)],
-        &[&AmbientTemperature::VALUE],
         &[&AmbientTemperature::READ],
     ),
-    Entry::new("Voltage of AC phase A", &[("register", 0x000C)], &[&PhaseAVoltage::VALUE], &[&PhaseAVoltage::READ]),
-    Entry::new("Voltage of AC phase B", &[("register", 0x000D)], &[&PhaseBVoltage::VALUE], &[&PhaseBVoltage::READ]),
-    Entry::new("Voltage of AC phase C", &[("register", 0x000E)], &[&PhaseCVoltage::VALUE], &[&PhaseCVoltage::READ]),
-    Entry::new(
+    Entry::of::<PhaseAVoltage>("Voltage of AC phase A", &[("register", 0x000C)], &[&PhaseAVoltage::READ]),
+    Entry::of::<PhaseBVoltage>("Voltage of AC phase B", &[("register", 0x000D)], &[&PhaseBVoltage::READ]),
+    Entry::of::<PhaseCVoltage>("Voltage of AC phase C", &[("register", 0x000E)], &[&PhaseCVoltage::READ]),
+    Entry::of::<PfcBoardTemperature>(
         "Temperature of the PFC board",
         &[("register", 0x0010)],
-        &[&PfcBoardTemperature::VALUE],
         &[&PfcBoardTemperature::READ],
     ),
-    Entry::new("Rated output power", &[("register", 0x0011)], &[&RatedPower::VALUE], &[&RatedPower::READ]),
-    Entry::new("Rated output current", &[("register", 0x0012)], &[&RatedCurrent::VALUE], &[&RatedCurrent::READ]),
-    Entry::new(
+    Entry::of::<RatedPower>("Rated output power", &[("register", 0x0011)], &[&RatedPower::READ]),
+    Entry::of::<RatedCurrent>("Rated output current", &[("register", 0x0012)], &[&RatedCurrent::READ]),
+    Entry::of::<SetAltitude>(
         "Operating altitude, by which the module derates",
         &[("register", 0x0017)],
-        &[&SetAltitude::VALUE],
         &[&SetAltitude::SET],
     ),
-    Entry::new("Output current", &[("register", 0x001B)], &[&SetOutputCurrent::VALUE], &[&SetOutputCurrent::SET]),
-    Entry::new("Put a module into a group", &[("register", 0x001E)], &[&SetGroup::GROUP], &[&SetGroup::SET]),
-    Entry::new(
+    Entry::of::<SetOutputCurrent>("Output current", &[("register", 0x001B)], &[&SetOutputCurrent::SET]),
+    Entry::of::<SetGroup>("Put a module into a group", &[("register", 0x001E)], &[&SetGroup::SET]),
+    Entry::of::<SetAddressMode>(
         "Choose where modules get their address from",
         &[("register", 0x001F)],
-        &[&SetAddressMode::VALUE],
         &[&SetAddressMode::SET],
     ),
-    Entry::new(
+    Entry::of::<SetOutputPower>(
         "Output power (1 is the rated power)",
         &[("register", 0x0020)],
-        &[&SetOutputPower::VALUE],
         &[&SetOutputPower::SET],
     ),
-    Entry::new("Output voltage", &[("register", 0x0021)], &[&SetOutputVoltage::VALUE], &[&SetOutputVoltage::SET]),
-    Entry::new(
+    Entry::of::<SetOutputVoltage>("Output voltage", &[("register", 0x0021)], &[&SetOutputVoltage::SET]),
+    Entry::of::<SetCurrentLimit>(
         "Current limit (1 is the rated current)",
         &[("register", 0x0022)],
-        &[&SetCurrentLimit::VALUE],
         &[&SetCurrentLimit::SET],
     ),
-    Entry::new(
+    Entry::of::<SetOvervoltagePoint>(
         "Upper limit of the output voltage, at which the overvoltage protection acts",
         &[("register", 0x0023)],
-        &[&SetOvervoltagePoint::VALUE],
         &[&SetOvervoltagePoint::SET],
     ),
-    Entry::new("Start up or shut down", &[("register", 0x0030)], &[&SwitchModules::VALUE], &[&SwitchModules::SET]),
-    Entry::new(
-        "Reset after overvoltage",
-        &[("register", 0x0031)],
-        &[&ResetOvervoltage::VALUE],
-        &[&ResetOvervoltage::SET],
-    ),
-    Entry::new(
+    Entry::of::<SwitchModules>("Start up or shut down", &[("register", 0x0030)], &[&SwitchModules::SET]),
+    Entry::of::<ResetOvervoltage>("Reset after overvoltage", &[("register", 0x0031)], &[&ResetOvervoltage::SET]),
+    Entry::of::<SetOvervoltageRelevance>(
         "Relevance permission of the output overvoltage protection",
         &[("register", 0x003E)],
-        &[&SetOvervoltageRelevance::VALUE],
         &[&SetOvervoltageRelevance::SET],
     ),
-    Entry::new("Alarms and states", &[("register", 0x0040)], &[&ModuleStatus::VALUE], &[&ModuleStatus::READ]),
-    Entry::new(
+    Entry::of::<ModuleStatus>("Alarms and states", &[("register", 0x0040)], &[&ModuleStatus::READ]),
+    Entry::of::<GroupAndAddress>(
         "Group of the module and address on its DIP switch",
         &[("register", 0x0043)],
-        &[&GroupAndAddress::GROUP, &GroupAndAddress::ADDRESS],
         &[&GroupAndAddress::READ],
     ),
-    Entry::new(
-        "Reset after a short circuit",
-        &[("register", 0x0044)],
-        &[&ResetShortCircuit::VALUE],
-        &[&ResetShortCircuit::SET],
-    ),
-    Entry::new("Input mode", &[("register", 0x0046)], &[&SetInputMode::VALUE], &[&SetInputMode::SET]),
-    Entry::new("Input power", &[("register", 0x0048)], &[&InputPower::VALUE], &[&InputPower::READ]),
-    Entry::new("Altitude that is set", &[("register", 0x004A)], &[&Altitude::VALUE], &[&Altitude::READ]),
-    Entry::new("Active input mode", &[("register", 0x004B)], &[&ActiveInputMode::VALUE], &[&ActiveInputMode::READ]),
-    Entry::new(
-        "Low bits of the serial number",
-        &[("register", 0x0054)],
-        &[&SerialNumberLow::VALUE],
-        &[&SerialNumberLow::READ],
-    ),
-    Entry::new(
+    Entry::of::<ResetShortCircuit>("Reset after a short circuit", &[("register", 0x0044)], &[&ResetShortCircuit::SET]),
+    Entry::of::<SetInputMode>("Input mode", &[("register", 0x0046)], &[&SetInputMode::SET]),
+    Entry::of::<InputPower>("Input power", &[("register", 0x0048)], &[&InputPower::READ]),
+    Entry::of::<Altitude>("Altitude that is set", &[("register", 0x004A)], &[&Altitude::READ]),
+    Entry::of::<ActiveInputMode>("Active input mode", &[("register", 0x004B)], &[&ActiveInputMode::READ]),
+    Entry::of::<SerialNumberLow>("Low bits of the serial number", &[("register", 0x0054)], &[&SerialNumberLow::READ]),
+    Entry::of::<SerialNumberHigh>(
         "High bits of the serial number",
         &[("register", 0x0055)],
-        &[&SerialNumberHigh::VALUE],
         &[&SerialNumberHigh::READ],
     ),
-    Entry::new("Version of the DC/DC side", &[("register", 0x0056)], &[&DcdcVersion::VERSION], &[&DcdcVersion::READ]),
-    Entry::new("Version of the PFC side", &[("register", 0x0057)], &[&PfcVersion::VERSION], &[&PfcVersion::READ]),
+    Entry::of::<DcdcVersion>("Version of the DC/DC side", &[("register", 0x0056)], &[&DcdcVersion::READ]),
+    Entry::of::<PfcVersion>("Version of the PFC side", &[("register", 0x0057)], &[&PfcVersion::READ]),
 ];

@@ -1730,68 +1730,40 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
-        "What a rectifier delivers",
-        &[],
-        &[
-            &MeasurementA::VOLTAGE,
-            &MeasurementA::CURRENT,
-            &MeasurementA::TEMPERATURE,
-            &MeasurementA::POWER,
-            &MeasurementA::OUTPUT,
-            &MeasurementA::MODE,
-            &MeasurementA::COUNTER,
-        ],
-        &[&MeasurementA::REPORT_A],
-    ),
-    Entry::new(
-        "What a rectifier works with",
-        &[],
-        &[&MeasurementB::INPUT, &MeasurementB::VOLTAGE, &MeasurementB::FAN_SPEED, &MeasurementB::LOAD],
-        &[&MeasurementB::REPORT_B],
-    ),
-    Entry::new(
+    Entry::of::<MeasurementA>("What a rectifier delivers", &[], &[&MeasurementA::REPORT_A]),
+    Entry::of::<MeasurementB>("What a rectifier works with", &[], &[&MeasurementB::REPORT_B]),
+    Entry::of::<VoltageSetPoint>(
         "Output voltage that is wanted",
         &[("index", 0x2100)],
-        &[&VoltageSetPoint::VALUE],
         &[&VoltageSetPoint::READ, &VoltageSetPoint::WRITE],
     ),
-    Entry::new(
+    Entry::of::<CurrentLimit>(
         "Limit of the output current",
         &[("index", 0x2101)],
-        &[&CurrentLimit::VALUE],
         &[&CurrentLimit::READ, &CurrentLimit::WRITE],
     ),
-    Entry::new(
-        "Switch the output",
-        &[("index", 0x2102)],
-        &[&OutputSwitch::VALUE],
-        &[&OutputSwitch::READ, &OutputSwitch::WRITE],
-    ),
-    Entry::new(
+    Entry::of::<OutputSwitch>("Switch the output", &[("index", 0x2102)], &[&OutputSwitch::READ, &OutputSwitch::WRITE]),
+    Entry::of::<MinimumFanSpeed>(
         "Least speed of the fan",
         &[("index", 0x2103)],
-        &[&MinimumFanSpeed::VALUE],
         &[&MinimumFanSpeed::READ, &MinimumFanSpeed::WRITE],
     ),
-    Entry::new("Output voltage", &[("index", 0x2200)], &[&OutputVoltage::VALUE], &[&OutputVoltage::READ]),
-    Entry::new("Output current", &[("index", 0x2201)], &[&OutputCurrent::VALUE], &[&OutputCurrent::READ]),
-    Entry::new(
+    Entry::of::<OutputVoltage>("Output voltage", &[("index", 0x2200)], &[&OutputVoltage::READ]),
+    Entry::of::<OutputCurrent>("Output current", &[("index", 0x2201)], &[&OutputCurrent::READ]),
+    Entry::of::<HeatSinkTemperature>(
         "Temperature of the heat sink",
         &[("index", 0x2202)],
-        &[&HeatSinkTemperature::VALUE],
         &[&HeatSinkTemperature::READ],
     ),
-    Entry::new("Frequency of the input", &[("index", 0x2203)], &[&InputFrequency::VALUE], &[&InputFrequency::READ]),
-    Entry::new("Time in operation", &[("index", 0x2204)], &[&OperatingTime::VALUE], &[&OperatingTime::READ]),
-    Entry::new(
+    Entry::of::<InputFrequency>("Frequency of the input", &[("index", 0x2203)], &[&InputFrequency::READ]),
+    Entry::of::<OperatingTime>("Time in operation", &[("index", 0x2204)], &[&OperatingTime::READ]),
+    Entry::of::<SerialNumber>(
         "First four characters of the serial number",
         &[("index", 0x2300)],
-        &[&SerialNumber::VALUE],
         &[&SerialNumber::READ],
     ),
-    Entry::new("Version of the firmware", &[("index", 0x2301)], &[&Firmware::VALUE], &[&Firmware::READ]),
-    Entry::new("Conditions of a rectifier", &[("index", 0x2400)], &[&State::VALUE], &[&State::READ]),
-    Entry::new("Why a request is refused", &[], &[&Refusal::VALUE], &[&Refusal::REFUSE]),
-    Entry::new("Sign of life of the controller", &[("sign", 0x55)], &[&KeepAlive::OUTPUTS], &[&KeepAlive::TELL]),
+    Entry::of::<Firmware>("Version of the firmware", &[("index", 0x2301)], &[&Firmware::READ]),
+    Entry::of::<State>("Conditions of a rectifier", &[("index", 0x2400)], &[&State::READ]),
+    Entry::of::<Refusal>("Why a request is refused", &[], &[&Refusal::REFUSE]),
+    Entry::of::<KeepAlive>("Sign of life of the controller", &[("sign", 0x55)], &[&KeepAlive::TELL]),
 ];

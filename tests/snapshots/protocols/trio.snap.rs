@@ -1029,53 +1029,32 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
+    Entry::of::<ReferenceValues>(
         "Control mode, operation, nominal voltage and available voltages of one module",
         &[("command", 0x20)],
-        &[
-            &ReferenceValues::MODE,
-            &ReferenceValues::OPERATION,
-            &ReferenceValues::NOMINAL_VOLTAGE,
-            &ReferenceValues::MAXIMUM_VOLTAGE,
-            &ReferenceValues::MINIMUM_VOLTAGE,
-        ],
         &[&ReferenceValues::REPORT],
     ),
-    Entry::new(
+    Entry::of::<OutputValues>(
         "Output voltage, current, power and faults of one module",
         &[("command", 0x21)],
-        &[&OutputValues::VOLTAGE, &OutputValues::CURRENT, &OutputValues::POWER, &OutputValues::STATUS],
         &[&OutputValues::REPORT],
     ),
-    Entry::new(
+    Entry::of::<TemperatureValues>(
         "Temperature and fan speeds of one module",
         &[("command", 0x22)],
-        &[&TemperatureValues::TEMPERATURE, &TemperatureValues::FAN_1, &TemperatureValues::FAN_2],
         &[&TemperatureValues::REPORT],
     ),
-    Entry::new(
-        "Firmware version of one module",
-        &[("command", 0x23)],
-        &[&FirmwareVersion::VERSION],
-        &[&FirmwareVersion::REPORT],
-    ),
-    Entry::new(
-        "Running times of one module",
-        &[("command", 0x25)],
-        &[&RunningTime::RUNNING, &RunningTime::TOTAL],
-        &[&RunningTime::REPORT],
-    ),
-    Entry::new(
+    Entry::of::<FirmwareVersion>("Firmware version of one module", &[("command", 0x23)], &[&FirmwareVersion::REPORT]),
+    Entry::of::<RunningTime>("Running times of one module", &[("command", 0x25)], &[&RunningTime::REPORT]),
+    Entry::of::<ReplacementAdvice>(
         "Whether one module should be replaced",
         &[("command", 0x27)],
-        &[&ReplacementAdvice::ADVICE],
         &[&ReplacementAdvice::REPORT],
     ),
-    Entry::new(
+    Entry::of::<Control>(
         "Set control mode, operation and output voltage of one module",
         &[("command", 0x10)],
-        &[&Control::MODE, &Control::OPERATION, &Control::VOLTAGE],
         &[&Control::SET],
     ),
-    Entry::new("Give one module another address", &[("command", 0x11)], &[&SetAddress::ADDRESS], &[&SetAddress::SET]),
+    Entry::of::<SetAddress>("Give one module another address", &[("command", 0x11)], &[&SetAddress::SET]),
 ];

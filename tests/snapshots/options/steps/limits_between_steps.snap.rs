@@ -285,11 +285,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
-        "set limit",
-        &[("command", 0x003)],
-        &[&SetLimit::CURRENT, &SetLimit::INTERVAL, &SetLimit::SLOPE, &SetLimit::COLD],
-        &[&SetLimit::WRITE],
-    ),
-    Entry::new("set total", &[("command", 0x004)], &[&SetTotal::TOTAL], &[&SetTotal::WRITE]),
+    Entry::of::<SetLimit>("set limit", &[("command", 0x003)], &[&SetLimit::WRITE]),
+    Entry::of::<SetTotal>("set total", &[("command", 0x004)], &[&SetTotal::WRITE]),
 ];
