@@ -18,7 +18,7 @@ fn entry(Message { home, title, constants, signals, exchanges, structs, .. }: &M
     let has_all = structs.iter().any(|own| own.is_home && own.signals.len() == signals.len());
     let exchanges = exchanges.iter().map(|exchange| &exchange.constant);
     let constants = constants.iter().map(|(name, value)| quote!((#name, #value)));
-    if has_all && signals.len() > 0 {
+    if has_all && !signals.is_empty() {
         return quote!(Entry::of::<#home>(#title, &[#(#constants),*], &[#(&#home::#exchanges),*]));
     }
     let signals = signals.iter().map(|signal| &signal.constant);
