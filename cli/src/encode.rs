@@ -6,7 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use canspec_codegen::interpret::{self, Frame, Refusal, Target, Targets};
-use canspec_codegen::model::{ModelId, Protocol};
+use canspec_codegen::model::{ModelId, Protocol, Signal};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Finish};
@@ -190,9 +190,10 @@ fn device<'a>(devices: &[Device<'a>], name: Option<&str>) -> Result<Device<'a>, 
 /// Refuses a value whose stated unit is not that of its signal.
 fn check_units(protocol: &Protocol, line: &Message) -> Result<(), String> {
     let message = protocol.messages.iter().find(|message| message.name == line.frame.message);
-    let signals = message.map_or(&[][..], |message| &message.signals);
+    let Some(message) = message else { return Ok(()) };
     for (name, stated) in &line.units {
-        let Some(signal) = signals.iter().find(|signal| signal.name == *name) else { continue };
+        let is_meant = |signal: &&Signal| signal.name == *name || message.field_name(signal) == name;
+        let Some(signal) = message.signals.iter().find(is_meant) else { continue };
         let wanted = match signal.unit {
             Some(unit) if unit.symbol == stated => continue,
             Some(unit) => format!("the unit is {}", unit.symbol),

@@ -16,6 +16,7 @@ mod encode;
 mod examples;
 mod export;
 mod failure;
+mod fields;
 pub mod files;
 mod identify;
 mod import;

@@ -83,7 +83,8 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     for message in &protocol.messages {
         rows.push(message_row(protocol, &selectors, message));
         let signals = message.signals.iter().filter(|_| value(message).is_none());
-        rows.extend(signals.map(|signal| signal_row(protocol, selectors.len(), message, signal)));
+        let fields = signals.filter(|signal| signal.element.is_none_or(|element| element.index == 0));
+        rows.extend(fields.map(|signal| signal_row(protocol, selectors.len(), message, signal)));
     }
     columns::write(out, &headings, "MEANING", &rows)?;
     if protocol.messages.iter().any(|message| value(message).is_some()) {
@@ -183,10 +184,17 @@ fn value(message: &Message) -> Option<&Signal> {
 
 fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: &Signal) -> Row {
     let mut cells = vec![String::new(); selectors + 1];
-    cells.push(format!("  {}", signal.name));
+    cells.push(format!("  {}", field_name(message, signal)));
     cells.push(signal.unit.map_or(String::new(), |unit| unit.symbol.to_owned()));
     cells.push(words(signal.doc.section.as_ref().filter(|_| signal.doc.section != message.doc.section)));
-    Row { cells, last: titled(title(&signal.doc), meaning(protocol, signal)), separator: ", " }
+    let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
+    Row { cells, last: titled(title(doc), meaning(protocol, signal)), separator: ", " }
+}
+
+/// Returns the name of a signal, or those of an array's first and last element.
+fn field_name(message: &Message, signal: &Signal) -> String {
+    let last = message.array_of(signal).and_then(|array| array.elements.last());
+    last.map_or_else(|| signal.name.clone(), |last| format!("{}..{}", signal.name, message.signals[*last].name))
 }
 
 /// Writes a title before the first item.

@@ -2,10 +2,11 @@
 
 use std::io::{self, Write};
 
-use canspec_codegen::interpret::{Decoded, Reading, Unrecognised, Value};
+use canspec_codegen::interpret::{Decoded, Unrecognised, Value};
 use canspec_codegen::model::{Kind, Mode, Protocol};
 
 use crate::columns::{Columns, Lines, wrap};
+use crate::fields::{Field, Read, fields};
 use crate::line::{Outcome, addresses};
 use crate::log;
 use crate::value;
@@ -169,18 +170,15 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
     match outcome.decoded {
         Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded, room),
         Ok(decoded) => {
-            for reading in &decoded.signals {
+            for (name, field) in fields(&outcome.protocol.messages[decoded.message], decoded) {
                 item.clear();
-                signal(item, outcome.protocol, decoded, reading);
+                item.extend([name, " "]);
+                let may_be_parted = add_field(item, outcome.protocol, &field);
                 item.push_str(GAP);
-                match &reading.value {
-                    Value::None | Value::Integer(_) | Value::Number(_) | Value::Name(_) => {
-                        lines.add(item, "", room + 1);
-                    }
-                    // These may be long, and be parted after a comma.
-                    Value::Text(_) | Value::Status { .. } => {
-                        item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
-                    }
+                if may_be_parted {
+                    item.split_inclusive(", ").for_each(|piece| lines.add(piece, "", room + 1));
+                } else {
+                    lines.add(item, "", room + 1);
                 }
             }
             decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
@@ -209,10 +207,41 @@ fn remark(lines: &mut Lines, item: &mut String, rule: &str, text: &str, room: us
     lines.add_sentence(item, room);
 }
 
-fn signal(text: &mut String, protocol: &Protocol, decoded: &Decoded, reading: &Reading) {
-    let signal = &protocol.messages[decoded.message].signals[reading.signal];
-    text.extend([&signal.name, " "]);
-    value::write(text, protocol, signal, reading);
+/// Adds the values of a field, and returns whether they may be long, and parted after a comma.
+fn add_field(text: &mut String, protocol: &Protocol, field: &Field) -> bool {
+    match field {
+        Field::Signal((signal, reading)) => {
+            value::write(text, protocol, signal, reading);
+            unit(text, (signal, reading));
+            matches!(reading.value, Value::Text(_) | Value::Status { .. })
+        }
+        Field::Array(elements) => {
+            array(text, protocol, elements);
+            true
+        }
+    }
+}
+
+/// Adds the values of an array in brackets, and their unit once.
+fn array(text: &mut String, protocol: &Protocol, elements: &[Option<Read>]) {
+    let mut separator = "[";
+    for element in elements {
+        text.push_str(separator);
+        match element {
+            Some((signal, reading)) => value::write(text, protocol, signal, reading),
+            None => text.push('-'),
+        }
+        separator = ", ";
+    }
+    text.push(']');
+    let is_number = |(_, reading): &&Read| matches!(reading.value, Value::Integer(_) | Value::Number(_));
+    if let Some(read) = elements.iter().flatten().find(is_number) {
+        unit(text, *read);
+    }
+}
+
+/// Adds the unit of a number.
+fn unit(text: &mut String, (signal, reading): Read) {
     if let (Value::Integer(_) | Value::Number(_), Some(unit)) = (&reading.value, signal.unit) {
         text.extend([" ", unit.symbol]);
     }

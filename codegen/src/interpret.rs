@@ -1,5 +1,6 @@
 //! The interpreter decodes and encodes by the model, at run time.
 
+mod arrays;
 mod content;
 mod decode;
 mod encode;
@@ -178,6 +179,8 @@ pub struct Content {
     pub selectors: Vec<(String, u64)>,
     /// Signals and their values.
     pub signals: Vec<(String, Input)>,
+    /// Arrays and the values of their elements. An element can be missing.
+    pub arrays: Vec<(String, Vec<Option<Input>>)>,
     /// Bits to set beside the signals, first byte first.
     pub reserved: Vec<u8>,
 }

@@ -5,6 +5,7 @@
 //! one is what was stored.
 
 mod address;
+mod array;
 mod data;
 mod encoding;
 mod example;
@@ -20,12 +21,13 @@ mod signal;
 
 pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
+pub use array::{Array, Element};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, Meaning, Misfit, Origin, Said, ValueExample};
 pub use id::{
-    AccessId, AddressTypeId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId, ModelId,
-    PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
+    AccessId, AddressTypeId, ArrayId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId,
+    ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub(crate) use message::first_bytes;

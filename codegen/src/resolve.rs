@@ -4,6 +4,7 @@
 mod absent;
 mod access;
 mod addressing;
+mod arrays;
 mod data;
 mod examples;
 mod format;

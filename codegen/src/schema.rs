@@ -93,11 +93,11 @@ impl JsonSchema for Means {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let value = generator.subschema_for::<String>();
-        let bits = generator.subschema_for::<Vec<String>>();
+        let list = generator.subschema_for::<Vec<Means>>();
         let signals = generator.subschema_for::<Map<Means>>();
         json_schema!({
-            "description": "One value, the set bits of a status word, or a value for each signal.",
-            "anyOf": [value, bits, signals],
+            "description": "One value, a list of status bits or elements, or a value for each signal.",
+            "anyOf": [value, list, signals],
         })
     }
 }

@@ -18,8 +18,10 @@
 mod bcd;
 mod bytes;
 pub mod float;
+pub mod floats;
 mod frame;
 pub mod optional_float;
+pub mod optional_floats;
 mod text;
 
 use core::fmt;

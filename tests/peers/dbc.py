@@ -3,6 +3,7 @@
 Called as `dbc.py CANSPEC FRAMES SPEC...` with the two programs and the specs; `.ci/peers` does that.
 """
 
+import itertools
 import json
 import math
 import random
@@ -53,7 +54,23 @@ class Protocol:
     def decode(self, log):
         """Returns what canspec says of the frames that it recognises."""
         lines = run(self.canspec, "decode", "--spec", self.spec, "--format", "jsonl", text="\n".join(log)).splitlines()
-        return [frame for frame in map(json.loads, lines) if frame["message"]]
+        frames = [frame for frame in map(json.loads, lines) if frame["message"]]
+        return [{**frame, "signals": dict(self.signals(frame))} for frame in frames]
+
+    def signals(self, frame):
+        """Returns the signals of a frame, with elements in place of arrays."""
+        message = self.message(frame)
+        known = [signal.name for signal in message.signals] if message else []
+        for name, signal in frame["signals"].items():
+            if not isinstance(signal["raw"], list):
+                yield name, signal
+                continue
+            names = (name_of(message, frame, f"{name}_{number}") for number in itertools.count()) if message else iter(())
+            # A status word has a signal for each of its bits.
+            is_known = lambda element: any(f"{other}_".startswith(f"{element}_") for other in known)
+            first = next((number for number, element in enumerate(names) if is_known(element)), 1)
+            for index in range(len(signal["raw"])):
+                yield f"{name}_{first + index}", {key: item if key == "unit" else item[index] for key, item in signal.items()}
 
     def encode(self, frames):
         """Returns data by the time of a frame; a frame that canspec refuses has none."""

@@ -8,6 +8,7 @@ CANSPEC is the command, FRAMES the program that writes random frames (`canspec-t
 
 import collections
 import glob
+import itertools
 import json
 import os
 import re
@@ -171,6 +172,22 @@ def signal_fields(name, signal):
     return fields, text + (f" {signal['unit']}" if "unit" in signal and not isinstance(value, str) else "")
 
 
+def alone(message, signals, dissector):
+    """Returns the signals of a frame as the dissector lists them, with elements in place of arrays."""
+    found = []
+    for name, signal in signals.items():
+        if not isinstance(signal["raw"], list):
+            found.append((name, signal))
+            continue
+        first = next(number for number in itertools.count() if f"{message}.{name}_{number}" in dissector.types)
+        for index in range(len(signal["raw"])):
+            element = {key: item if key == "unit" else item[index] for key, item in signal.items()}
+            found.append((f"{name}_{first + index}", element))
+    order = list(dissector.types)
+    is_array = len(found) > len(signals)
+    return sorted(found, key=lambda item: order.index(f"{message}.{item[0]}")) if is_array else found
+
+
 # Rules of notes about the value of a signal.
 OF_VALUES = ("unknown_value", "unknown_bit", "out_of_range", "not_finite")
 
@@ -195,7 +212,7 @@ def expected(line, dissector):
     fields |= {of + key: line[key] for key in ("message", "access", "kind", "addressing", "reserved") if line.get(key)}
     refused = refusal(line)
     texts = [refused] if refused else []
-    for name, signal in ({} if refused else line["signals"]).items():
+    for name, signal in {} if refused else alone(of + line["message"], line["signals"], dissector):
         more, text = signal_fields(f"{of}{line['message']}.{name}", signal)
         texts.append(f"{name} {text}")
         fields |= more

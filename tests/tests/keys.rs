@@ -100,6 +100,11 @@ messages:
     match: {command: 7}
     access: [set]
     fields: {level: {type: level}}
+  row:
+    section: "1"
+    match: {command: 9}
+    access: [set]
+    fields: {row: {bytes: 2, repeat: 2}}
   all:
     section: "1"
     match: {command: 8}
@@ -124,6 +129,9 @@ fn samples(key: Key) -> Vec<&'static str> {
     let samples: &[_] = match key {
         Key::Bytes => &["1", "5", "3..2"],
         Key::Bits => &["1", "2..1"],
+        Key::Repeat => &["3"],
+        Key::Step => &["2"],
+        Key::First => &["0"],
         Key::Type => &["titled"],
         Key::As | Key::Absent => return words(key),
         Key::Fill => &["0x20"],

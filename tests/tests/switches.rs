@@ -7,10 +7,12 @@ use canspec_codegen::interpret;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
 use canspec_runtime::plumbing::Raw;
+use canspec_runtime::with_serde::{floats, optional_floats};
 use canspec_runtime::{Bcd, Bytes, Frame, Layout, Payload, Protocol, Text};
 use canspec_tests::features_status_word_switched::State;
 use canspec_tests::{Frames, Optional, SwitchedVisitor, models, protocol, received, visit_switched};
 use serde::de::DeserializeOwned;
+use serde_json::value::Serializer;
 use serde_json::{Value, json};
 
 /// How many random frames each protocol sees.
@@ -137,6 +139,20 @@ fn a_float_that_is_no_number_is_the_text_of_its_bits() {
     for wrong in [json!("NaN"), json!("0x7FC0"), json!(null), json!("7FC01234")] {
         refused::<infy::ModuleOutput>(json!({"voltage_v": wrong, "current_a": 0.0}));
     }
+}
+
+#[test]
+fn an_array_of_floats_has_an_item_for_each() {
+    let values = [f32::from_bits(0x7FC0_1234), 2.5];
+    let written = floats::serialize(&values, Serializer).expect("every float has JSON");
+    assert_eq!(written, json!(["0x7FC01234", 2.5]));
+    let back = floats::deserialize(written).expect("what was written");
+    assert_eq!(back.map(f32::to_bits), values.map(f32::to_bits));
+    let written = optional_floats::serialize(&[None, Some(values[0])], Serializer).expect("every float has JSON");
+    assert_eq!(written, json!([null, "0x7FC01234"]));
+    let back = optional_floats::deserialize(written).expect("what was written");
+    assert_eq!(back.map(|value| value.map(f32::to_bits)), [None, Some(0x7FC0_1234)]);
+    assert!(floats::deserialize(json!([1.0])).is_err());
 }
 
 #[test]

@@ -38,7 +38,7 @@ impl Choice {
             is_known.then_some(()).ok_or_else(|| unknown("message", name, known))?;
         }
         let chosen = || messages().filter(|(protocol, message)| self.has_message(protocol, message));
-        let signals = || chosen().flat_map(|(_, message)| message.signals.iter().map(|signal| signal.name.as_str()));
+        let signals = || chosen().flat_map(|(_, message)| names(message));
         for name in &self.signal {
             let is_known = signals().any(|known| known == name);
             is_known.then_some(()).ok_or_else(|| {
@@ -73,7 +73,8 @@ impl Choice {
         let is_error_reply = decoded.is_error_reply();
         decoded.signals.retain(|reading| {
             let signal = &message.signals[reading.signal];
-            let is_named = self.signal.is_empty() || self.signal.contains(&signal.name);
+            let is_called = |name: &String| *name == signal.name || name == message.field_name(signal);
+            let is_named = self.signal.is_empty() || self.signal.iter().any(is_called);
             // Values of an error reply mean nothing.
             is_named && (self.severity.is_empty() || !is_error_reply && self.is_grave(protocol, signal, reading))
         });
@@ -98,10 +99,16 @@ fn is_called(protocol: &Protocol, message: &Message, name: &str) -> bool {
     message.name == name || own == Some(&message.name)
 }
 
+/// Returns the names of signals and of arrays.
+fn names(message: &Message) -> impl Iterator<Item = &str> {
+    let signals = message.signals.iter().map(|signal| signal.name.as_str());
+    signals.chain(message.arrays.iter().map(|array| array.name.as_str()))
+}
+
 /// Splits `MESSAGE.SIGNAL` if the message has that signal.
 fn parted<'n>(protocol: &Protocol, message: &Message, name: &'n str) -> Option<(&'n str, &'n str)> {
     let (own, signal) = name.rsplit_once('.')?;
-    let has_it = message.signals.iter().any(|known| known.name == signal);
+    let has_it = names(message).any(|known| known == signal);
     (has_it && is_called(protocol, message, own)).then_some((own, signal))
 }
 

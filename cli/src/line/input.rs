@@ -108,7 +108,7 @@ impl Object {
     }
 
     fn message(self, message: String) -> Result<Message, String> {
-        let (signals, units) = split(self.signals.ok_or_else(|| missing("signals"))?)?;
+        let Values { signals, arrays, units } = Values::of(self.signals.ok_or_else(|| missing("signals"))?)?;
         let frame = interpret::Content {
             message,
             access: self.access,
@@ -116,6 +116,7 @@ impl Object {
             identifier: self.identifier.ok_or_else(|| missing("identifier"))?.0,
             selectors: self.selectors.ok_or_else(|| missing("selectors"))?.0,
             signals,
+            arrays,
             reserved: self.reserved.as_deref().map(reserved).transpose()?.unwrap_or_default(),
         };
         Ok(Message { protocol: self.protocol, frame, units })
@@ -139,17 +140,34 @@ fn missing(field: &str) -> String {
     format!("missing field `{field}`")
 }
 
-/// The inputs and the units of all signals, by name.
-type Signals = (Vec<(String, Input)>, Vec<(String, String)>);
+/// The inputs and the units of all signals and arrays, by name.
+#[derive(Default)]
+struct Values {
+    signals: Vec<(String, Input)>,
+    arrays: Vec<(String, Vec<Option<Input>>)>,
+    units: Vec<(String, String)>,
+}
 
-fn split(signals: Members<String, ByName<SignalObject>>) -> Result<Signals, String> {
-    let (mut inputs, mut units) = (Vec::new(), Vec::new());
-    for (name, ByName(mut signal)) in signals.0 {
-        units.extend(signal.unit.take().map(|unit| (name.clone(), unit)));
-        let input = signal.input().map_err(|why| format!("signal `{name}`: {why}"))?;
-        inputs.push((name, input));
+impl Values {
+    fn of(objects: Members<String, ByName<SignalObject>>) -> Result<Self, String> {
+        let mut signals = Self::default();
+        for (name, ByName(mut object)) in objects.0 {
+            signals.units.extend(object.unit.take().map(|unit| (name.clone(), unit)));
+            let refuse = |why| format!("signal `{name}`: {why}");
+            match object.elements() {
+                None => {
+                    let input = object.input().map_err(refuse)?;
+                    signals.signals.push((name, input));
+                }
+                Some(elements) => {
+                    let inputs = elements.into_iter().map(SignalObject::element).collect::<Result<_, _>>();
+                    let inputs = inputs.map_err(refuse)?;
+                    signals.arrays.push((name, inputs));
+                }
+            }
+        }
+        Ok(signals)
     }
-    Ok((inputs, units))
 }
 
 fn kind(word: &str) -> Result<Kind, String> {
@@ -182,23 +200,57 @@ struct SignalObject {
     raw: Option<Value>,
     value: Option<Value>,
     unit: Option<String>,
-    set: Option<Vec<String>>,
-    unknown: Option<u64>,
+    set: Option<Value>,
+    unknown: Option<Value>,
     #[serde(rename = "severity")]
     _severity: Option<IgnoredAny>,
 }
 
 impl SignalObject {
+    /// Returns the elements of an array, whose members are lists.
+    fn elements(&self) -> Option<Vec<Self>> {
+        let lists = [&self.raw, &self.value, &self.set, &self.unknown].map(|member| member.as_ref()?.as_array());
+        let [raw, value, mut set, unknown] = lists;
+        // The names of the set bits are a list in any case.
+        if unknown.is_none() {
+            set = None;
+        }
+        let count = [raw, value, set, unknown].into_iter().flatten().map(Vec::len).max()?;
+        let item = |list: Option<&Vec<Value>>, index: usize| list?.get(index).filter(|item| !item.is_null()).cloned();
+        let element = |index| Self {
+            raw: item(raw, index),
+            value: item(value, index),
+            unit: None,
+            set: item(set, index),
+            unknown: item(unknown, index),
+            _severity: None,
+        };
+        Some((0..count).map(element).collect())
+    }
+
+    /// Returns the value of an element, if the frame has it.
+    fn element(self) -> Result<Option<Input>, String> {
+        let is_there = self.raw.is_some() || self.value.is_some() || self.set.is_some();
+        is_there.then(|| self.input()).transpose()
+    }
+
     fn input(self) -> Result<Input, String> {
         match (self.value, self.set, self.unknown) {
             (Some(value), None, None) => physical(value),
-            (None, Some(set), Some(unknown)) => Ok(Input::Status { set, unknown }),
+            (None, Some(set), Some(unknown)) => status(set, unknown),
             (None, None, None) => raw(&self.raw.ok_or("`value` is missing, and so is `raw`")?),
             (Some(_), ..) => Err("it has a `value` and the bits of a status word".to_owned()),
             (None, Some(_), None) => Err(missing("unknown")),
             (None, None, Some(_)) => Err(missing("set")),
         }
     }
+}
+
+fn status(set: Value, unknown: Value) -> Result<Input, String> {
+    let set = serde_json::from_value(set).map_err(|error| format!("`set` is a list of names: {error}"))?;
+    let unknown =
+        serde_json::from_value(unknown).map_err(|error| format!("`unknown` is a mask of 64 bits: {error}"))?;
+    Ok(Input::Status { set, unknown })
 }
 
 fn physical(value: Value) -> Result<Input, String> {
@@ -321,6 +373,7 @@ mod tests {
                 ("voltage".to_owned(), Input::Number(500.0)),
                 ("state".to_owned(), Input::Status { set: vec!["on".to_owned()], unknown: 32 }),
             ],
+            arrays: Vec::new(),
             reserved: vec![0x00, 0xFF],
         };
         assert_eq!(line.time.as_ref().map(|time| time.get()), Some("1700000000.0"));
@@ -386,7 +439,7 @@ mod tests {
             (r#"{"value":null,"raw":1.5}"#, "`raw` is an integer of up to 64 bits, not 1.5"),
             (r#"{"raw":"7"}"#, r#"`raw` is an integer of up to 64 bits, not "7""#),
             (r#"{"value":true}"#, "`value` is a number, a text or null, not true"),
-            (r#"{"value":[1]}"#, "`value` is a number, a text or null, not [1]"),
+            (r#"{"value":[[1]]}"#, "`value` is a number, a text or null, not [1]"),
             (r#"{"set":[]}"#, "missing field `unknown`"),
             (r#"{"unknown":0}"#, "missing field `set`"),
             (r#"{"value":1,"set":[],"unknown":0}"#, "it has a `value` and the bits of a status word"),

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, StatusBit, Table};
 
+use crate::fields::{Field, Read, fields};
 use crate::log;
 use crate::severity::Severity;
 
@@ -64,11 +65,10 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     object(out, addresses, integer)?;
     selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
     out.write_all(b",\"signals\":")?;
-    let signals = decoded.signals.iter().map(|reading| {
-        let signal = &message.signals[reading.signal];
-        (signal.name.as_str(), (signal, reading))
-    });
-    object(out, signals, |out, (signal, reading)| value(out, protocol, signal, reading))?;
+    object(out, fields(message, decoded), |out, field| match field {
+        Field::Signal((signal, reading)) => value(out, protocol, signal, reading),
+        Field::Array(elements) => array(out, protocol, &elements),
+    })?;
     let reserved = decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
     if reserved.iter().any(|byte| *byte != 0) {
         // It has as many digits as the data.
@@ -116,18 +116,31 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
         list(out, bit_names(protocol, signal, set), name)?;
         out.write_all(b",\"unknown\":")?;
         integer(out, *unknown)?;
-        severities(out, &set_bits(protocol, signal, set))?;
+        severities(out, &set_bits(protocol, signal, set).collect::<Vec<_>>())?;
         return out.write_all(b"}");
     }
-    long_integer(out, signal.raw_of(reading.bits))?;
+    raw(out, (signal, reading))?;
     out.write_all(b",\"value\":")?;
+    physical(out, (signal, reading))?;
+    end(out, signal)
+}
+
+fn raw(out: &mut impl Write, (signal, reading): Read) -> io::Result<()> {
+    long_integer(out, signal.raw_of(reading.bits))
+}
+
+fn physical(out: &mut impl Write, (_, reading): Read) -> io::Result<()> {
     match &reading.value {
-        Value::None | Value::Status { .. } => out.write_all(b"null")?,
-        Value::Integer(value) => long_integer(out, *value)?,
-        Value::Number(value) => serde_json::to_writer(&mut *out, value)?,
-        Value::Name(value) => name(out, value)?,
-        Value::Text(value) => text(out, value)?,
+        Value::None | Value::Status { .. } => out.write_all(b"null"),
+        Value::Integer(value) => long_integer(out, *value),
+        Value::Number(value) => Ok(serde_json::to_writer(out, value)?),
+        Value::Name(value) => name(out, value),
+        Value::Text(value) => text(out, value),
     }
+}
+
+/// Ends an object with the unit.
+fn end(out: &mut impl Write, signal: &Signal) -> io::Result<()> {
     if let Some(unit) = signal.unit {
         out.write_all(b",\"unit\":")?;
         name(out, unit.symbol)?;
@@ -135,19 +148,71 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
     out.write_all(b"}")
 }
 
+/// Writes an array, each member as a list with an item an element. An element that the frame lacks is null.
+fn array(out: &mut impl Write, protocol: &Protocol, elements: &[Option<Read>]) -> io::Result<()> {
+    let Some((signal, _)) = elements.iter().flatten().next() else { return out.write_all(b"{}") };
+    out.write_all(b"{\"raw\":")?;
+    items(out, elements, raw)?;
+    if signal.encoding.status_word().is_some() {
+        return status_words(out, protocol, elements);
+    }
+    out.write_all(b",\"value\":")?;
+    items(out, elements, physical)?;
+    end(out, signal)
+}
+
+/// Writes the bits of an array's status words.
+fn status_words(out: &mut impl Write, protocol: &Protocol, elements: &[Option<Read>]) -> io::Result<()> {
+    let bits = |(signal, reading): Read| set_bits(protocol, signal, status(reading).0).collect::<Vec<_>>();
+    out.write_all(b",\"set\":")?;
+    items(out, elements, |out, read| list(out, bits(read), |out, bit| name(out, &bit.name)))?;
+    out.write_all(b",\"unknown\":")?;
+    items(out, elements, |out, (_, reading)| integer(out, status(reading).1))?;
+    if elements.iter().flatten().any(|read| !by_severity(&bits(*read)).is_empty()) {
+        out.write_all(b",\"severity\":")?;
+        items(out, elements, |out, read| groups(out, by_severity(&bits(read))))?;
+    }
+    out.write_all(b"}")
+}
+
+/// Returns the set bits of a status word, and those without a name.
+fn status(reading: &Reading) -> (&[u8], u64) {
+    if let Value::Status { set, unknown } = &reading.value { (set, *unknown) } else { (&[], 0) }
+}
+
+fn items<W: Write>(
+    out: &mut W,
+    elements: &[Option<Read>],
+    mut write: impl FnMut(&mut W, Read) -> io::Result<()>,
+) -> io::Result<()> {
+    list(out, elements, |out, element| match element {
+        Some(read) => write(out, *read),
+        None => out.write_all(b"null"),
+    })
+}
+
 /// Writes the names of set bits by their severity, if one of them has any.
-fn severities<'a>(out: &mut impl Write, bits: &(impl Iterator<Item = &'a StatusBit> + Clone)) -> io::Result<()> {
-    let names = |severity| {
-        let bits = bits.clone().filter(move |bit| Severity::of(bit) == Some(severity));
-        bits.map(|bit| bit.name.as_str())
-    };
-    let groups = Severity::ALL.into_iter().map(|severity| (severity.word(), names(severity)));
-    let mut groups = groups.filter(|(_, names)| names.clone().next().is_some()).peekable();
-    if groups.peek().is_none() {
+fn severities(out: &mut impl Write, bits: &[&StatusBit]) -> io::Result<()> {
+    let by_severity = by_severity(bits);
+    if by_severity.is_empty() {
         return Ok(());
     }
     out.write_all(b",\"severity\":")?;
-    object(out, groups, |out, names| list(out, names, name))
+    groups(out, by_severity)
+}
+
+/// Returns the names of set bits by their severity.
+fn by_severity<'a>(bits: &[&'a StatusBit]) -> Vec<(&'static str, Vec<&'a str>)> {
+    let names = |severity| {
+        let bits = bits.iter().filter(move |bit| Severity::of(bit) == Some(severity));
+        bits.map(|bit| bit.name.as_str()).collect::<Vec<_>>()
+    };
+    let groups = Severity::ALL.into_iter().map(|severity| (severity.word(), names(severity)));
+    groups.filter(|(_, names)| !names.is_empty()).collect()
+}
+
+fn groups(out: &mut impl Write, groups: Vec<(&str, Vec<&str>)>) -> io::Result<()> {
+    members(out, groups.into_iter(), |out, names| list(out, names, name))
 }
 
 /// Returns the addresses that the identifier shows, each with its kind.

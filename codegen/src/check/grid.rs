@@ -79,7 +79,7 @@ fn each_scaled(
             if let Some(why) = fault {
                 let text = format!("`{}.{}`: {why}", message.name, signal.name);
                 let at = signal.doc.path.key("scale").at_value();
-                diagnostics.push(Diagnostic::error(&GRID, at, text).help(help));
+                diagnostics.push_first(Diagnostic::error(&GRID, at, text).help(help));
             }
         }
     }
@@ -99,7 +99,7 @@ fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     "the limits of `{}.{}` reach 2^{EXACT}, beyond which a single misses integers",
                     message.name, signal.name
                 );
-                diagnostics.push(Diagnostic::error(&GRID, path.at_value(), text).help(help));
+                diagnostics.push_first(Diagnostic::error(&GRID, path.at_value(), text).help(help));
             }
         }
     }

@@ -15,7 +15,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
             let what = if has_scale(signal) { "a scale" } else { "an offset" };
             let text = format!("`{}.{}` has {what}, but neither a unit nor a title", message.name, signal.name);
             let help = "write its `unit`; if the language does not have that unit, say it in the `title`";
-            diagnostics.push(Diagnostic::warning(&NO_UNIT, signal.doc.path.at_key(), text).help(help));
+            diagnostics.push_first(Diagnostic::warning(&NO_UNIT, signal.doc.path.at_key(), text).help(help));
         }
     }
 }

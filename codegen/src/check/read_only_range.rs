@@ -20,7 +20,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                 );
                 let help =
                     "take the range out; or keep it for the note `out_of_range`, with a reason in an entry of `allow`";
-                diagnostics.push(Diagnostic::warning(&READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
+                diagnostics
+                    .push_first(Diagnostic::warning(&READ_ONLY_RANGE, signal.range_path.at_value(), text).help(help));
             }
         }
     }

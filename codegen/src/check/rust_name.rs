@@ -22,8 +22,9 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let module = Doc { path: Path::default().key("protocol"), ..Doc::default() };
     check_names("module", std::iter::once((protocol.name.clone(), protocol.name.as_str(), &module)), diagnostics);
     for message in &protocol.messages {
+        let fields = message.signals.iter().filter(|signal| signal.element.is_none_or(|element| element.index == 0));
         let names =
-            message.signals.iter().map(|signal| (member(signal, Scaled::default()), signal.name.as_str(), &signal.doc));
+            fields.map(|signal| (member(message, signal, Scaled::default()), message.field_name(signal), &signal.doc));
         check_names("member", names, diagnostics);
     }
     let accesses = protocol.accesses.iter().map(|access| (access.name.clone(), access.name.as_str(), &access.doc));

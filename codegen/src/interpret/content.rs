@@ -52,6 +52,7 @@ impl Content {
             identifier: fields.map(|(field, value)| (field.name.clone(), u64::from(*value))).collect(),
             selectors: selectors.collect(),
             signals: signals.collect(),
+            arrays: Vec::new(),
             reserved: decoded.reserved.iter().copied().take(decoded.length).collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! Encodes a message with its values to a frame.
 
 use super::value::{Limits, raw_of};
-use super::{Content, Decoded, Form, Frame, Refusal, decode, padded};
+use super::{Content, Decoded, Form, Frame, Refusal, arrays, decode, padded};
 use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace, Signal};
 use crate::nearest;
 
@@ -18,6 +18,7 @@ const FORBIDDEN: [NoteRule; 3] = [NoteRule::Address, NoteRule::Addressing, NoteR
 /// It also refuses addresses and addressing modes that the document does not have.
 pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, &content.message)?;
+    let content = &*arrays::parted(message, content)?;
     let id = identifier(protocol, content)?;
     let layout = layout(protocol, message, content, id)?;
     let limits = Limits::of(layout.kind, model);
@@ -181,6 +182,12 @@ fn put_signals(
         signal.place.put(data, bits);
     }
     Ok(())
+}
+
+/// Returns a name that is given twice.
+pub fn twice<T>(given: &[(String, T)]) -> Option<&str> {
+    let is_known = |(index, (name, _)): &(usize, &(String, T))| given[..*index].iter().any(|(known, _)| known == name);
+    given.iter().enumerate().find(is_known).map(|(_, (name, _))| name.as_str())
 }
 
 fn put_reserved(

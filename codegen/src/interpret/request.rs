@@ -1,7 +1,8 @@
 //! Makes a request by name: `set_output` to `module:3`.
 
+use super::arrays::parted_texts;
 use super::content::blank_data;
-use super::encode::{find_message, frame, length_with, not_of, refuse};
+use super::encode::{find_message, frame, length_with, not_of, refuse, twice};
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
 use crate::encoding::Words;
@@ -113,6 +114,7 @@ pub fn accesses<'a>(
     signals: &[(String, String)],
 ) -> Result<Vec<&'a str>, Refusal> {
     let (_, message) = find_message(protocol, message)?;
+    let signals = parted_texts(message, signals)?;
     let mut requests = requests_of(protocol, message, |_| true);
     requests.sort_by_key(|frame| {
         let carried: Vec<_> = protocol.signals_of(frame).map(|(_, signal)| signal.name.as_str()).collect();
@@ -243,6 +245,7 @@ fn made(
     if let Some(model) = model.filter(|model| !message.is_of(*model)) {
         return Err(not_of(protocol, message, model));
     }
+    let signals = &parted_texts(message, signals)?;
     let mode = mode(protocol, message, layout, target)?;
     let id = identifier(protocol, message, layout, mode, target, source)?;
     let mut data = blank_data(layout);
@@ -348,13 +351,11 @@ fn put_signals(
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
     let carried: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| signal).collect();
-    for (index, (name, _)) in given.iter().enumerate() {
-        if carried.iter().all(|signal| signal.name != *name) {
-            return Err(refuse(message, &not_carried(protocol, message, layout, name)));
-        }
-        if given[..index].iter().any(|(earlier, _)| earlier == name) {
-            return Err(refuse(message, &format!("the signal `{name}` is given twice")));
-        }
+    if let Some((name, _)) = given.iter().find(|(name, _)| carried.iter().all(|signal| signal.name != *name)) {
+        return Err(refuse(message, &not_carried(protocol, message, layout, name)));
+    }
+    if let Some(name) = twice(given) {
+        return Err(refuse(message, &format!("the signal `{name}` is given twice")));
     }
     for signal in carried.into_iter().filter(|signal| usize::from(signal.end()) <= length) {
         let input = match given.iter().find(|(name, _)| *name == signal.name) {

@@ -10,8 +10,8 @@ use std::ops::{Deref, DerefMut, Index, IndexMut};
 use std::slice;
 
 use super::{
-    Access, AddressType, DeviceModel, Enumeration, Exchange, FrameLayout, IdentifierField, Message, Mode, Protocol,
-    Selector, Signal, StatusWord, Timing,
+    Access, AddressType, Array, DeviceModel, Enumeration, Exchange, FrameLayout, IdentifierField, Message, Mode,
+    Protocol, Selector, Signal, StatusWord, Timing,
 };
 
 /// The place of a row in its table.
@@ -64,6 +64,8 @@ define_ids! {
     TimingId;
     /// A signal of [`Message::signals`].
     SignalId;
+    /// An array of [`Message::arrays`].
+    ArrayId;
     /// A part of a packed value.
     PartId;
     /// A way in which a message travels, of [`Message::exchanges`].
@@ -97,6 +99,7 @@ impl_index! {
     TimingId: timing of Protocol is Timing;
     FrameId: frames of Protocol is FrameLayout;
     SignalId: signals of Message is Signal;
+    ArrayId: arrays of Message is Array;
     ExchangeId: exchanges of Message is Exchange;
 }
 

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use canspec_runtime::Place;
 
 use crate::model::{
-    AccessId, Doc, ExchangeId, FieldId, FrameId, MessageId, ModeId, ModelId, SelectorId, SelectorPlace, Set, Signal,
-    SignalId, Table, TimingId,
+    AccessId, Array, ArrayId, Doc, ExchangeId, FieldId, FrameId, MessageId, ModeId, ModelId, SelectorId, SelectorPlace,
+    Set, Signal, SignalId, Table, TimingId,
 };
 
 /// What a frame is for.
@@ -99,6 +99,8 @@ pub struct Message {
     pub lengths: Vec<u8>,
     /// Signals by first byte, then as written.
     pub signals: Table<SignalId, Signal>,
+    /// The signals that are elements of one field, by field.
+    pub arrays: Table<ArrayId, Array>,
     /// What chooses each of its frames, whatever the access.
     pub constants: Vec<Constant>,
     /// How it travels: one exchange for each of its accesses, alone or as a member of a set.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, Encoding, Kind, ModelId, place};
+use crate::model::{Doc, Element, Encoding, Kind, ModelId, place};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
@@ -137,6 +137,8 @@ pub struct Signal {
     pub model_defaults: Vec<OfModel<i128>>,
     /// The only kinds of frames that have it; empty if the access decides.
     pub kinds: Vec<Kind>,
+    /// The array of the message that it is an element of.
+    pub element: Option<Element>,
 }
 
 /// A value that a device model has of its own.

@@ -10,8 +10,8 @@ use crate::diagnostic::Diagnostic;
 use crate::encoding::said;
 use crate::hex;
 use crate::model::{
-    Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Origin, Said, Signal,
-    SignalId, StatusBit, Table, ValueExample,
+    Array, Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Origin, Said,
+    Signal, SignalId, StatusBit, Table, ValueExample,
 };
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
@@ -186,10 +186,13 @@ impl Resolver<'_> {
             None => Vec::new(),
             Some(Means::Signals(signals)) => {
                 let entries = signals.iter();
-                entries.filter_map(|(name, means)| self.named_meaning(&path.key(name), name, means, message)).collect()
+                entries.flat_map(|(name, means)| self.named_meaning(&path.key(name), name, means, message)).collect()
             }
             Some(_) if self.given_up(message).is_some_and(|names| !names.is_empty()) => Vec::new(),
             Some(means) => {
+                if let Some(array) = only_array(message) {
+                    return self.elements(path, array, means, message);
+                }
                 let [signal] = &*message.signals else {
                     if message.signals.is_empty() {
                         self.nothing_to_mean(path, message);
@@ -205,13 +208,37 @@ impl Resolver<'_> {
         }
     }
 
-    fn named_meaning(&mut self, path: &Path, name: &str, means: &Means, message: &Message) -> Option<Meaning> {
-        if self.given_up(message).is_some_and(|names| names.contains(name)) {
-            return None;
+    fn named_meaning(&mut self, path: &Path, name: &str, means: &Means, message: &Message) -> Vec<Meaning> {
+        let is_meant = |known: &String| known == name || is_element(name, known);
+        if self.given_up(message).is_some_and(|names| names.iter().any(is_meant)) {
+            return Vec::new();
+        }
+        if let Some(array) = message.array(name) {
+            return self.elements(path, array, means, message);
         }
         let found = message.signals.position(|signal| signal.name == name);
-        let id = found.or_else(|| self.no_signal(path, name, message))?;
-        self.meaning(path, id, &message[id], means)
+        let id = found.or_else(|| self.no_signal(path, name, message));
+        id.and_then(|id| self.meaning(path, id, &message[id], means)).into_iter().collect()
+    }
+
+    /// Reads the values of an array's elements.
+    fn elements(&mut self, path: &Path, array: &Array, means: &Means, message: &Message) -> Vec<Meaning> {
+        let (name, count) = (&array.name, array.elements.len());
+        let items = match means {
+            Means::List(items) => &items[..],
+            Means::Value(_) | Means::Signals(_) => &[],
+        };
+        if items.is_empty() || items.len() > count {
+            let text = match items.len() {
+                0 => format!("`{name}` is an array of {count} elements"),
+                found => format!("`{name}` has {count} elements, and here are {found}"),
+            };
+            let help = format!("write a list of their values, or one as `{}`", message[array.elements[0]].name);
+            self.error_with_help(&rules::EXAMPLE, path.at_value(), text, help);
+            return Vec::new();
+        }
+        let items = array.elements.iter().zip(items).enumerate();
+        items.filter_map(|(index, (id, item))| self.meaning(&path.index(index), *id, &message[*id], item)).collect()
     }
 
     /// Reports a value in an example of a message without fields.
@@ -237,8 +264,9 @@ impl Resolver<'_> {
     fn meaning(&mut self, path: &Path, id: SignalId, signal: &Signal, means: &Means) -> Option<Meaning> {
         let (text, said) = match means {
             Means::Value(text) => (text.clone(), said(self.words(), signal, text)),
-            Means::Bits(names) => {
-                (format!("[{}]", names.join(", ")), self.raw_status(path, signal, names)?.map(Said::Bits))
+            Means::List(items) => {
+                let names = self.names_of_bits(path, signal, items)?;
+                (format!("[{}]", names.join(", ")), self.raw_status(signal, &names)?.map(Said::Bits))
             }
             Means::Signals(_) => {
                 let text = format!("`{}` is one value, not a map", signal.name);
@@ -249,12 +277,26 @@ impl Resolver<'_> {
         Some(Meaning { signal: id, text, said, path: path.clone() })
     }
 
-    fn raw_status(&mut self, path: &Path, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
-        let Some(index) = signal.encoding.status_word() else {
-            let text = format!("`{}` is no status word, so it has no list of bits", signal.name);
-            self.error_with_help(&rules::EXAMPLE, path.at_value(), text, "write its value without brackets");
-            return None;
+    /// Returns the names of a status word's bits.
+    fn names_of_bits(&mut self, path: &Path, signal: &Signal, items: &[Means]) -> Option<Vec<String>> {
+        let names = items.iter().map(|item| match item {
+            Means::Value(name) => Some(name.clone()),
+            Means::List(_) | Means::Signals(_) => None,
+        });
+        let (text, help) = match names.collect() {
+            _ if signal.encoding.status_word().is_none() => {
+                let text = format!("`{}` is no status word, so it has no list of bits", signal.name);
+                (text, "write its value without brackets")
+            }
+            None => (format!("the list of `{}` has more than names", signal.name), "write the names of its set bits"),
+            names => return names,
         };
+        self.error_with_help(&rules::EXAMPLE, path.at_value(), text, help);
+        None
+    }
+
+    fn raw_status(&self, signal: &Signal, names: &[String]) -> Option<Result<u64, Misfit>> {
+        let index = signal.encoding.status_word()?;
         let bits = &self.tables.status_words[index].bits;
         Some(names.iter().try_fold(0, |raw, name| Ok(raw | 1 << status_bit(signal, bits, name)?)))
     }
@@ -308,6 +350,18 @@ fn example_remarks(example: &ast::Example) -> super::texts::Remarks<'_> {
 
 fn remarks_of_value(example: &ast::ValueExample) -> super::texts::Remarks<'_> {
     super::texts::Remarks { title: &None, note: &None, section: &example.section, erratum: &example.erratum }
+}
+
+/// Returns the array that is all of a message.
+fn only_array(message: &Message) -> Option<&Array> {
+    let (first, others) = message.arrays.split_first()?;
+    (others.is_empty() && first.elements.len() == message.signals.len()).then_some(first)
+}
+
+/// Tests whether a name is that of an array with a number.
+fn is_element(name: &str, array: &str) -> bool {
+    let number = name.strip_prefix(array).and_then(|rest| rest.strip_prefix('_'));
+    number.is_some_and(|number| number.parse::<u16>().is_ok())
 }
 
 /// Finds the bit of a status word by its name, or by its number if it has no name.

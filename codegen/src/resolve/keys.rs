@@ -93,6 +93,7 @@ impl Role {
         match key {
             Key::Section | Key::Erratum => true,
             Key::Title | Key::Note => !among(WORDS) && self != Self::OfModel,
+            Key::Repeat | Key::Step | Key::First => signal || self == Self::Word,
             Key::Type => !among(&[Self::Address, Self::OfModel]),
             Key::Bytes => signal || among(WORDS) || among(PLACED),
             Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
@@ -182,6 +183,9 @@ fn is_of_values(key: Key) -> bool {
     match key {
         Key::Bytes
         | Key::Bits
+        | Key::Repeat
+        | Key::Step
+        | Key::First
         | Key::As
         | Key::Fill
         | Key::Scale

@@ -128,6 +128,7 @@ impl Resolver<'_> {
         self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
         let split = set.as_ref().map_or(&[][..], |set| &set.kinds);
         let signals = leaves.signals.into_iter().collect();
+        let arrays = self.arrays(leaves.arrays, &signals);
         let (mut frames, mut refusals) = (Vec::new(), Vec::new());
         for (exchange_id, exchange) in exchanges.entries() {
             let owner = Owner { message: id, id: exchange_id, exchange, lengths: &lengths, signals: &signals };
@@ -155,6 +156,7 @@ impl Resolver<'_> {
             doc,
             lengths,
             signals,
+            arrays,
             constants,
             exchanges,
             frames: Vec::new(),

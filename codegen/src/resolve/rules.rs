@@ -18,6 +18,7 @@ rules! {
     NAMED_VALUE "named_value" Resolve ERROR;
     VALUE_WIDTH "value_width" Resolve ERROR;
     STATUS_BIT "status_bit" Resolve ERROR;
+    ARRAY "array" Resolve ERROR;
     VALUE "value" Resolve ERROR;
     ADDRESSING "addressing" Resolve EITHER;
     ACCESS "access" Resolve ERROR;
@@ -44,6 +45,7 @@ pub static RULES: &[&Rule] = &[
     &NAMED_VALUE,
     &VALUE_WIDTH,
     &STATUS_BIT,
+    &ARRAY,
     &VALUE,
     &ADDRESSING,
     &ACCESS,

@@ -4,12 +4,14 @@
 use canspec_runtime::Place;
 
 use super::Resolver;
+use super::arrays::Row;
 use super::keys::{Role, Site};
 use super::texts::{self, remarks};
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
-    DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, Numeral, OfModel, PartId, Signal, Table, TextForm, TypeOfModel,
+    Array, ArrayId, DeviceModel, Doc, Encoding, Kind, Misfit, ModelId, Numeral, OfModel, PartId, Signal, Table,
+    TextForm, TypeOfModel,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -24,6 +26,8 @@ const FIELD_LIMIT: usize = 256;
 #[derive(Default)]
 pub struct Leaves {
     pub signals: Vec<Signal>,
+    /// Arrays without their elements, which are signals.
+    pub arrays: Table<ArrayId, Array>,
     /// Constant fields of the payload and their values.
     pub constants: Vec<(Signal, u64)>,
     /// Constants that a reply shows because of the fields, each with its place in the spec.
@@ -51,12 +55,21 @@ struct Outer<'a> {
     owner: &'a str,
     /// Places of the fields around it, from the outermost on.
     around: &'a [Path],
+    /// The array whose elements the fields are parts of.
+    row: Row,
 }
 
 impl Resolver<'_> {
     /// Resolves the fields of the header.
     pub fn header_leaves(&mut self, path: &Path, fields: &ast::Map<Field>) -> Leaves {
-        let outer = Outer { site: Site::Header, word: None, doc: &Doc::default(), owner: "header", around: &[] };
+        let outer = Outer {
+            site: Site::Header,
+            word: None,
+            doc: &Doc::default(),
+            owner: "header",
+            around: &[],
+            row: Row::ALONE,
+        };
         self.free_of_constants(path, fields, outer)
     }
 
@@ -75,7 +88,12 @@ impl Resolver<'_> {
     pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaves(path, fields, Outer { site: Site::Message, word: None, doc, owner, around: &[] }, &mut leaves);
+        self.leaves(
+            path,
+            fields,
+            Outer { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE },
+            &mut leaves,
+        );
         leaves.signals.sort_by_key(Signal::start);
         leaves
     }
@@ -94,7 +112,7 @@ impl Resolver<'_> {
             path,
             "value",
             field,
-            Outer { site: Site::Message, word: None, doc, owner, around: &[] },
+            Outer { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE },
             &mut leaves,
         );
         leaves.signals.sort_by_key(Signal::start);
@@ -125,6 +143,7 @@ impl Resolver<'_> {
         leaves.replies.push((merged.path(self.diagnostics, Key::Reply), merged.field.reply.clone()));
         if merged.field.format.is_some() {
             self.check_keys(merged, Role::of_packed(outer.site));
+            self.check_in_no_array(path, "a packed value", outer.row)?;
             leaves.signals.push(self.packed(name, merged, doc, outer)?);
             return Some(());
         }
@@ -132,7 +151,8 @@ impl Resolver<'_> {
         if !merged.field.fields.is_empty() {
             self.check_keys(merged, Role::of_word(outer.site));
             self.tables.words.push(doc.clone());
-            let inside = Outer { word: Some(place), doc: &doc, ..outer };
+            let row = self.row_in(path, merged, place, outer)?;
+            let inside = Outer { word: Some(place), doc: &doc, row, ..outer };
             self.leaves(&fields, &merged.field.fields.clone(), inside, leaves);
             return Some(());
         }
@@ -142,17 +162,31 @@ impl Resolver<'_> {
         self.check_keys(merged, if constant { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) });
         match &merged.field.constant {
             None => {
-                leaves.signals.push(signal);
+                let row = self.row_in(path, merged, place, outer)?;
+                self.add_signal(signal, row, leaves)?;
                 let names_another = self.diagnostics.has_errors_in(&path.key("type"));
                 (is_sound && !names_another).then_some(())
             }
             Some(text) => {
+                self.check_in_no_array(path, "a constant", outer.row)?;
                 let at = merged.path(self.diagnostics, Key::Const);
                 let value = self.integer(&at, text, 0, place.max())?;
                 leaves.constants.push((signal, value));
                 self.is_sound(merged).then_some(())
             }
         }
+    }
+
+    /// Returns the row of elements that a field makes, or is a part of.
+    fn row_in(&mut self, path: &Path, merged: &Merged, place: Place, outer: Outer) -> Option<Row> {
+        if outer.site != Site::Message {
+            return Some(Row::ALONE);
+        }
+        if merged.field.repeat.is_some() {
+            self.check_in_no_array(path, "an array", outer.row)?;
+        }
+        let row = self.row(merged, place, outer.word)?;
+        Some(if row.is_array() { row } else { outer.row })
     }
 
     /// Counts a field of a message. It reports the limit only once.
@@ -247,6 +281,7 @@ impl Resolver<'_> {
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
             kinds,
+            element: None,
         };
         let is_judged = field.values.is_empty() || !self.diagnostics.has_errors_in(&values);
         if let Some(text) = field.default.as_ref().filter(|_| is_judged) {
@@ -444,6 +479,7 @@ impl Resolver<'_> {
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
             kinds,
+            element: None,
         })
     }
 }

@@ -76,6 +76,7 @@ fn of_field(key: Key) -> Demand {
     match key {
         Key::Bytes => Demand::Form(Form { message: "Write `0..3` or one number.", ..PLACE }),
         Key::Bits => Demand::Form(PLACE),
+        Key::Repeat | Key::Step | Key::First => Demand::Form(NUMBER),
         Key::Fill | Key::Scale | Key::Offset | Key::Const | Key::Send | Key::Normal | Key::Continues | Key::Reply => {
             Demand::Form(NUMBER)
         }

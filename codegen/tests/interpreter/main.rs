@@ -1,5 +1,6 @@
 //! What the interpreter reads and writes: the frames of the documents, and frames calculated by hand.
 
+mod arrays;
 mod examples;
 mod reading;
 mod requests;

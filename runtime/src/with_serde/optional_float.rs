@@ -23,4 +23,4 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<
 }
 
 #[derive(Serialize, Deserialize)]
-struct Float(#[serde(with = "float")] f32);
+pub(super) struct Float(#[serde(with = "float")] pub(super) f32);

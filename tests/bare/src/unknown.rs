@@ -73,7 +73,7 @@ impl Unknown for f64 {
     }
 }
 
-impl<const N: usize> Unknown for [u8; N] {
+impl<T: Unknown, const N: usize> Unknown for [T; N] {
     fn unknown() -> Self {
         [(); N].map(|()| unknown())
     }

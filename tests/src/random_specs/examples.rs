@@ -3,7 +3,7 @@
 use canspec_codegen::interpret::{
     Content, Decoded, Frame, Problem, Reading, Unrecognised, Value as Meaning, decode, encode,
 };
-use canspec_codegen::model::{Encoding, Kind, ModelId, Protocol, Signal};
+use canspec_codegen::model::{Encoding, Kind, Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
 use serde_yaml::Value;
 
@@ -76,7 +76,10 @@ impl Draft {
             let short = message.signals.len() == 1 && self.random.bool();
             let names = decoded.signals.iter().map(|reading| message[reading.signal].name.clone());
             let first = if self.chance(20) { self.random.usize(..means.len()) } else { 0 };
-            let all = Map::of(names.zip(means.clone()).skip(first));
+            let mut all = Map::of(names.zip(means.clone()).skip(first));
+            if self.random.bool() {
+                gather(message, &mut all);
+            }
             map.put("means", if short { means[0].clone() } else { all.into() });
         }
         if let Some(model) = model {
@@ -168,6 +171,17 @@ impl Draft {
         let name = self.names.name(&mut Scope::default());
         if let Some(root) = root.as_mapping_mut() {
             root.insert("examples".into(), Map::of([(name, sequence)]).into());
+        }
+    }
+}
+
+/// Makes lists of the values of arrays, as far as those of the first elements are there.
+fn gather(message: &Message, means: &mut Map) {
+    for array in &message.arrays {
+        let names = array.elements.iter().map(|id| message[*id].name.as_str());
+        let values: Vec<_> = names.map_while(|name| means.0.shift_remove(name)).collect();
+        if !values.is_empty() {
+            means.put(array.name.clone(), list(values));
         }
     }
 }

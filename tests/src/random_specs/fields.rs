@@ -71,6 +71,9 @@ impl Draft {
 
     /// Returns a field of `count` bytes.
     pub fn field(&mut self, first: u8, count: u8, scope: &mut Scope, site: &Site, has_reply: &mut bool) -> Map {
+        if count > 1 && self.chance(12) {
+            return self.array(first, count, scope, site, has_reply);
+        }
         let place = self.bytes(first, count);
         if self.chance(12) {
             let mut packed = self.packed(first, count, scope);
@@ -79,7 +82,7 @@ impl Draft {
         }
         let mut field = Map::of([("bytes", place)]);
         if count <= 4 && self.chance(25) {
-            let parts = self.parts(8 * count, scope);
+            let parts = self.parts(8 * count, scope, true);
             field.put("fields", parts);
             self.refer(&mut field);
             return self.with_types(field, &[], 8 * count);
@@ -91,6 +94,37 @@ impl Draft {
         self.count_by_byte(&mut field);
         self.restrict(&mut field, site, has_reply);
         self.with_types(field, &[], 8 * count)
+    }
+
+    /// Returns an array in `count` bytes, of words or of other fields.
+    fn array(&mut self, first: u8, count: u8, scope: &mut Scope, site: &Site, has_reply: &mut bool) -> Map {
+        let elements = self.random.u8(2..=count);
+        let size = count / elements;
+        let step = if elements == 2 { count - size } else { size };
+        let is_falling = self.chance(20);
+        let start = if is_falling { first + (elements - 1) * step } else { first };
+        let mut field = Map::of([("bytes", self.bytes(start, size))]);
+        if size <= 4 && self.chance(30) {
+            let parts = self.parts(8 * size, scope, false);
+            field.put("fields", parts);
+            self.refer(&mut field);
+        } else {
+            self.fill(&mut field, 8 * size);
+            self.restrict(&mut field, site, has_reply);
+        }
+        self.repeat(&mut field, elements, if is_falling { -i16::from(step) } else { step.into() }, size);
+        self.with_types(field, &[], 8 * size)
+    }
+
+    /// Adds the keys of an array.
+    fn repeat(&mut self, field: &mut Map, elements: u8, step: i16, size: u8) {
+        field.put("repeat", elements.to_string());
+        if step != i16::from(size) || self.chance(20) {
+            field.put("step", step.to_string());
+        }
+        if self.chance(30) {
+            field.put("first", self.one(&["0", "2", "300"]));
+        }
     }
 
     /// Numbers some status bits in their byte instead of the word.
@@ -146,13 +180,13 @@ impl Draft {
     }
 
     /// Returns the fields of a word.
-    fn parts(&mut self, width: u8, scope: &mut Scope) -> Map {
+    fn parts(&mut self, width: u8, scope: &mut Scope, may_repeat: bool) -> Map {
         let (mut parts, mut low) = (Map::default(), 0);
         while low < width {
             let widest = if self.chance(60) { 4 } else { 32 };
             let bits = self.random.u8(1..=widest.min(width - low));
             if !self.chance(20) || parts.is_empty() {
-                let (name, part) = (self.names.plain(scope), self.part(low, bits));
+                let (name, part) = (self.names.plain(scope), self.part(low, bits, may_repeat));
                 parts.put(name, part);
             }
             low += bits;
@@ -160,7 +194,14 @@ impl Draft {
         parts
     }
 
-    fn part(&mut self, low: u8, bits: u8) -> Map {
+    fn part(&mut self, low: u8, bits: u8, may_repeat: bool) -> Map {
+        if may_repeat && bits > 1 && self.chance(12) {
+            let size = bits / 2;
+            let mut part = Map::of([("bits", bits_of(low, size))]);
+            self.fill(&mut part, size);
+            self.repeat(&mut part, 2, (bits - size).into(), size);
+            return self.with_types(part, &[], size);
+        }
         let mut part = Map::of([("bits", bits_of(low, bits))]);
         self.fill(&mut part, bits);
         self.with_types(part, &[], bits)

@@ -65,14 +65,15 @@ impl<'a> Derives<'a> {
         name.map(|name| self.variant(name))
     }
 
-    /// Emits the attribute of a field that can hold infinities and what is no number.
-    pub fn float(self) -> TokenStream {
-        attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::float"))])
-    }
-
-    /// Emits the same of a field that can also be missing.
-    pub fn optional_float(self) -> TokenStream {
-        attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::optional_float"))])
+    /// Emits the attribute of a field that can hold infinities and what is no number. It can also be missing, or an array.
+    pub fn float(self, is_optional: bool, is_array: bool) -> TokenStream {
+        let with = match (is_optional, is_array) {
+            (false, false) => "canspec_runtime::with_serde::float",
+            (true, false) => "canspec_runtime::with_serde::optional_float",
+            (false, true) => "canspec_runtime::with_serde::floats",
+            (true, true) => "canspec_runtime::with_serde::optional_floats",
+        };
+        attributes(&self.options.serde, &[&quote!(serde(with = #with))])
     }
 
     /// Emits the traits of a word, by its legend.

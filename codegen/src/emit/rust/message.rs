@@ -1,6 +1,6 @@
 //! One message: its structs, signals, exchanges and requests.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
@@ -20,18 +20,20 @@ pub fn message(message: &Message, derives: Derives) -> TokenStream {
 }
 
 fn definition(message: &Message, own: &Struct, derives: Derives) -> TokenStream {
-    let Struct { name, comment, signals, is_exact, .. } = own;
-    let members = signals.iter().map(|id| member(&message.signals[*id], derives));
+    let Struct { name, comment, signals, members, is_exact, .. } = own;
+    let members = members.iter().map(|ids| member(&message.signals[ids[0]], ids.len(), derives));
     let eq = is_exact.then(|| quote!(, Eq, Hash));
     let body = if signals.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
     let attributes = derives.structure(&quote!(Clone, Copy, Debug, PartialEq #eq));
     quote!(#comment #attributes pub struct #name #body)
 }
 
-fn member(Signal { coding, member, .. }: &Signal, derives: Derives) -> TokenStream {
-    let Member { name, comment, kind, is_optional, .. } = member;
-    let float = coding.is_float.then(|| if *is_optional { derives.optional_float() } else { derives.float() });
+fn member(Signal { coding, member, .. }: &Signal, count: usize, derives: Derives) -> TokenStream {
+    let Member { name, index, comment, kind, is_optional, .. } = member;
+    let float = coding.is_float.then(|| derives.float(*is_optional, index.is_some()));
     let kind = if *is_optional { quote!(Option<#kind>) } else { kind.clone() };
+    let count = Literal::usize_unsuffixed(count);
+    let kind = if index.is_some() { quote!([#kind; #count]) } else { kind };
     quote!(#comment #float pub #name: #kind)
 }
 
@@ -62,6 +64,7 @@ fn signal(signal: &Signal) -> TokenStream {
         model_limits,
         specials,
         has_absent,
+        values,
         ..
     } = signal;
     let (raw, physical) = (&coding.raw, physical.iter());
@@ -70,11 +73,10 @@ fn signal(signal: &Signal) -> TokenStream {
     let scale = coding.scale.iter().map(|[numerator, denominator]| quote!(.scale(#numerator, #denominator)));
     let limits = limits.iter().map(|[minimum, maximum]| quote!(.limits(#minimum, #maximum)));
     let model_limits = model_limits.iter().map(|table| quote!(.model_limits(#table)));
-    let rows = specials.iter().map(|Special { raw, name, .. }| quote!((#raw, #name)));
+    let rows = specials.iter().map(|(raw, name)| quote!((#raw, #name)));
     let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
     let absent = has_absent.then(|| quote!(.absent()));
-    let named = specials.len() - usize::from(*has_absent);
-    let values = specials.iter().take(named).map(|special| special_value(special, signal));
+    let values = values.iter().map(|special| special_value(special, signal));
     quote! {
         #comment
         pub const #constant: Signal<#raw #(, #physical)*> = Signal::new(#name, #place)
@@ -84,7 +86,7 @@ fn signal(signal: &Signal) -> TokenStream {
 }
 
 /// Emits the value that stands for a special raw value.
-fn special_value(Special { constant, comment, value, .. }: &Special, signal: &Signal) -> TokenStream {
+fn special_value(Special { constant, comment, value }: &Special, signal: &Signal) -> TokenStream {
     let kind = &signal.member.kind;
     quote!(#comment pub const #constant: #kind = #value;)
 }
@@ -126,25 +128,24 @@ fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request) 
 
 /// Emits how values are read and written.
 fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
-    let Struct { name, is_home, signals, lengths, .. } = own;
+    let Struct { name, is_home, signals, members, lengths, .. } = own;
     let home = &message.home;
     let owner = if *is_home { quote!(Self) } else { quote!(#home) };
     let signals: Vec<_> = signals.iter().map(|id| &message.signals[*id]).collect();
     let constants = signals.iter().map(|signal| &signal.constant);
-    let reads =
-        signals.iter().map(|Signal { constant, member: Member { name, get, is_optional, is_at_end, .. }, .. }| {
-            let length = match (is_optional, is_at_end) {
-                (false, _) => quote!(),
-                (true, false) => quote!(, 8),
-                (true, true) => quote!(, length),
-            };
-            quote!(#name: #owner::#constant.#get(data #length))
-        });
+    let reads = members.iter().map(|ids| {
+        let elements: Vec<_> = ids.iter().map(|id| &message.signals[*id]).collect();
+        let Member { name, index, .. } = &elements[0].member;
+        let values = elements.iter().map(|signal| read(signal, &owner));
+        if index.is_some() { quote!(#name: [#(#values),*]) } else { quote!(#name: #(#values)*) }
+    });
     let values = quote!(Self { #(#reads),* });
     let sized = (!lengths.is_empty()).then(|| sized(lengths, &values));
     let decode = if sized.is_some() { quote!(<Self as Layout>::read_some(data, 8)) } else { values };
-    let writes = signals.iter().map(|Signal { constant, member: Member { name, put, .. }, .. }| {
-        quote!(#owner::#constant.#put(message.#name, payload))
+    let writes = members.iter().flatten().map(|id| {
+        let Signal { constant, member, .. } = &message.signals[*id];
+        let (put, value) = (&member.put, member.value());
+        quote!(#owner::#constant.#put(message.#value, payload))
     });
     let writes: Vec<_> = writes.collect();
     let (last, others) = writes.split_last()?;
@@ -159,6 +160,17 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
             #sized
         }
     })
+}
+
+/// Emits how the value of a signal is read.
+fn read(signal: &Signal, owner: &TokenStream) -> TokenStream {
+    let Signal { constant, member: Member { get, is_optional, is_at_end, .. }, .. } = signal;
+    let length = match (is_optional, is_at_end) {
+        (false, _) => quote!(),
+        (true, false) => quote!(, 8),
+        (true, true) => quote!(, length),
+    };
+    quote!(#owner::#constant.#get(data #length))
 }
 
 /// Emits how values are read from frames of several lengths.
@@ -176,7 +188,7 @@ fn end(message: &Message, lengths: &[Length]) -> TokenStream {
     let (shortest, longer) = (&lengths[0].bytes, &lengths[1..]);
     let cases = longer.iter().map(|Length { bytes, added }| {
         let signals = || added.iter().map(|id| &message.signals[*id]);
-        let members = signals().map(|signal| &signal.member.name);
+        let members = signals().map(|signal| signal.member.value());
         // Nobody sees from its values whether a frame ended before them, or said that there are none.
         let had = signals().all(|signal| signal.has_absent).then(|| quote!(|| payload.had(#bytes)));
         quote!(if #(message.#members.is_some())||* #had { payload.end_after(#bytes); })

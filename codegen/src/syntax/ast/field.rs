@@ -127,6 +127,14 @@ keys! {
     /// Bits of the identifier, or of the word around the field: `31..16`, or `7` for a single bit.
     /// The most significant bit comes first, and bit 0 is the least significant.
     Bits "bits": bits: Option<String>, inherited;
+    /// How many equal fields stand in a row, from `2` to `32`; one if absent. They are an array,
+    /// and the place is that of its first element.
+    Repeat "repeat": repeat: Option<String>, inherited;
+    /// How far the next element of an array is, in bytes after `bytes` and in bits after `bits`:
+    /// `4`. If absent, the elements have no gap between them.
+    Step "step": step: Option<String>, inherited;
+    /// Number in the name of an array's first element, `0` for `cell_0`; 1 if absent.
+    First "first": first: Option<String>, inherited;
     /// Entry of `types`, or a list of them: `real` or `[real, volts]`; none if absent. The field
     /// takes from them the keys that it does not have itself. In a list the last one wins.
     Type "type": types: Names, own;

@@ -112,14 +112,15 @@ pub struct Example {
     pub erratum: Names,
 }
 
-/// What an example means: one value, the set bits of a status word, or a value for each signal.
+/// What an example means: one value, a list, or a value for each signal.
 #[derive(Clone, Debug)]
 pub enum Means {
     /// A number with its unit, a name or a text: `500 V`.
     Value(String),
     /// The set bits of a status word, by name, or by number if they have no name:
-    /// `[fan_fault, 28]`. It is `[]` if no bit is set.
-    Bits(Vec<String>),
+    /// `[fan_fault, 28]`. It is `[]` if no bit is set. Of an array it is a list of its elements:
+    /// `[3.3 V, 3.2 V]`.
+    List(Vec<Means>),
     /// A value for each signal: `{voltage: 500 V, alarms: []}`.
     Signals(Map<Means>),
 }

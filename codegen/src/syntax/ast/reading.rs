@@ -60,7 +60,7 @@ impl<'de> Deserialize<'de> for Means {
             type Value = Means;
 
             fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a value, a list of status bits, or a value for each signal")
+                formatter.write_str("a value, a list of status bits or elements, or a value for each signal")
             }
 
             fn visit_str<E>(self, value: &str) -> Result<Means, E> {
@@ -68,7 +68,7 @@ impl<'de> Deserialize<'de> for Means {
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Means, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Means::Bits)
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Means::List)
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Means, A::Error> {

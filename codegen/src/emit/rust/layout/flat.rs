@@ -20,6 +20,7 @@ pub fn flat(expr: &Expr) -> Option<String> {
             let [Stmt::Expr(otherwise, None)] = otherwise.block.stmts.as_slice() else { return None };
             format!("if {} {{ {} }} else {{ {} }}", flat(&known.cond)?, flat(then)?, flat(otherwise)?)
         }
+        Expr::Index(index) => format!("{}[{}]", flat(&index.expr)?, flat(&index.index)?),
         Expr::MethodCall(call) => format!("{}.{}({})", flat(&call.receiver)?, call.method, all(&call.args)?),
         Expr::Paren(paren) => format!("({})", flat(&paren.expr)?),
         Expr::Path(known) if known.qself.is_none() => path(&known.path),

@@ -7,10 +7,11 @@ use std::collections::BTreeSet;
 
 use super::{Manual, section};
 use crate::emit::rust::plan::literal::hexadecimal;
+use crate::emit::rust::plan::signal::Member;
 use crate::emit::rust::plan::usage::frame;
 use crate::emit::rust::plan::{address, doc};
 use crate::interpret::{Decoded, Frame, Target, decode, padded, request};
-use crate::model::{Example, Kind, Protocol};
+use crate::model::{Example, Kind, Protocol, SignalId};
 use value::{literal, shown, squeezed};
 
 /// How wide a line of code can be.
@@ -53,18 +54,28 @@ impl Manual<'_> {
         let (message, layout) = (&self.plan.messages[decoded.message], &protocol[decoded.frame]);
         let own = message.structs.iter().find(|own| own.signals == layout.signals)?;
         let (mut names, mut values) = (vec![own.name.to_string(), "Target".to_owned()], Vec::new());
-        for reading in &decoded.signals {
-            let signal = &message.signals[reading.signal];
-            let value = literal(self, signal, &protocol[decoded.message][reading.signal], reading.bits)?;
-            names.extend(value.split_once("::").map(|(kind, _)| kind.to_owned()));
-            let is_some = signal.member.is_optional && value != "None";
-            let value = if is_some { format!("Some({value})") } else { value };
-            values.push(format!("{}: {value}", signal.member.name));
+        for ids in &own.members {
+            let elements = ids.iter().map(|id| self.element(printed, *id)).collect::<Option<Vec<_>>>()?;
+            let kinds = elements.iter().filter_map(|value| Some(value.trim_start_matches("Some(").split_once("::")?.0));
+            names.extend(kinds.map(str::to_owned));
+            let Member { name, index, .. } = &message.signals[ids[0]].member;
+            let value = elements.join(", ");
+            values.push(if index.is_some() { format!("{name}: [{value}]") } else { format!("{name}: {value}") });
         }
         let call = format!("{}({argument})?;", message.methods[layout.exchange]);
         let mut lines = call_of(&own.name.to_string(), &values, &call);
         lines.push(format!("assert_eq!(request.frame().to_string(), \"{}\");", frame(printed.example)));
         Some(Part { names, lines })
+    }
+
+    /// Writes the value of a signal in a frame.
+    fn element(&self, Printed { protocol, decoded, .. }: &Printed, id: SignalId) -> Option<String> {
+        let (signal, known) = (&self.plan.messages[decoded.message].signals[id], &protocol[decoded.message][id]);
+        let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == id) else {
+            return Some("None".to_owned());
+        };
+        let value = literal(self, signal, known, reading.bits)?;
+        Some(if signal.member.is_optional && value != "None" { format!("Some({value})") } else { value })
     }
 
     /// Returns whom a request addresses, for the interpreter and in Rust.

@@ -43,6 +43,8 @@ pub struct Struct {
     pub is_home: bool,
     /// The signals whose values it has.
     pub signals: Vec<SignalId>,
+    /// The same by member: those of an array together, in order.
+    pub members: Vec<Vec<SignalId>>,
     /// The numbers of data bytes that its frame can have, if there are several.
     pub lengths: Vec<Length>,
     /// Whether equality is exact.
@@ -145,6 +147,7 @@ impl Planner<'_> {
             is_home: host.is_home,
             is_exact: own.signals.iter().all(|signal| signals[*signal].coding.is_exact()),
             signals: own.signals.clone(),
+            members: members(&protocol[id], &own.signals),
             lengths: frame.map(|frame| lengths(&protocol[id], frame)).unwrap_or_default(),
             reserved: frame.map(reserved),
             requests: hosted.iter().map(|frame| self.request(&host, ways, frame)).collect(),
@@ -251,6 +254,18 @@ struct Host<'a> {
     id: MessageId,
     name: &'a Ident,
     is_home: bool,
+}
+
+/// Puts the elements of each array together, at the place of the one that comes first.
+fn members(message: &model::Message, signals: &[SignalId]) -> Vec<Vec<SignalId>> {
+    let mut members: Vec<Vec<SignalId>> = Vec::new();
+    for id in signals {
+        let array = message.array_of(&message[*id]);
+        if !members.iter().any(|known| known.contains(id)) {
+            members.push(array.map_or_else(|| vec![*id], |array| array.elements.clone()));
+        }
+    }
+    members
 }
 
 /// Returns the numbers of data bytes that a frame can have, if there are several.

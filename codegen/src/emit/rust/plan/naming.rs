@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Span};
 
 use super::unit::Unit;
 use crate::emit::Scaled;
-use crate::model::Signal;
+use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
 const TAKEN: [&str; 78] = [
@@ -229,10 +229,10 @@ pub fn screaming(name: &str) -> Ident {
     ident(&name.to_ascii_uppercase())
 }
 
-/// Names the member of a signal, with the unit of its values as the ending.
-pub fn member(signal: &Signal, scaled: Scaled) -> String {
-    let ending = Unit::new(signal, scaled).ending;
-    ending.map_or_else(|| signal.name.clone(), |ending| format!("{}_{ending}", signal.name))
+/// Names the member of a signal or of its array, with the unit of its values as the ending.
+pub fn member(message: &Message, signal: &Signal, scaled: Scaled) -> String {
+    let (name, ending) = (message.field_name(signal), Unit::new(signal, scaled).ending);
+    ending.map_or_else(|| name.to_owned(), |ending| format!("{name}_{ending}"))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Signals: their constants, and the members of the structs that carry their values.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::doc::{self, Comment};
@@ -12,7 +12,7 @@ use super::place::Written;
 use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
-use crate::model::{self, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
+use crate::model::{self, Array, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
 use crate::syntax::tree::Path;
 
 /// A signal.
@@ -35,35 +35,35 @@ pub struct Signal {
     pub limits: Option<[TokenStream; 2]>,
     /// Constant of the limits by device model.
     pub model_limits: Option<Ident>,
-    /// Raw values that are legal outside the limits.
-    pub specials: Vec<Special>,
+    /// Raw values that are legal outside the limits, with their names in the spec.
+    pub specials: Vec<(TokenStream, String)>,
     /// Whether the last of them says that there is no value.
     pub has_absent: bool,
+    /// The constants of the others. Those of an array are with its first element.
+    pub values: Vec<Special>,
     /// The member of structs.
     pub member: Member,
 }
 
-/// A raw value that is legal outside the limits.
+/// The value that stands for a raw value outside the limits.
 pub struct Special {
-    /// The raw value.
-    pub raw: TokenStream,
-    /// The name in the spec.
-    pub name: String,
-    /// Constant of the value that stands for it.
+    /// Its constant.
     pub constant: Ident,
     /// Comment of the constant.
     pub comment: Comment,
-    /// That value.
+    /// The value.
     pub value: TokenStream,
 }
 
-/// The member of structs that carries a signal's value.
+/// The member of structs that carries a signal's value, alone or as an element of an array.
 pub struct Member {
     /// Its name.
     pub name: Ident,
+    /// Which element of the member the value is, if the member is an array.
+    pub index: Option<Literal>,
     /// Comment of the member.
     pub comment: Comment,
-    /// Its type.
+    /// Type of the value.
     pub kind: TokenStream,
     /// Whether a frame can lack it, because the frame is short or says so.
     pub is_optional: bool,
@@ -75,11 +75,20 @@ pub struct Member {
     pub put: Ident,
 }
 
+impl Member {
+    /// Writes where a struct has the value.
+    pub fn value(&self) -> TokenStream {
+        let (name, index) = (&self.name, self.index.iter());
+        quote!(#name #([#index])*)
+    }
+}
+
 /// The names of a signal.
 struct Names {
     constant: Ident,
     field: Ident,
-    specials: Vec<Ident>,
+    /// Those of its special values.
+    values: Vec<Ident>,
 }
 
 /// What the signals of a protocol are planned from.
@@ -99,29 +108,40 @@ impl Context<'_> {
     pub fn signals(&self, id: MessageId, members: &mut Pool) -> Table<SignalId, Signal> {
         let (message, mut fields) = (&self.protocol[id], Pool::default());
         let constants = message.signals.map(|known| members.take(known.name.to_ascii_uppercase(), "_SIGNAL"));
+        let of_array = |array: &Array, fields: &mut Pool| fields.take(self.name(message, array.elements[0]), "_");
+        let arrays = message.arrays.map(|array| of_array(array, &mut fields));
         let signals = message.signals.entries().map(|(signal, known)| {
-            let (constant, field) = (constants[signal].clone(), fields.take(member(known, self.scaled), "_"));
-            let mut named = |special: &NamedValue| {
-                let name = format!("{constant}_{}", special.name.to_ascii_uppercase());
-                members.take(name, "_VALUE")
+            let constant = constants[signal].clone();
+            let field = match known.element {
+                Some(element) => arrays[element.array].clone(),
+                None => fields.take(self.name(message, signal), "_"),
             };
-            let specials = known.specials.iter().map(&mut named).collect();
+            let values = named_values(known).iter().map(|special| {
+                let name = format!("{}_{}", message.field_name(known), special.name);
+                members.take(name.to_ascii_uppercase(), "_VALUE")
+            });
+            let names = Names { constant, field, values: values.collect() };
             let coding = Coding::new(self.protocol, &self.types.words(id, signal), known, self.scaled);
-            self.signal(message, known, Names { constant, field, specials }, coding)
+            self.signal(message, known, names, coding)
         });
         signals.collect()
+    }
+
+    /// Names the member of a signal.
+    fn name(&self, message: &Message, signal: SignalId) -> String {
+        member(message, &message[signal], self.scaled)
     }
 
     fn signal(
         &self,
         message: &Message,
         signal: &model::Signal,
-        Names { constant, field, specials }: Names,
+        Names { constant, field, values }: Names,
         coding: Coding,
     ) -> Signal {
         let range = signal.hull(self.protocol.models_of(message));
         let range = range.map(|range| coding.limits.range(signal, range));
-        let special = |(special, name)| Special::new(name, signal, &coding, special);
+        let special = |(special, name)| Special::new(name, message, signal, &coding, special);
         Signal {
             comment: Comment::line(format!(
                 "The signal `{}`, to read or write it alone, or to ask for its limits.",
@@ -133,8 +153,9 @@ impl Context<'_> {
             physical: coding.physical(),
             limits: range.map(|range| coding.limits.ends(signal, range)),
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),
-            specials: signal.specials.iter().zip(specials).map(special).collect(),
+            specials: signal.specials.iter().map(|known| (as_signed(known.raw), known.name.clone())).collect(),
             has_absent: signal.has_absent,
+            values: named_values(signal).iter().zip(values).map(special).collect(),
             member: self.member(message, signal, field, &coding, range),
             constant,
             coding,
@@ -149,21 +170,22 @@ impl Context<'_> {
         coding: &Coding,
         range: Option<Range>,
     ) -> Member {
-        let is_at_end = message.is_optional(signal);
+        let is_at_end = elements(message, signal).any(|element| message.is_optional(element));
         let is_optional = is_at_end || signal.has_absent;
+        let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
         let sentence = self.sentence(message, signal, coding, range);
-        let paragraphs = doc::paragraphs(self.protocol, &signal.doc, &sentence, Some(&message.doc));
+        let paragraphs = doc::paragraphs(self.protocol, doc, &sentence, Some(&message.doc));
         let comment = Comment::new(paragraphs.into_iter().chain(type_notes(self.protocol, signal, coding)));
         let [get, put] = coding.methods().map(|name| if is_optional { format_ident!("{name}_some") } else { name });
-        Member { name, comment, kind: coding.value(), is_optional, is_at_end, get, put }
+        let index = signal.element.map(|element| Literal::u8_unsuffixed(element.index));
+        Member { name, index, comment, kind: coding.value(), is_optional, is_at_end, get, put }
     }
 
     fn sentence(&self, message: &Message, signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
-        let (title, unit) = (doc::title(&signal.doc, &signal.name), Unit::new(signal, self.scaled).phrase);
+        let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
+        let (title, unit) = (doc::title(doc, message.field_name(signal)), Unit::new(signal, self.scaled).phrase);
         let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
-        let place = Some(Written::new(signal.place).text());
-        let optional =
-            message.is_optional(signal).then(|| format!("only in frames of {} bytes", least(message, signal)));
+        let (place, optional) = (Some(places(message, signal)), optional(message, signal));
         let facts = [place, optional, coding.step.clone(), range, specials(signal)];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
         let models = models(self.protocol, signal);
@@ -172,12 +194,11 @@ impl Context<'_> {
 }
 
 impl Special {
-    fn new(constant: Ident, known: &model::Signal, coding: &Coding, special: &NamedValue) -> Self {
+    fn new(constant: Ident, message: &Message, known: &model::Signal, coding: &Coding, special: &NamedValue) -> Self {
+        let field = message.field_name(known);
         Self {
-            raw: as_signed(special.raw),
-            name: special.name.clone(),
             constant,
-            comment: Comment::line(format!("The value of `{}` that stands for `{}`.", known.name, special.name)),
+            comment: Comment::line(format!("The value of `{field}` that stands for `{}`.", special.name)),
             value: coding.value_of(known, special.raw),
         }
     }
@@ -190,6 +211,37 @@ fn as_signed(raw: i128) -> TokenStream {
     }
     let bits = decimal(raw);
     quote!(u64::cast_signed(#bits))
+}
+
+/// Returns a signal, or all elements of its array.
+fn elements<'a>(message: &'a Message, signal: &'a model::Signal) -> impl Iterator<Item = &'a model::Signal> {
+    let array = message.array_of(signal);
+    let alone = array.is_none().then_some(signal);
+    alone.into_iter().chain(array.into_iter().flat_map(|array| &array.elements).map(|id| &message[*id]))
+}
+
+/// Returns the special values that have constants. A missing value has none, and an array has them once.
+fn named_values(signal: &model::Signal) -> &[NamedValue] {
+    let is_first = signal.element.is_none_or(|element| element.index == 0);
+    let count = if is_first { signal.specials.len() - usize::from(signal.has_absent) } else { 0 };
+    &signal.specials[..count]
+}
+
+/// Writes the place of a signal, or those of the first and the last element of its array.
+fn places(message: &Message, signal: &model::Signal) -> String {
+    let mut all = elements(message, signal).map(|element| Written::new(element.place).text());
+    let first = all.next().unwrap_or_default();
+    all.last().map_or_else(|| first.clone(), |last| format!("{first} to {last}"))
+}
+
+/// Says which frames lack a signal, or elements of its array.
+fn optional(message: &Message, signal: &model::Signal) -> Option<String> {
+    let mut all: Vec<_> = elements(message, signal).map(|element| least(message, element)).collect();
+    all.dedup();
+    match all.as_slice() {
+        [frames] => message.is_optional(signal).then(|| format!("only in frames of {frames} bytes")),
+        _ => Some("not all of them in shorter frames".to_owned()),
+    }
 }
 
 /// Returns the numbers of data bytes with which a message's frame has a signal.

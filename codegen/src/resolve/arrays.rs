@@ -1,0 +1,214 @@
+//! Makes signals of the elements of arrays: equal fields in a row.
+
+use std::collections::HashMap;
+
+use canspec_runtime::Place;
+use canspec_runtime::plumbing::ByteOrder;
+
+use super::Resolver;
+use super::signals::Leaves;
+use super::types::Merged;
+use crate::diagnostic::Diagnostic;
+use crate::model::{Array, ArrayId, Doc, Element, Signal, SignalId, Table};
+use crate::resolve::rules;
+use crate::syntax::ast::Key;
+use crate::syntax::tree::Path;
+use crate::text::Text;
+
+/// Most elements of an array. A status word has room for more bits.
+const MOST_ELEMENTS: u8 = 32;
+
+/// How many equal fields stand in a row, and where.
+#[derive(Clone, Copy)]
+pub struct Row {
+    count: u8,
+    /// Number of the first element.
+    first: u16,
+    /// Bits from an element to the next one, in the eight bytes read in this order.
+    distance: i16,
+    order: ByteOrder,
+}
+
+/// What the steps of a row are counted in.
+struct Unit {
+    name: &'static str,
+    /// How many of them an element takes.
+    size: i16,
+    /// Bits from one to the next.
+    bits: i16,
+}
+
+impl Row {
+    /// A field that stands alone.
+    pub const ALONE: Self = Self { count: 1, first: 1, distance: 0, order: ByteOrder::Big };
+
+    /// Tests whether there are several elements.
+    pub fn is_array(self) -> bool {
+        self.count > 1
+    }
+
+    /// Returns the place of an element, if the data bytes have it. `place` is that of the first.
+    fn place(self, place: Place, index: u8) -> Option<Place> {
+        let distance = if place.order() == self.order { self.distance } else { -self.distance };
+        let low = i16::from(place.bits_of_payload().shift()).checked_add(distance.checked_mul(index.into())?)?;
+        let low = u8::try_from(low).ok().filter(|low| *low <= 64 - place.width())?;
+        let payload = if place.order() == ByteOrder::Big { Place::bytes(0, 7) } else { Place::bytes(7, 0) };
+        Some(payload.bits(low + place.width() - 1, low))
+    }
+
+    /// Tests whether an element lies inside the word that counts its bits.
+    fn is_inside(self, place: Place, index: u8, word: Option<Place>) -> bool {
+        let bits = |place: Place| u64::from_be_bytes(place.mask());
+        self.place(place, index).is_some_and(|moved| word.is_none_or(|word| bits(moved) & !bits(word) == 0))
+    }
+}
+
+impl Unit {
+    /// Returns the unit of a place: bits of a word, or else bytes.
+    fn of(place: Place, word: Option<Place>) -> Self {
+        let width = i16::from(place.width());
+        let along = if place.order() == ByteOrder::Big { -8 } else { 8 };
+        match word {
+            Some(_) => Self { name: "bits", size: width, bits: 1 },
+            None => Self { name: "bytes", size: width / 8, bits: along },
+        }
+    }
+}
+
+impl Resolver<'_> {
+    /// Reads `repeat`, `step` and `first` of a field. `word` is the word around it.
+    pub fn row(&mut self, merged: &Merged, place: Place, word: Option<Place>) -> Option<Row> {
+        let field = &merged.field;
+        let [repeat, step, first] = [Key::Repeat, Key::Step, Key::First].map(|key| merged.path(self.diagnostics, key));
+        let Some(count) = &field.repeat else {
+            for (path, text) in [(step, &field.step), (first, &field.first)] {
+                self.check_repeated(&path, text.as_ref());
+            }
+            return Some(Row::ALONE);
+        };
+        let count = self.integer(&repeat, count, 2, MOST_ELEMENTS)?;
+        let word = word.filter(|_| field.bits.is_some());
+        let unit = Unit::of(place, word);
+        let length = match &field.step {
+            Some(text) => self.step(&step, text, &unit)?,
+            None => unit.size,
+        };
+        let first = field.first.as_ref().map_or(Some(1), |text| self.integer(&first, text, 0, u16::MAX - 32))?;
+        let row = Row { count, first, distance: length * unit.bits, order: place.order() };
+        self.check_inside(&repeat, row, place, word)?;
+        Some(row)
+    }
+
+    /// Refuses a key that needs `repeat` beside it.
+    fn check_repeated(&mut self, path: &Path, text: Option<&String>) {
+        if text.is_some() {
+            let text = "this key means nothing without `repeat`".to_owned();
+            self.error_with_help(
+                &rules::MISPLACED_KEY,
+                path.at_key(),
+                text,
+                "take it out, or write `repeat` beside it",
+            );
+        }
+    }
+
+    /// Reads how far the next element is.
+    fn step(&mut self, path: &Path, text: &str, unit: &Unit) -> Option<i16> {
+        let step: i16 = self.integer(path, text, -64, 64)?;
+        if step.abs() < unit.size {
+            let text =
+                format!("each element takes {} {}, so a step of {step} makes them overlap", unit.size, unit.name);
+            let help = format!("write the {} from one element to the next, or take `step` out", unit.name);
+            self.error_with_help(&rules::ARRAY, path.at_value(), text, help);
+            return None;
+        }
+        Some(step)
+    }
+
+    /// Tests that the word or the frame has room for all elements.
+    fn check_inside(&mut self, path: &Path, row: Row, place: Place, word: Option<Place>) -> Option<()> {
+        let fitting = (0..row.count).take_while(|index| row.is_inside(place, *index, word)).count();
+        if fitting == usize::from(row.count) {
+            return Some(());
+        }
+        let around = if word.is_some() { "word" } else { "frame" };
+        let text = format!("the {around} has room for {fitting} of the {} elements", row.count);
+        let help = "correct the count, the place or the `step`; a negative step leads the other way";
+        self.error_with_help(&rules::ARRAY, path.at_value(), text, help);
+        None
+    }
+
+    /// Refuses a field that cannot be a part of an element.
+    pub fn check_in_no_array(&mut self, path: &Path, what: &str, around: Row) -> Option<()> {
+        if !around.is_array() {
+            return Some(());
+        }
+        let text = format!("{what} cannot be a part of an array's elements");
+        let help = "write the elements as fields of their own, without `repeat`";
+        self.error_with_help(&rules::ARRAY, path.at_key(), text, help);
+        None
+    }
+
+    /// Adds a signal, or the elements of an array whose first one it is.
+    pub fn add_signal(&mut self, signal: Signal, row: Row, leaves: &mut Leaves) -> Option<()> {
+        if !row.is_array() {
+            leaves.signals.push(signal);
+            return Some(());
+        }
+        let Signal { name, doc, place, .. } = &signal;
+        let array = leaves.arrays.push(Array { name: name.clone(), doc: doc.clone(), elements: Vec::new() });
+        for index in 0..row.count {
+            let Some(place) = row.place(*place, index) else {
+                let text = format!("the frame has no room for element {} of `{name}`", index + 1);
+                let help = "correct the count, the places or the `step`";
+                self.error_with_help(&rules::ARRAY, doc.path.at_key(), text, help);
+                return None;
+            };
+            let number = row.first + u16::from(index);
+            leaves.signals.push(Signal {
+                name: format!("{name}_{number}"),
+                doc: numbered(doc, number),
+                place,
+                element: Some(Element { array, index }),
+                ..signal.clone()
+            });
+        }
+        Some(())
+    }
+
+    /// Adds their elements to arrays, and tests that no two fields have one name.
+    pub fn arrays(
+        &mut self,
+        mut arrays: Table<ArrayId, Array>,
+        signals: &Table<SignalId, Signal>,
+    ) -> Table<ArrayId, Array> {
+        let mut elements: Vec<_> = signals.entries().filter_map(|(id, signal)| Some((signal.element?, id))).collect();
+        elements.sort_by_key(|(element, _)| element.index);
+        for (element, id) in elements {
+            arrays[element.array].elements.push(id);
+        }
+        self.check_element_names(&arrays, signals);
+        arrays
+    }
+
+    fn check_element_names(&mut self, arrays: &Table<ArrayId, Array>, signals: &Table<SignalId, Signal>) {
+        let alone = signals.iter().filter(|signal| signal.element.is_none());
+        let mut known: HashMap<&str, &Path> = alone.map(|signal| (signal.name.as_str(), &signal.doc.path)).collect();
+        for array in arrays {
+            let path = &array.doc.path;
+            let names = array.elements.iter().map(|element| &signals[*element].name);
+            for name in std::iter::once(&array.name).chain(names) {
+                let Some(other) = known.insert(name, path) else { continue };
+                let text = format!("`{}` brings the name `{name}`, which another field has", array.name);
+                let problem = Diagnostic::error(&rules::ARRAY, path.at_key(), text).help("rename one of the two");
+                self.diagnostics.push_first(problem.other(other.at_key(), "the other one"));
+            }
+        }
+    }
+}
+
+/// Returns the remarks of an element, with its number in the title.
+fn numbered(doc: &Doc, number: u16) -> Doc {
+    let title = doc.title.as_ref().map(|title| Text::new(&format!("{} {number}", title.for_people())));
+    Doc { title, ..doc.clone() }
+}
