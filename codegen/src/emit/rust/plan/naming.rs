@@ -94,8 +94,9 @@ const TAKEN: [&str; 78] = [
 const CONSTANTS: [&str; 3] = ["CONTINUATION", "FRAME", "MESSAGES"];
 
 /// Methods and constants that every message has.
-const OF_MESSAGES: [&str; 13] = [
+const OF_MESSAGES: [&str; 14] = [
     "RESERVED",
+    "LENGTHS",
     "decode",
     "encode",
     "signals",
