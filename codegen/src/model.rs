@@ -20,7 +20,7 @@ mod set;
 mod signal;
 
 pub(crate) use address::exclude;
-pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode};
+pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
 pub use array::{Array, Element};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
@@ -34,6 +34,7 @@ pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;
+pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit};
@@ -128,7 +129,7 @@ impl Protocol {
     /// Returns the addressing patterns by which a frame is sent, with their modes.
     pub fn patterns_of<'a>(&'a self, frame: &'a FrameLayout) -> impl Iterator<Item = (ModeId, &'a AddressPattern)> {
         let patterns = frame.travels.iter();
-        patterns.filter_map(|Travel { mode, who }| Some((*mode, self[*mode].pattern(frame.kind, *who)?)))
+        patterns.filter_map(|Travel { mode, who }| Some((*mode, self[*mode].pattern(frame.is_to_module(), *who)?)))
     }
 
     /// Returns the identifier of a frame in an addressing pattern, before its addresses are put in.

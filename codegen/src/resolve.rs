@@ -6,6 +6,7 @@ mod access;
 mod addressing;
 mod arrays;
 mod data;
+mod direction;
 mod examples;
 mod format;
 mod identifier;
@@ -93,7 +94,7 @@ impl Resolver<'_> {
         self.header_selectors();
         let address_types = self.address_types();
         let modes = self.modes(&identifier, &address_types);
-        let directions = addressing::directions(&identifier, &address_types, &modes);
+        let directions = direction::directions(&identifier, &address_types, &modes);
         let accesses = self.accesses(&modes, &timing);
         let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
         let foreign = self.foreign(&identifier);

@@ -34,6 +34,12 @@ pub trait Protocol: Copy + Debug + 'static {
         None
     }
 
+    /// Recognises a frame whose identifier does not show whether it goes to a module or to the
+    /// controller. Its selectors do.
+    fn either(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
+        None
+    }
+
     /// Returns the numbers of data bytes of the requests whose selectors an identifier shows.
     fn request_lengths(_: u32) -> &'static [u8] {
         &[]
@@ -42,6 +48,12 @@ pub trait Protocol: Copy + Debug + 'static {
     /// Returns the numbers of data bytes of the replies and reports whose selectors an identifier
     /// shows.
     fn reply_lengths(_: u32) -> &'static [u8] {
+        &[]
+    }
+
+    /// Returns the numbers of data bytes of the frames whose selectors an identifier shows that does
+    /// not show the direction.
+    fn either_lengths(_: u32) -> &'static [u8] {
         &[]
     }
 
@@ -167,16 +179,35 @@ pub fn own_id<P: Protocol>(frame: &impl embedded_can::Frame) -> Option<u32> {
     (extended == P::FRAME.is_extended()).then_some(id)
 }
 
-/// Tells whether an identifier goes to a module or to the controller. `None` means that it does not belong to the
-/// protocol.
+/// Where a frame goes, as far as its identifier shows.
+#[derive(Clone, Copy)]
+pub enum Direction {
+    Module,
+    Controller,
+    Either,
+}
+
+/// Tells where a frame with an identifier goes. `None` means that it does not belong to the protocol.
 #[inline(always)]
-pub fn is_to_module<P: Protocol>(id: u32) -> Option<bool> {
-    if !P::FRAME.matches_id(id) || P::Identifier::is_foreign(id) {
+pub fn direction<P: Protocol>(id: u32) -> Option<Direction> {
+    if !is_own::<P>(id) {
         return None;
     }
     if P::Identifier::is_to_module(id) {
-        (!P::Identifier::is_to_controller(id)).then_some(true)
+        let is_open = P::Identifier::is_to_controller(id);
+        Some(if is_open { Direction::Either } else { Direction::Module })
     } else {
-        P::Identifier::is_to_controller(id).then_some(false)
+        P::Identifier::is_to_controller(id).then_some(Direction::Controller)
     }
+}
+
+/// Tests whether a frame with an identifier can go to the controller.
+#[inline(always)]
+pub fn is_to_controller<P: Protocol>(id: u32) -> bool {
+    is_own::<P>(id) && P::Identifier::is_to_controller(id)
+}
+
+#[inline(always)]
+fn is_own<P: Protocol>(id: u32) -> bool {
+    P::FRAME.matches_id(id) && !P::Identifier::is_foreign(id)
 }

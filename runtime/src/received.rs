@@ -4,7 +4,7 @@ use core::mem::discriminant;
 
 use crate::frame::classic;
 use crate::layout::Signals;
-use crate::protocol::{Recognised, is_to_module, own_id};
+use crate::protocol::{Direction, Recognised, direction, own_id};
 use crate::reply::{has_error, selected};
 use crate::{
     Addressing, AnySignal, Data, Error, Exchange, Failure, Frame, IdentifierFields, Kind, Payload, Place, Problem,
@@ -56,9 +56,13 @@ impl<P: Protocol> Received<P> {
     #[inline(always)]
     fn recognised(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<Self> {
         let id = own_id::<P>(frame)?;
-        let is_request = is_to_module::<P>(id)?;
+        let direction = direction::<P>(id)?;
         let frame = Frame::copied(id, P::FRAME.is_extended(), P::LENGTH, frame)?;
-        let recognised = if is_request { P::request(&frame, model) } else { P::reply(&frame, model) }?;
+        let recognised = match direction {
+            Direction::Module => P::request(&frame, model),
+            Direction::Controller => P::reply(&frame, model),
+            Direction::Either => P::either(&frame, model),
+        }?;
         if P::LENGTH.is_none() && !recognised.has_length_of(&frame) {
             return None;
         }
@@ -251,8 +255,12 @@ fn problem<P: Protocol>(frame: &impl embedded_can::Frame) -> Problem {
     if P::Identifier::is_foreign(id) {
         return Problem::Foreign;
     }
-    let Some(is_request) = is_to_module::<P>(id) else { return Problem::Identifier };
-    let lengths = if is_request { P::request_lengths } else { P::reply_lengths }(id);
+    let lengths = match direction::<P>(id) {
+        None => return Problem::Identifier,
+        Some(Direction::Module) => P::request_lengths(id),
+        Some(Direction::Controller) => P::reply_lengths(id),
+        Some(Direction::Either) => P::either_lengths(id),
+    };
     let is_right = lengths.iter().any(|length| usize::from(*length) == copy.length());
     if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
 }

@@ -7,7 +7,7 @@ use core::ptr;
 use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::IdFilter;
 use crate::plumbing::Continuation;
-use crate::protocol::{is_to_module, own_id};
+use crate::protocol::{is_to_controller, own_id};
 use crate::{Bits, Data, Error, Filter, Frame, Layout, Payload, Protocol, Reply};
 
 /// A target that a request of a protocol can address. Generated code implements it.
@@ -412,7 +412,7 @@ impl<P: Protocol, R> Request<P, R> {
         let (who, id) = (self.replies?, own_id::<P>(frame)?);
         let shows = |filter: &&Filter| filter.matches_id_narrowed(who, id);
         let (reply, refusal) = (self.exchange.reply.as_ref().filter(shows), self.exchange.refusal.filter(shows));
-        if (reply.is_none() && refusal.is_none()) || is_to_module::<P>(id) != Some(false) {
+        if (reply.is_none() && refusal.is_none()) || !is_to_controller::<P>(id) {
             return None;
         }
         let frame = Frame::copied(id, P::FRAME.is_extended(), None, frame)?;

@@ -221,7 +221,8 @@ pub fn addresses<'a>(
     decoded: &Decoded,
 ) -> impl Iterator<Item = (&'a AddressType, i64)> + Clone + use<'a> {
     let (protocol, id) = (outcome.protocol, outcome.frame.id);
-    let pattern = decoded.addressing.and_then(|travel| protocol[travel.mode].pattern(decoded.kind, travel.who));
+    let is_to_module = protocol[decoded.frame].is_to_module();
+    let pattern = decoded.addressing.and_then(|travel| protocol[travel.mode].pattern(is_to_module, travel.who));
     pattern.into_iter().flat_map(|pattern| &pattern.addresses).map(move |address| {
         let kind = &protocol[address.address_type];
         (kind, kind.number(protocol[address.field].get(id)))

@@ -42,7 +42,7 @@ fn first_alike<'a>(
     diagnostics: &Diagnostics,
 ) -> Option<&'a FrameLayout> {
     let mut first: Option<FrameId> = None;
-    let choice = protocol.recognition.course(one.kind).choice.as_ref()?;
+    let choice = protocol.recognition.course(one.is_to_module()).choice.as_ref()?;
     let _: Option<()> = choice.find_among(&one.constants, &mut |group| {
         group.choice.as_ref()?.find_among(&one.constants, &mut |frames| {
             let before = frames.iter().copied().take_while(|other| *other < first.unwrap_or(id));

@@ -24,6 +24,7 @@ pub fn wireshark(protocol: &Protocol) -> String {
 }
 
 fn table(protocol: &Protocol) -> Value {
+    let either = &protocol.recognition.either;
     Value::record()
         .with("name", Value::text(&protocol.name))
         .with("title", Value::words(&protocol.title))
@@ -38,6 +39,7 @@ fn table(protocol: &Protocol) -> Value {
         .with("messages", Value::list(&protocol.messages, |known| message(protocol, known)))
         .with("requests", course(&protocol.recognition.requests))
         .with("replies", course(&protocol.recognition.replies))
+        .maybe("either", either.choice.is_some().then(|| course(either)))
 }
 
 fn identifier(protocol: &Protocol) -> Value {

@@ -81,8 +81,7 @@ impl<'a> Decoder<'a> {
         if let Some(text) = self.foreign() {
             return Err(self.unrecognised(Problem::Foreign, text, false, None));
         }
-        let course = self.protocol.recognition.course(self.direction()?);
-        let group = self.by_identifier(course)?;
+        let group = self.by_identifier(self.course()?)?;
         let of_length = self.by_length(group)?;
         let (best, frames) = self.by_payload(group, of_length)?;
         let mut decoded = self.decoded(best);
@@ -117,8 +116,8 @@ impl<'a> Decoder<'a> {
         self.protocol[id].get(self.frame.id)
     }
 
-    /// Tests the identifier's width and fixed bits, and returns a kind of frame of the direction that it shows.
-    fn direction(&self) -> Result<Kind, Unrecognised> {
+    /// Tests the identifier's width and fixed bits, and returns the frames of the direction that it shows.
+    fn course(&self) -> Result<&'a Course, Unrecognised> {
         let identifier = &self.protocol.identifier;
         if self.frame.extended != identifier.extended {
             let [found, wanted] =
@@ -131,11 +130,12 @@ impl<'a> Decoder<'a> {
         }
         let holds =
             |direction: &Direction| direction.any.iter().any(|tests| tests.iter().all(|test| self.passes(test)));
-        let Recognition { to_module, to_controller, .. } = &self.protocol.recognition;
+        let Recognition { to_module, to_controller, requests, replies, either, .. } = &self.protocol.recognition;
         match (holds(to_module), holds(to_controller)) {
-            (true, false) => Ok(Kind::Request),
-            (false, true) => Ok(Kind::Reply),
-            _ => {
+            (true, false) => Ok(requests),
+            (false, true) => Ok(replies),
+            (true, true) => Ok(either),
+            (false, false) => {
                 let text = "the addresses do not show whether it goes to a module or to the controller";
                 Err(self.unrecognised(Problem::Identifier, text.to_owned(), true, None))
             }
@@ -315,7 +315,7 @@ impl<'a> Decoder<'a> {
     fn documented(&self, frame: &FrameLayout) -> Option<Addressing<'a>> {
         let protocol = self.protocol;
         let ways = frame.travels.iter();
-        let ways = ways.filter_map(|way| Some((*way, protocol[way.mode].pattern(frame.kind, way.who)?)));
+        let ways = ways.filter_map(|way| Some((*way, protocol[way.mode].pattern(frame.is_to_module(), way.who)?)));
         let fitting = ways.filter(|(_, pattern)| self.fits(pattern) == Some(false));
         let best = fitting.min_by_key(|(_, pattern)| Reverse(pattern.constants))?;
         Some(Addressing { fit: Fit::Documented, constants: best.1.constants, travel: Some(best) })
@@ -324,16 +324,13 @@ impl<'a> Decoder<'a> {
     /// Finds the mode that fits best if none fits as documented.
     fn tolerated(&self, frame: &FrameLayout) -> Addressing<'a> {
         let patterns = self.protocol.modes.entries().flat_map(|(mode, known)| {
-            let senders: &[_] = match frame.kind {
-                Kind::Request => &[Who::Nobody],
-                Kind::Reply | Kind::Report => &[Who::One, Who::Each, Who::Coordinator],
-            };
-            senders.iter().filter_map(move |who| Some((Travel { mode, who: *who }, known.pattern(frame.kind, *who)?)))
+            let is_to_module = frame.is_to_module();
+            let senders: &[_] = if is_to_module { &[Who::Nobody] } else { &[Who::One, Who::Each, Who::Coordinator] };
+            senders.iter().filter_map(move |who| Some((Travel { mode, who: *who }, known.pattern(is_to_module, *who)?)))
         });
         let fitting = patterns.filter_map(|(shown, pattern)| {
             let tolerated = self.fits(pattern)?;
-            let is_shown =
-                |own: &&Travel| own.mode == shown.mode && (frame.kind.is_to_module() || own.who == shown.who);
+            let is_shown = |own: &&Travel| own.mode == shown.mode && (frame.is_to_module() || own.who == shown.who);
             let own = frame.travels.iter().find(is_shown);
             let fit = match (own.is_some(), tolerated) {
                 (true, false) => Fit::Documented,
@@ -419,7 +416,7 @@ impl<'a> Decoder<'a> {
             let value = u64::from(field.get(self.frame.id));
             Some((&field.name, value, field.normal.filter(|normal| u64::from(*normal) != value)?, field.enumeration))
         });
-        let payload = selectors.iter().filter(|_| !frame.kind.is_to_module()).filter_map(|(id, value)| {
+        let payload = selectors.iter().filter(|_| !frame.is_to_module()).filter_map(|(id, value)| {
             let selector = &self.protocol[*id];
             let normal = selector.normal.filter(|normal| normal != value)?;
             Some((&selector.name, *value, u32::try_from(normal).unwrap_or(0), selector.enumeration))

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{AddressTypeId, Doc, FieldId, IdentifierField, Kind, Table, Who};
+use crate::model::{AddressTypeId, Doc, FieldId, FrameLayout, IdentifierField, ModeId, Table, Who};
 
 /// A kind of address: a range of numbers in a field of the identifier, or a few numbers with names.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -105,11 +105,56 @@ impl Mode {
         }
     }
 
-    /// Returns the pattern of a kind of frame. `who` answers a request, and sends any other frame.
-    pub fn pattern(&self, kind: Kind, who: Who) -> Option<&AddressPattern> {
-        match kind {
-            Kind::Request => self.request.as_ref(),
-            Kind::Reply | Kind::Report => self.reply(who),
+    /// Returns the pattern of frames that go to a module, or of those that `who` sends to the controller.
+    pub fn pattern(&self, is_to_module: bool, who: Who) -> Option<&AddressPattern> {
+        if is_to_module { self.request.as_ref() } else { self.reply(who) }
+    }
+}
+
+/// A way through an addressing mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Way {
+    /// The mode.
+    pub mode: ModeId,
+    /// Who sends frames to the controller; `None` for frames that go to a module.
+    pub sender: Option<Who>,
+}
+
+impl Way {
+    /// Returns the ways through some modes, with their patterns.
+    pub(crate) fn all(modes: &Table<ModeId, Mode>) -> impl Iterator<Item = (Self, &AddressPattern)> {
+        let senders = [None, Some(Who::One), Some(Who::Each), Some(Who::Coordinator)];
+        let ways = modes.ids().flat_map(move |mode| senders.map(|sender| Self { mode, sender }));
+        ways.filter_map(|way| Some((way, way.pattern(&modes[way.mode])?)))
+    }
+
+    /// Returns what the identifier shows.
+    pub(crate) fn pattern(self, mode: &Mode) -> Option<&AddressPattern> {
+        mode.pattern(self.is_to_module(), self.sender.unwrap_or(Who::Nobody))
+    }
+
+    /// Returns the key of the spec language.
+    pub(crate) fn key(self) -> &'static str {
+        match self.sender {
+            None | Some(Who::Nobody) => "request",
+            Some(Who::One) => "one",
+            Some(Who::Each) => "each",
+            Some(Who::Coordinator) => "coordinator",
+        }
+    }
+
+    /// Tests whether its frames go to a module.
+    pub fn is_to_module(self) -> bool {
+        self.sender.is_none()
+    }
+
+    /// Tests whether a frame is sent so.
+    pub(crate) fn has(self, frame: &FrameLayout) -> bool {
+        let is_its_own = |sender| frame.travels.iter().any(|own| own.mode == self.mode && sender == own.who);
+        match self.sender {
+            None => frame.is_to_module() && frame.travels.iter().any(|own| own.mode == self.mode),
+            Some(sender) => !frame.is_to_module() && is_its_own(sender),
         }
     }
 }

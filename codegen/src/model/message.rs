@@ -242,6 +242,11 @@ impl FrameLayout {
         self.lengths.last().copied().unwrap_or(8)
     }
 
+    /// Tests whether it goes to a module. If it does, it keeps to the limits of what may be sent.
+    pub fn is_to_module(&self) -> bool {
+        self.kind.is_to_module()
+    }
+
     /// Tests whether it can have `length` data bytes.
     pub fn has_length(&self, length: usize) -> bool {
         self.lengths.iter().any(|known| usize::from(*known) == length)

@@ -7,7 +7,9 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
-use crate::model::{Constant, Direction, FrameId, FrameLayout, Id, Kind, Selector, SelectorId, SelectorPlace, Table};
+use crate::model::{
+    Constant, Direction, FrameId, FrameLayout, Id, Kind, Selector, SelectorId, SelectorPlace, Table, Way,
+};
 
 /// How frames are recognised, in this order: direction, constants of the identifier, length, constants of the payload.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -17,10 +19,15 @@ pub struct Recognition {
     pub to_module: Direction,
     /// How an identifier shows that a frame goes to the controller.
     pub to_controller: Direction,
+    /// Ways to a module and to the controller that one identifier can show. What their messages show
+    /// tells them apart.
+    pub alike: Vec<(Way, Way)>,
     /// Frames that go to a module.
     pub requests: Course,
     /// Frames that go to the controller.
     pub replies: Course,
+    /// Frames of the ways that look alike, in both directions.
+    pub either: Course,
     /// Whether the plan is whole. One whose constants combine in too many ways ends early.
     pub is_whole: bool,
 }
@@ -140,24 +147,30 @@ fn case<T>(cases: &IndexMap<u64, T>, value: u64) -> Option<&T> {
 impl Recognition {
     /// Plans how to recognise frames.
     pub(crate) fn new(
-        (to_module, to_controller): (Direction, Direction),
+        Directions { to_module, to_controller, alike }: Directions,
         frames: &Table<FrameId, FrameLayout>,
         selectors: &Table<SelectorId, Selector>,
     ) -> Self {
         // A frame has a few ends of its own, and shares some with other frames.
         let mut planner = Planner { frames, selectors, ends_left: 64 * frames.len() + 1024 };
-        let (requests, replies) = frames.ids().partition(|frame| frames[*frame].kind.is_to_module());
-        let (requests, replies) = (planner.course(requests), planner.course(replies));
-        Self { to_module, to_controller, requests, replies, is_whole: planner.ends_left > 0 }
+        let (requests, replies) = frames.ids().partition(|frame| frames[*frame].is_to_module());
+        let is_alike = |frame: &FrameLayout| alike.iter().any(|(one, other)| one.has(frame) || other.has(frame));
+        let either = frames.entries().filter(|(_, frame)| is_alike(frame)).map(|(id, _)| id).collect();
+        let [requests, replies, either] = [requests, replies, either].map(|frames| planner.course(frames));
+        Self { to_module, to_controller, alike, requests, replies, either, is_whole: planner.ends_left > 0 }
     }
 
-    /// Returns the frames of the direction of a kind.
-    pub fn course(&self, kind: Kind) -> &Course {
-        match kind {
-            Kind::Request => &self.requests,
-            Kind::Reply | Kind::Report => &self.replies,
-        }
+    /// Returns the frames of one direction.
+    pub fn course(&self, is_to_module: bool) -> &Course {
+        if is_to_module { &self.requests } else { &self.replies }
     }
+}
+
+/// How identifiers show their direction, and the ways that they leave open.
+pub(crate) struct Directions {
+    pub to_module: Direction,
+    pub to_controller: Direction,
+    pub alike: Vec<(Way, Way)>,
 }
 
 /// Largest number of selectors that are read one after another. A frame has fewer bits.

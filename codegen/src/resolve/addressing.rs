@@ -1,4 +1,4 @@
-//! Resolves addressing modes and address types, and how an identifier shows its direction.
+//! Resolves addressing modes and address types.
 
 use super::Resolver;
 use super::keys::Role;
@@ -6,8 +6,7 @@ use super::patterns::{is_address_type, patterns};
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Address, AddressPattern, AddressType, AddressTypeId, Direction, FieldId, FieldTest, Identifier, IdentifierField,
-    Mode, ModeId, Numeral, Table, exclude,
+    Address, AddressPattern, AddressType, AddressTypeId, Identifier, IdentifierField, Mode, ModeId, Numeral, Table,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -268,99 +267,6 @@ fn claimed(spec: &ast::Spec, field: &str, types: &AddressTypes) -> Vec<(u32, u32
     let strict = types.iter().filter(|known| known.strict);
     let used = strict.filter(|known| patterns(spec).any(|(_, pattern)| pattern.get(field) == Some(&known.name)));
     let mut ranges: Vec<_> = used.flat_map(AddressType::raw_ranges).collect();
-    ranges.sort_unstable();
-    ranges.dedup();
-    ranges
-}
-
-/// Works out how identifiers show their direction, to a module and to the controller.
-///
-/// A constant counts only if the other direction has another constant in the same field. So an
-/// unknown device number does not hide the direction. If two patterns still look alike, all
-/// constants in which they differ count.
-pub fn directions(
-    identifier: &Identifier,
-    types: &AddressTypes,
-    modes: &Table<ModeId, Mode>,
-) -> (Direction, Direction) {
-    let requests: Vec<_> = modes.iter().filter_map(|mode| mode.request.as_ref()).collect();
-    let replies: Vec<_> =
-        modes.iter().flat_map(|mode| [&mode.one, &mode.each, &mode.coordinator]).filter_map(Option::as_ref).collect();
-    let tests = |these: &[&AddressPattern], others: &[&AddressPattern]| -> Vec<_> {
-        these.iter().map(|pattern| direction_tests(pattern, others, identifier, types, modes)).collect()
-    };
-    let (mut to_module, mut to_controller) = (tests(&requests, &replies), tests(&replies, &requests));
-    for (request, tests) in requests.iter().zip(&mut to_module) {
-        for (reply, others) in replies.iter().zip(&mut to_controller) {
-            if !exclude(tests, others) {
-                add_differing(identifier, (request, tests), (reply, others));
-            }
-        }
-    }
-    (towards(to_module), towards(to_controller))
-}
-
-/// Adds tests of the constants in which two patterns differ.
-fn add_differing(
-    identifier: &Identifier,
-    (one, tests): (&AddressPattern, &mut Vec<FieldTest>),
-    (other, others): (&AddressPattern, &mut Vec<FieldTest>),
-) {
-    for (id, field) in identifier.fields.entries() {
-        let differ = one.mask & other.mask & (one.value ^ other.value) & field.mask() != 0;
-        for (pattern, tests) in [(one, &mut *tests), (other, &mut *others)] {
-            let test = FieldTest::constant(id, field.get(pattern.value));
-            if differ && !tests.contains(&test) {
-                tests.push(test);
-            }
-        }
-    }
-}
-
-/// Joins the lists of tests of one direction, without those that another list includes.
-fn towards(lists: Vec<Vec<FieldTest>>) -> Direction {
-    let mut any: Vec<Vec<FieldTest>> = Vec::new();
-    for tests in lists {
-        if !any.iter().any(|known| known.iter().all(|test| tests.contains(test))) {
-            any.retain(|known| !tests.iter().all(|test| known.contains(test)));
-            any.push(tests);
-        }
-    }
-    Direction { any }
-}
-
-fn direction_tests(
-    pattern: &AddressPattern,
-    others: &[&AddressPattern],
-    identifier: &Identifier,
-    types: &AddressTypes,
-    modes: &Table<ModeId, Mode>,
-) -> Vec<FieldTest> {
-    let mut tests = Vec::new();
-    for (id, field) in identifier.fields.entries() {
-        let address = pattern.addresses.iter().find(|address| address.field == id);
-        let claimed = strict_ranges(id, types, modes);
-        if let Some(address) = address.filter(|address| types[address.address_type].strict) {
-            tests.push(FieldTest { field: id, ranges: types[address.address_type].raw_ranges(), inside: true });
-        } else if pattern.mask & field.mask() != 0 && others.iter().all(|other| differs(pattern, other, field.mask())) {
-            tests.push(FieldTest::constant(id, field.get(pattern.value)));
-        } else if (address.is_some() || pattern.mask & field.mask() != 0) && !claimed.is_empty() {
-            tests.push(FieldTest { field: id, ranges: claimed, inside: false });
-        }
-    }
-    tests
-}
-
-/// Tests whether the patterns have different constants in the field.
-fn differs(one: &AddressPattern, other: &AddressPattern, field: u32) -> bool {
-    other.mask & field != 0 && (one.value ^ other.value) & field != 0
-}
-
-fn strict_ranges(field: FieldId, types: &AddressTypes, modes: &Table<ModeId, Mode>) -> Vec<(u32, u32)> {
-    let patterns = modes.iter().flat_map(|mode| [&mode.request, &mode.one, &mode.each, &mode.coordinator]);
-    let addresses = patterns.flatten().flat_map(|pattern| &pattern.addresses).filter(|address| address.field == field);
-    let strict = addresses.map(|address| &types[address.address_type]).filter(|known| known.strict);
-    let mut ranges: Vec<_> = strict.flat_map(AddressType::raw_ranges).collect();
     ranges.sort_unstable();
     ranges.dedup();
     ranges

@@ -181,7 +181,7 @@ impl Resolver<'_> {
             let complete = |frame: FrameLayout| FrameLayout {
                 covered: self.covered(&message, &frame),
                 reserved: message.reserved,
-                travels: travels(modes, frame.kind, &message[frame.exchange].answers),
+                travels: travels(modes, frame.is_to_module(), &message[frame.exchange].answers),
                 ..frame
             };
             let refusals = message.refusals.iter().cloned().map(complete).collect();
@@ -478,7 +478,7 @@ fn lengths_with(lengths: &[u8], ends: &(impl Iterator<Item = u8> + Clone)) -> Ve
 }
 
 /// Returns the ways in which a kind of frame is sent.
-fn travels(modes: &Modes, kind: Kind, answers: &Answers) -> Vec<Travel> {
+fn travels(modes: &Modes, is_to_module: bool, answers: &Answers) -> Vec<Travel> {
     let ways = answers.entries().filter_map(|(mode, who)| Some(Travel { mode, who: (*who)? }));
-    ways.filter(|Travel { mode, who }| modes[*mode].pattern(kind, *who).is_some()).collect()
+    ways.filter(|Travel { mode, who }| modes[*mode].pattern(is_to_module, *who).is_some()).collect()
 }

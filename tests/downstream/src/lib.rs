@@ -22,6 +22,11 @@ pub mod meter {
     canspec_runtime::include_protocol!("meter");
 }
 
+/// Batteries, as `specs/battery.yaml` describes them.
+pub mod battery {
+    canspec_runtime::include_protocol!("battery");
+}
+
 pub mod meters;
 pub mod pumps;
 

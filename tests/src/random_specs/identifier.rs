@@ -214,7 +214,9 @@ impl Draft {
             self.mode(bus, "coordinator", Some(pattern("1", "0xE")), &pattern("0", "0xE"), false);
         }
         if self.chance(40) {
-            self.mode(bus, "one", None, &pattern("0", &module), true);
+            // A report can look like a request. Then only its command tells the two apart.
+            let bit = self.one(&["0", "0", "1"]);
+            self.mode(bus, "one", None, &pattern(bit, &module), true);
         }
     }
 

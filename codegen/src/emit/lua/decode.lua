@@ -420,9 +420,11 @@ local function candidates(frame)
     return nil, problem("identifier", "the identifier's fixed bits are others")
   end
   local to_module, to_controller = holds(frame, protocol.to_module), holds(frame, protocol.to_controller)
-  if to_module == to_controller then return nil, problem("identifier", NO_DIRECTION) end
+  if not to_module and not to_controller then return nil, problem("identifier", NO_DIRECTION) end
 
-  local group = find(frame, to_module and protocol.requests or protocol.replies)
+  local is_told = to_module ~= to_controller
+  local course = is_told and (to_module and protocol.requests or protocol.replies) or protocol.either
+  local group = find(frame, course)
   if not group or not group.lengths then
     return nil, problem("unknown_message", "no message has this identifier")
   end

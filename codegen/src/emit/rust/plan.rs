@@ -78,6 +78,8 @@ pub struct Plan {
     pub requests: Option<Direction>,
     /// How replies and reports are recognised, if there are any.
     pub replies: Option<Direction>,
+    /// How frames are recognised whose identifier does not show the direction, if there are any.
+    pub either: Option<Direction>,
 }
 
 impl Plan {
@@ -116,6 +118,7 @@ impl Plan {
             variants,
             requests: planner.direction(&course.requests),
             replies: planner.direction(&course.replies),
+            either: planner.direction(&course.either),
             accesses: accesses.shared,
             models,
             messages,

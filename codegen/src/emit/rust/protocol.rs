@@ -80,8 +80,8 @@ fn definition(plan: &Plan, derives: Derives) -> TokenStream {
 ///
 /// A long function goes on in others, which stand behind it.
 fn functions(plan: &Plan) -> Vec<Vec<TokenStream>> {
-    let Plan { requests, replies, selectors, .. } = plan;
-    let directions = [("request", requests), ("reply", replies)];
+    let Plan { requests, replies, either, selectors, .. } = plan;
+    let directions = [("request", requests), ("reply", replies), ("either", either)];
     let directions = directions.map(|(name, direction)| Some((name, direction.as_ref()?)));
     let known = || directions.iter().flatten();
     let recognising = known().map(|(name, direction)| recognising(name, &direction.frames, selectors));
