@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
 use canspec_codegen::model::{
-    DeviceModel, Doc, Document, Example, Message, MessageId, Protocol, SelectorId, Signal, StatusBit,
+    DeviceModel, Doc, Document, Example, Kind, Message, MessageId, Protocol, SelectorId, Side, Signal, StatusBit,
 };
 use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
@@ -90,8 +90,16 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     if protocol.messages.iter().any(|message| value(message).is_some()) {
         writeln!(out, "\nA message without signals below it has at most one, called `{VALUE}`.")?;
     }
+    reports(out, protocol)?;
     models(out, protocol)?;
     timing::write(out, protocol)
+}
+
+/// Names the accesses whose reports the controller sends, if there are any.
+fn reports(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
+    let reports = protocol.accesses.iter().filter(|access| access.sender(Kind::Report) == Side::Controller);
+    let names: Vec<_> = reports.map(|access| format!("`{}`", access.name)).collect();
+    if names.is_empty() { Ok(()) } else { writeln!(out, "\nThe controller sends reports by {}.", names.join(", ")) }
 }
 
 /// Writes a table of the device models, if there are any.

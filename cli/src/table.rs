@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Unrecognised, Value};
-use canspec_codegen::model::{Kind, Mode, Protocol};
+use canspec_codegen::model::{Kind, Mode, Protocol, Side};
 
 use crate::columns::{Columns, Lines, wrap};
 use crate::fields::{Field, Read, fields};
@@ -142,10 +142,11 @@ fn widest_address(protocol: &Protocol, mode: &Mode) -> String {
 
 /// Adds an arrow and the addresses of a frame, but for those that everybody uses.
 fn address(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
-    text.push_str(match decoded.kind {
-        Kind::Request => "→ ",
-        Kind::Reply => "← ",
-        Kind::Report => "⇐ ",
+    text.push_str(match (decoded.kind, decoded.sender) {
+        (Kind::Request, _) => "→ ",
+        (Kind::Reply, _) => "← ",
+        (Kind::Report, Side::Module) => "⇐ ",
+        (Kind::Report, Side::Controller) => "⇒ ",
     });
     let Some(travel) = decoded.addressing else { return text.push('?') };
     let alone = text.len();

@@ -16,7 +16,7 @@ pub use value::{Limits, physical, raw_of};
 use std::fmt;
 
 pub use crate::encoding::{Input, Value, description};
-use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, NoteRule, SelectorId, SignalId, Table, Travel};
+use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, NoteRule, SelectorId, Side, SignalId, Table, Travel};
 
 /// A frame as it stood on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,6 +69,8 @@ pub struct Decoded {
     pub access: AccessId,
     /// What the frame is for.
     pub kind: Kind,
+    /// Who sends it.
+    pub sender: Side,
     /// The set that the frame belongs to.
     pub set: Option<MessageId>,
     /// The addressing mode, if one fits, and who answers or sends the frame.
@@ -91,7 +93,7 @@ impl Decoded {
     /// Tests whether a module reports an error by this frame, for instance a refused request. The
     /// values mean nothing then.
     pub fn is_error_reply(&self) -> bool {
-        !self.kind.is_to_module() && self.notes.iter().any(|note| note.rule == NoteRule::ErrorCode)
+        self.sender == Side::Module && self.notes.iter().any(|note| note.rule == NoteRule::ErrorCode)
     }
 }
 

@@ -31,7 +31,7 @@ pub use id::{
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub(crate) use message::first_bytes;
-pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Travel, Who};
+pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;
 pub(crate) use recognition::Directions;

@@ -1,6 +1,6 @@
 //! The words of the language that a key chooses from.
 
-use crate::model::{Numeral, Origin, Severity, Who};
+use crate::model::{Numeral, Origin, Severity, Side, Who};
 
 /// How a number, a text or raw bytes are written in bits.
 #[derive(Clone, Copy)]
@@ -37,6 +37,9 @@ pub const SEVERITIES: [(&str, Severity); 3] =
 /// Who may answer.
 pub const ANSWERS: [(&str, Who); 4] =
     [("one", Who::One), ("each", Who::Each), ("coordinator", Who::Coordinator), ("nobody", Who::Nobody)];
+
+/// Who may send reports.
+pub const SIDES: [(&str, Side); 2] = [("module", Side::Module), ("controller", Side::Controller)];
 
 /// Where an example can come from, if not from the document.
 pub const ORIGINS: [(&str, Origin); 2] = [("ours", Origin::Ours), ("captured", Origin::Captured)];

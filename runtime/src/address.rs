@@ -220,18 +220,6 @@ pub enum Kind {
     Report,
 }
 
-impl Kind {
-    /// Tests whether such a frame goes to a module. If it does, it keeps to the limits of what may
-    /// be sent.
-    #[must_use]
-    pub const fn is_to_module(self) -> bool {
-        match self {
-            Self::Request => true,
-            Self::Reply | Self::Report => false,
-        }
-    }
-}
-
 impl Mode {
     pub(crate) const fn reply(&self, who: Who) -> Option<&Pattern> {
         match who {
@@ -242,13 +230,13 @@ impl Mode {
         }
     }
 
-    /// Returns the patterns of a kind of frame, and who sends each reply.
-    fn patterns(&self, kind: Kind) -> [(Option<Who>, Option<&Pattern>); 3] {
-        match kind {
-            Kind::Request => [(None, self.request.as_ref()), (None, None), (None, None)],
-            Kind::Reply | Kind::Report => {
-                [Who::One, Who::Each, Who::Coordinator].map(|who| (Some(who), self.reply(who)))
-            }
+    /// Returns the patterns of frames that go to a module or to the controller. Those to the controller have a
+    /// sender.
+    fn patterns(&self, is_to_module: bool) -> [(Option<Who>, Option<&Pattern>); 3] {
+        if is_to_module {
+            [(None, self.request.as_ref()), (None, None), (None, None)]
+        } else {
+            [Who::One, Who::Each, Who::Coordinator].map(|who| (Some(who), self.reply(who)))
         }
     }
 }
@@ -272,9 +260,9 @@ pub(crate) struct Rank {
 
 impl Addressing {
     /// Finds the mode that fits best. `answers` says who answers in each mode.
-    pub(crate) fn find(modes: &'static [Mode], answers: &[Option<Who>], kind: Kind, id: u32) -> Option<Self> {
+    pub(crate) fn find(modes: &'static [Mode], answers: &[Option<Who>], is_to_module: bool, id: u32) -> Option<Self> {
         let fitting = modes.iter().zip(answers).flat_map(|(mode, answer)| {
-            mode.patterns(kind).into_iter().filter_map(move |(who, pattern)| {
+            mode.patterns(is_to_module).into_iter().filter_map(move |(who, pattern)| {
                 let is_offered = if who.is_none() { answer.is_some() } else { *answer == who };
                 let pattern = pattern?;
                 let rank = Rank { is_offered, is_documented: pattern.fit(id)?, constants: pattern.constants.len() };

@@ -13,7 +13,7 @@ use embedded_can::Frame as _;
 
 use crate::frame::classic;
 use crate::set::FrameSet;
-use crate::{Frame, Kind, Problem, Protocol, Received};
+use crate::{Frame, Kind, Problem, Received};
 
 #[cfg(test)]
 mod tests;
@@ -271,7 +271,7 @@ fn is_unlisted<S: FrameSet>(frame: &Frame) -> bool {
 
 /// Returns the number of the node that sends a reply.
 fn node<S: FrameSet>(id: u32) -> Option<i32> {
-    S::EXCHANGE.addressing(S::Protocol::MODES, Kind::Reply, id)?.number(S::NODE, id)
+    S::EXCHANGE.addressing::<S::Protocol>(Kind::Reply, id)?.number(S::NODE, id)
 }
 
 impl<S: FrameSet> Node<S> {

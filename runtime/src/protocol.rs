@@ -19,6 +19,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const MODES: &'static [Mode];
     /// The number of data bytes that every frame has, if all have as many.
     const LENGTH: Option<u8> = None;
+    /// Whether the controller sends reports.
+    const CONTROLLER_REPORTS: bool = false;
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 
@@ -130,7 +132,7 @@ impl<M: Protocol> Recognised<M> {
     }
 
     fn rank(&self, frame: &Frame, model: Option<u8>) -> (bool, bool, Option<Rank>) {
-        let addressing = self.exchange.addressing(M::MODES, self.kind, frame.raw_id());
+        let addressing = self.exchange.addressing::<M>(self.kind, frame.raw_id());
         let is_of_model = self.exchange.is_of(model);
         (self.has_length_of(frame), is_of_model, addressing.map(|addressing| addressing.rank()))
     }

@@ -125,6 +125,12 @@ impl<P: Protocol> Received<P> {
         self.kind
     }
 
+    /// Tests whether the frame goes to a module: a request, or a report of the controller. If it does,
+    /// it keeps to the limits of what may be sent.
+    pub fn is_to_module(&self) -> bool {
+        self.exchange.is_to_module::<P>(self.kind)
+    }
+
     /// Returns how the message travels, with its name, its access and its selectors.
     pub const fn exchange(&self) -> &'static Exchange {
         self.exchange
@@ -132,12 +138,12 @@ impl<P: Protocol> Received<P> {
 
     /// Returns the addressing mode that the identifier shows.
     pub fn addressing(&self) -> Option<Addressing> {
-        self.exchange.addressing(P::MODES, self.kind, self.id)
+        self.exchange.addressing::<P>(self.kind, self.id)
     }
 
     /// Tests whether the frame goes to the controller and shows an error code.
     pub fn is_error_reply(&self) -> bool {
-        !self.kind.is_to_module() && has_error::<P>(self.data_selectors(), &self.frame)
+        !self.is_to_module() && has_error::<P>(self.data_selectors(), &self.frame)
     }
 
     fn data_selectors(&self) -> &'static [Selector] {
@@ -213,7 +219,7 @@ impl<P: Protocol> Received<P> {
 
     /// Writes the signals over the received data.
     fn payload(&self) -> Result<Payload, Error> {
-        let new = if self.kind.is_to_module() { Payload::within_limits } else { Payload::new };
+        let new = if self.is_to_module() { Payload::within_limits } else { Payload::new };
         let payload = new(self.exchange().message(), self.frame.bytes()).for_model(self.model);
         let mut payload = payload.received_with(self.frame.byte_count());
         self.content.run(&mut payload)?;
@@ -223,7 +229,7 @@ impl<P: Protocol> Received<P> {
     /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message
     /// that the device model does not have.
     fn check_request(&self) -> Result<(), Error> {
-        if !self.kind.is_to_module() {
+        if !self.is_to_module() {
             return Ok(());
         }
         if !self.exchange.is_offered(P::Identifier::documented_modes(self.id)) {

@@ -58,6 +58,7 @@ pub struct Exchange {
     access: &'static str,
     length: u8,
     has_values: bool,
+    is_from_controller: bool,
     answers: &'static [Option<Who>],
     models: &'static [u8],
     set: Option<&'static str>,
@@ -76,6 +77,7 @@ impl Exchange {
             access,
             length: 8,
             has_values: false,
+            is_from_controller: false,
             answers,
             models: &[],
             set: None,
@@ -140,6 +142,13 @@ impl Exchange {
     #[must_use]
     pub const fn report(self, report: Filter) -> Self {
         Self { report: Some(report.accepting()), ..self }
+    }
+
+    /// Says that the controller sends the report. It goes where a request would go, and is built like
+    /// one.
+    #[must_use]
+    pub const fn from_controller(self) -> Self {
+        Self { is_from_controller: true, request: self.report, ..self }
     }
 
     /// Sets the value that its frames have in a field of the identifier when they are built. Any is
@@ -238,9 +247,20 @@ impl Exchange {
         ptr::eq(self, other) || (self.message, self.access) == (other.message, other.access)
     }
 
+    /// Tests whether a kind of its frames goes to a module. If it does, it keeps to the limits of what
+    /// may be sent.
+    #[inline(always)]
+    pub(crate) fn is_to_module<P: Protocol>(&self, kind: Kind) -> bool {
+        match kind {
+            Kind::Request => true,
+            Kind::Reply => false,
+            Kind::Report => P::CONTROLLER_REPORTS && self.is_from_controller,
+        }
+    }
+
     /// Returns the addressing mode that an identifier shows.
-    pub(crate) fn addressing(&self, modes: &'static [Mode], kind: Kind, id: u32) -> Option<Addressing> {
-        Addressing::find(modes, self.answers, kind, id)
+    pub(crate) fn addressing<P: Protocol>(&self, kind: Kind, id: u32) -> Option<Addressing> {
+        Addressing::find(P::MODES, self.answers, self.is_to_module::<P>(kind), id)
     }
 
     /// Builds the request that carries `message`. Generated code calls it.

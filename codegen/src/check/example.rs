@@ -19,7 +19,7 @@ use crate::hex;
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
 };
-use crate::model::{Example, Failure, Kind, Meaning, Message, Misfit, NoteRule, Protocol, Signal, ValueExample};
+use crate::model::{Example, Failure, Meaning, Message, Misfit, NoteRule, Protocol, Side, Signal, ValueExample};
 use crate::resolve::rules;
 
 crate::rule::rules! {
@@ -298,7 +298,7 @@ impl<'a> Checker<'a> {
                 );
                 Err(wrong(self.frame_at(), text))
             }
-            Err(_) if decoded.kind == Kind::Request && !self.example.notes.is_empty() => Ok(()),
+            Err(_) if decoded.sender == Side::Controller && !self.example.notes.is_empty() => Ok(()),
             Err(refusal) => Err(wrong(self.frame_at(), format!("it does not encode back: {refusal}"))),
         }
     }

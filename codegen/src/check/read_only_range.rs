@@ -28,5 +28,5 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 fn is_sent(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {
-    protocol.frames_of(message).any(|frame| frame.kind.is_to_module() && frame.signals.contains(&signal))
+    protocol.frames_of(message).any(|frame| frame.is_to_module() && frame.signals.contains(&signal))
 }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Kind, Mode, ModeId, Protocol};
+use crate::model::{Address, AddressPattern, FieldId, FrameLayout, Mode, ModeId, Protocol};
 use crate::rule::rules;
 
 rules! {
@@ -15,7 +15,7 @@ type Asked<'a> = (ModeId, &'a AddressPattern);
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let mut known = HashSet::new();
-    for frame in protocol.frames.iter().filter(|frame| frame.kind == Kind::Request) {
+    for frame in protocol.frames.iter().filter(|frame| frame.is_to_module()) {
         let modes: Vec<Asked> = protocol.patterns_of(frame).collect();
         if !known.insert(modes.iter().map(|(mode, _)| *mode).collect::<Vec<_>>()) {
             continue;

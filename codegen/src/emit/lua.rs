@@ -88,10 +88,12 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
 fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
     let answers = protocol.modes.iter().zip(&message[frame.exchange].answers);
     let answers = answers.filter_map(|(mode, answer)| Some((Value::text(&mode.name), Value::text(who((*answer)?)))));
+    let is_report_to_module = frame.kind == Kind::Report && frame.is_to_module();
     let set = frame.set.and_then(|set| Some((&protocol[set].name, protocol[set].set.as_ref()?)));
     Value::record()
         .with("access", Value::text(&protocol[frame.access].name))
         .with("kind", Value::text(frame.kind.name()))
+        .maybe("sender", is_report_to_module.then(|| Value::text("controller")))
         .with("lengths", Value::map(frame.lengths.iter().map(|length| (Value::number(*length), Value::flag(true)))))
         .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))

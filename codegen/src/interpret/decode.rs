@@ -8,7 +8,7 @@ use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, h
 use crate::encoding::Words;
 use crate::hex;
 use crate::model::{
-    AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Kind, Message, ModelId,
+    AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Message, ModelId,
     NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who, first_bytes,
 };
 
@@ -25,12 +25,12 @@ pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Res
     Decoder { protocol, model, frame, data: frame.padded() }.decode()
 }
 
-/// Returns tests of one field that keep a frame from showing the direction of a kind. They are those
+/// Returns tests of one field that keep a frame from showing a direction. They are those
 /// of the lists with the fewest failed tests.
-pub fn failed_tests<'a>(protocol: &'a Protocol, frame: &Frame, kind: Kind) -> Vec<&'a FieldTest> {
+pub fn failed_tests<'a>(protocol: &'a Protocol, frame: &Frame, is_to_module: bool) -> Vec<&'a FieldTest> {
     let decoder = Decoder { protocol, model: None, frame, data: frame.padded() };
     let Recognition { to_module, to_controller, .. } = &protocol.recognition;
-    let direction = if kind.is_to_module() { to_module } else { to_controller };
+    let direction = if is_to_module { to_module } else { to_controller };
     let failed = |tests: &'a Vec<FieldTest>| tests.iter().filter(|test| !decoder.passes(test)).collect::<Vec<_>>();
     let lists: Vec<_> = direction.any.iter().map(failed).collect();
     let fewest = lists.iter().map(Vec::len).min();
@@ -385,6 +385,7 @@ impl<'a> Decoder<'a> {
             message: frame.message,
             access: frame.access,
             kind: frame.kind,
+            sender: frame.sender,
             set: frame.set,
             addressing: addressing.travel.map(|(travel, _)| travel),
             identifier: self.identifier(),

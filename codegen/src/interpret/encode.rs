@@ -21,7 +21,7 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
     let content = &*arrays::parted(message, content)?;
     let id = identifier(protocol, content)?;
     let layout = layout(protocol, message, content, id)?;
-    let limits = Limits::of(layout.kind, model);
+    let limits = Limits::of(layout, model);
     let data = payload(protocol, message, layout, content, limits)?;
     let frame = frame(protocol, id, data);
     let one_that_has_it = model.or_else(|| message.models.first().copied());
@@ -230,7 +230,7 @@ fn confirm(
         return Err(refuse(message, &text));
     }
     let forbidden = decoded.notes.iter().find(|note| FORBIDDEN.contains(&note.rule));
-    match forbidden.filter(|_| decoded.kind.is_to_module()) {
+    match forbidden.filter(|_| layout.is_to_module()) {
         Some(note) => Err(refuse(message, &note.text)),
         None => Ok(()),
     }

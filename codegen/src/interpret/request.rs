@@ -132,7 +132,7 @@ fn requests_of<'a>(
     message: &'a Message,
     is_meant: impl Fn(&FrameLayout) -> bool,
 ) -> Vec<&'a FrameLayout> {
-    let requests = protocol.frames_of(message).filter(|frame| frame.kind == Kind::Request);
+    let requests = protocol.frames_of(message).filter(|frame| frame.is_to_module());
     let has_own = requests.clone().any(|frame| frame.set.is_none() && is_meant(frame));
     requests.filter(|frame| frame.set.is_none() || !has_own).collect()
 }
@@ -375,7 +375,7 @@ fn put_signals(
 fn not_carried(protocol: &Protocol, message: &Message, layout: &FrameLayout, name: &str) -> String {
     let access = &protocol[layout.access].name;
     let carries = |frame: &&FrameLayout| protocol.signals_of(frame).any(|(_, signal)| signal.name == name);
-    let senders = protocol.frames_of(message).filter(|frame| frame.kind == Kind::Request).filter(carries);
+    let senders = protocol.frames_of(message).filter(|frame| frame.is_to_module()).filter(carries);
     let senders: Vec<_> = senders.map(|frame| format!("`{}`", protocol[frame.access].name)).collect();
     let sent: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| format!("`{}`", signal.name)).collect();
     match (message.signals.iter().any(|signal| signal.name == name), sent.is_empty()) {

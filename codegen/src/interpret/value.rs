@@ -2,7 +2,7 @@
 
 use super::{Input, Refusal, Value};
 use crate::encoding::{Allowed, Words};
-use crate::model::{Kind, Message, ModelId, Protocol, Signal};
+use crate::model::{FrameLayout, Message, ModelId, Protocol, Signal};
 
 /// Returns the physical value of a signal's raw bits.
 pub fn physical(protocol: &Protocol, signal: &Signal, bits: u64) -> Value {
@@ -21,8 +21,8 @@ pub enum Limits {
 
 impl Limits {
     /// Returns the limits of a kind of frame.
-    pub fn of(kind: Kind, model: Option<ModelId>) -> Self {
-        if kind.is_to_module() { Self::Range(model) } else { Self::Bits }
+    pub fn of(frame: &FrameLayout, model: Option<ModelId>) -> Self {
+        if frame.is_to_module() { Self::Range(model) } else { Self::Bits }
     }
 
     /// Returns the limits of a signal.

@@ -32,15 +32,15 @@ impl Kind {
             Self::Report => "report",
         }
     }
+}
 
-    /// Tests whether such a frame goes to a module. If it does, it keeps to the limits of what may
-    /// be sent.
-    pub fn is_to_module(self) -> bool {
-        match self {
-            Self::Request => true,
-            Self::Reply | Self::Report => false,
-        }
-    }
+/// One of the two ends of a bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Side {
+    /// One of the modules.
+    Module,
+    /// The controller, which asks the modules.
+    Controller,
 }
 
 /// Who answers a request.
@@ -75,6 +75,24 @@ pub struct Access {
     pub answers: Answers,
     /// How often a report comes.
     pub every: Option<TimingId>,
+    /// Who sends its reports.
+    pub from: Side,
+}
+
+impl Access {
+    /// Returns who sends a kind of its frames.
+    pub fn sender(&self, kind: Kind) -> Side {
+        match kind {
+            Kind::Request => Side::Controller,
+            Kind::Reply => Side::Module,
+            Kind::Report => self.from,
+        }
+    }
+
+    /// Tests whether some of its frames go to a module.
+    pub fn has_to_module(&self) -> bool {
+        self.kinds.iter().any(|kind| self.sender(*kind) == Side::Controller)
+    }
 }
 
 /// What the bits are that nothing in a frame names.
@@ -204,6 +222,8 @@ pub struct FrameLayout {
     pub set: Option<MessageId>,
     /// What the frame is for.
     pub kind: Kind,
+    /// Who sends it.
+    pub sender: Side,
     /// The numbers of data bytes that it can have, the least first. Signals that end beyond the least
     /// are optional.
     pub lengths: Vec<u8>,
@@ -244,7 +264,7 @@ impl FrameLayout {
 
     /// Tests whether it goes to a module. If it does, it keeps to the limits of what may be sent.
     pub fn is_to_module(&self) -> bool {
-        self.kind.is_to_module()
+        self.sender == Side::Controller
     }
 
     /// Tests whether it can have `length` data bytes.

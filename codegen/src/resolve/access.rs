@@ -3,11 +3,11 @@
 use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Table, Timing, TimingId, Who};
+use crate::model::{Access, AccessId, Answers, Kind, Mode, ModeId, Side, Table, Timing, TimingId, Who};
 use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
-use crate::words::ANSWERS;
+use crate::words::{ANSWERS, SIDES};
 
 /// The addressing modes.
 pub type Modes = Table<ModeId, Mode>;
@@ -32,12 +32,41 @@ impl Resolver<'_> {
         let named = self.kinds(&path.key("in"), &access.kinds);
         let carries = if access.kinds.is_empty() { kinds.clone() } else { named };
         self.check_carries(path, name, access, &kinds);
-        let answers = self.answers(&path.key("answers"), &access.answers, modes, &kinds);
+        let from = self.sender(path, name, access);
         let every = self.every(path, access.every.as_deref(), timing);
         if access.every.is_some() && access.report.is_none() {
             self.misplaced_every(path, "an access", "add `report: {}`");
         }
-        Access { name: name.to_owned(), doc: remarks!(access).doc(path, None), kinds, carries, answers, every }
+        let (doc, answers) = (remarks!(access).doc(path, None), modes.map(|_| None));
+        let mut known = Access { name: name.to_owned(), doc, kinds, carries, answers, every, from };
+        known.answers = self.answers(&path.key("answers"), &access.answers, modes, &known);
+        known
+    }
+
+    /// Reads who sends the reports. A controller's report shares neither modes nor answers with another frame.
+    fn sender(&mut self, path: &Path, name: &str, access: &ast::Access) -> Side {
+        let at = path.key("from");
+        let Some(written) = &access.from else { return Side::Module };
+        if access.report.is_none() {
+            let text = format!("`from` means nothing for `{name}`, which has no report");
+            let help =
+                "take it out, or add `report: {}`; a request comes from the controller, and a reply from a module";
+            self.error_with_help(&rules::MISPLACED_KEY, at.at_key(), text, help);
+            return Side::Module;
+        }
+        let Some(word) = self.lookup(&at, "side", written, SIDES.iter().map(|(word, _)| *word)) else {
+            return Side::Module;
+        };
+        let side = SIDES[word].1;
+        if side == Side::Controller && (access.request.is_some() || access.reply.is_some()) {
+            let other = if access.request.is_some() { "request" } else { "reply" };
+            let text = format!("`{name}` has a report of the controller beside a {other}");
+            let help = "give the report an access of its own, so that its `answers` are clear";
+            let diagnostic = Diagnostic::error(&rules::ACCESS, at.at_value(), text).help(help);
+            self.diagnostics.push(diagnostic.other(path.key(other).at_key(), format!("the {other}")));
+            return Side::Module;
+        }
+        side
     }
 
     /// Tests that the frames that carry the signals exist.
@@ -53,7 +82,7 @@ impl Resolver<'_> {
     }
 
     /// Reads `{mode: who}`, by the modes of the protocol.
-    pub fn answers(&mut self, path: &Path, answers: &ast::Map<String>, modes: &Modes, kinds: &[Kind]) -> Answers {
+    pub fn answers(&mut self, path: &Path, answers: &ast::Map<String>, modes: &Modes, access: &Access) -> Answers {
         let mut resolved = modes.map(|_| None);
         for (name, who) in answers {
             let at = path.key(name);
@@ -63,13 +92,15 @@ impl Resolver<'_> {
             let words = ANSWERS.iter().map(|(word, _)| *word);
             let Some(word) = self.lookup(&at, "way to answer", who, words) else { continue };
             resolved[mode] = Some(ANSWERS[word].1);
-            self.check_answer(&at, &modes[mode], ANSWERS[word], kinds);
+            self.check_answer(&at, &modes[mode], ANSWERS[word], access);
         }
         resolved
     }
 
-    fn check_answer(&mut self, at: &Path, mode: &Mode, (word, who): (&str, Who), kinds: &[Kind]) {
-        if who != Who::Nobody && mode.reply(who).is_none() {
+    fn check_answer(&mut self, at: &Path, mode: &Mode, (word, who): (&str, Who), access: &Access) {
+        if access.from == Side::Controller {
+            self.check_receiver(at, who, &access.name);
+        } else if who != Who::Nobody && mode.reply(who).is_none() {
             let message = format!("the addressing mode `{}` has no `{word}`", mode.name);
             let others: Vec<_> = ANSWERS.iter().filter(|(_, who)| mode.reply(*who).is_some()).collect();
             let help = match others.as_slice() {
@@ -79,12 +110,12 @@ impl Resolver<'_> {
             let diagnostic = Diagnostic::error(&rules::ADDRESSING, at.at_value(), message).help(help);
             self.diagnostics.push(diagnostic.other(mode.doc.path.at_key(), "the mode"));
         }
-        if kinds.contains(&Kind::Request) && mode.request.is_none() {
+        if access.has_to_module() && mode.request.is_none() {
             let message = format!("the addressing mode `{}` has no request", mode.name);
             let help = format!("add `request:` to `addressing.{}`, or leave the mode out here", mode.name);
             self.error_with_help(&rules::ADDRESSING, at.at_key(), message, help);
         }
-        if who != Who::Nobody && kinds == [Kind::Request] {
+        if who != Who::Nobody && access.kinds == [Kind::Request] {
             let help = "add `reply: {}` to the access, or write `nobody`";
             self.error_with_help(
                 &rules::ACCESS,
@@ -92,6 +123,15 @@ impl Resolver<'_> {
                 format!("`{word}` answers, but there is no reply"),
                 help,
             );
+        }
+    }
+
+    /// Refuses a report of the controller that nobody gets.
+    fn check_receiver(&mut self, at: &Path, who: Who, access: &str) {
+        if who == Who::Nobody {
+            let message = format!("nobody gets the report `{access}` of the controller");
+            let help = "say who gets it: `one` module, or `each` of several";
+            self.error_with_help(&rules::ACCESS, at.at_value(), message, help);
         }
     }
 

@@ -321,7 +321,7 @@ impl Resolver<'_> {
             let answers = if message.answers.is_empty() {
                 known.answers.clone()
             } else {
-                self.answers(&path.key("answers"), &message.answers, surroundings.modes, &known.kinds)
+                self.answers(&path.key("answers"), &message.answers, surroundings.modes, known)
             };
             exchanges.push(Exchange { access, answers, set: None });
         }
@@ -402,6 +402,7 @@ impl Resolver<'_> {
             access: owner.exchange.access,
             set: owner.exchange.set,
             kind,
+            sender: surroundings.accesses[owner.exchange.access].sender(kind),
             lengths: lengths_with(owner.lengths, &signals.iter().map(|id| owner.signals[*id].end())),
             constants,
             selectors,

@@ -6,7 +6,7 @@ use crate::model::NoteRule;
 use crate::model::{Failure, Kind, Unit};
 use crate::rules::RULES;
 use crate::syntax::ast::Key;
-use crate::words::{ABSENT, ANSWERS, ERRATUM_KINDS, EXPECTED, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES};
+use crate::words::{ABSENT, ANSWERS, ERRATUM_KINDS, EXPECTED, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES, SIDES};
 
 /// The form of a text. What YAML reads as a number needs none.
 #[derive(Clone, Copy)]
@@ -50,10 +50,11 @@ const FORMS: [(&str, &str, Form); 12] = [
 ];
 
 /// Returns the keys whose value is one of a few words, with the struct that has the key.
-fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 11] {
+fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 12] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();
     [
         ("Access", "answers", answers.clone()),
+        ("Access", "from", SIDES.map(|(word, _)| word).to_vec()),
         ("Access", "in", kinds()),
         ("Allowance", "rule", RULES.iter().map(|rule| rule.name).collect()),
         ("Erratum", "kind", ERRATUM_KINDS.to_vec()),

@@ -228,12 +228,15 @@ pub struct Access {
     /// Raw values that fields of the identifier and the header have in a report, which is sent
     /// unasked: `{function: 5}`. Write `{}` if no values are fixed. If absent, there is no report.
     pub report: Option<Pattern>,
+    /// Who sends the report: `module` or `controller`; `module` if absent. The report of a controller
+    /// goes where a request would go.
+    pub from: Option<String>,
     /// Kinds of frames that carry the message's fields, out of `request`, `reply` and `report`:
     /// `[reply]`; all kinds of the access if absent.
     #[serde(rename = "in", default)]
     pub kinds: Vec<String>,
     /// The addressing modes that may be used, and who answers in each: `one`, `each`, `coordinator`
-    /// or `nobody`. An example is `{single: one, broadcast: nobody}`. If absent, no mode may be
+    /// or `nobody`. For a report it is who sends it, or who gets it from the controller. An example is `{single: one, broadcast: nobody}`. If absent, no mode may be
     /// used.
     #[serde(default)]
     pub answers: Map<String>,

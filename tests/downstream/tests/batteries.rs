@@ -1,7 +1,7 @@
 //! Frames of a battery whose identifier is one number, put together by hand.
 
 use winch_driver::battery::embedded_can::{Frame as _, StandardId};
-use winch_driver::battery::{Cycles, Frame, Limits, Message, Problem, Received, Target, Wanted};
+use winch_driver::battery::{Cycles, Frame, Inverter, Kind, Limits, Message, Problem, Received, Target, Wanted};
 
 fn frame(id: u16, data: &[u8]) -> Frame {
     Frame::new(StandardId::new(id).expect("11 bits"), data).expect("at most 8 bytes")
@@ -18,6 +18,22 @@ const LIMITS: [u8; 8] = [0xF4, 0x01, 0, 0, 0, 0, 0, 0];
 fn the_number_of_a_frame_says_whether_it_is_a_request_or_a_report() {
     assert_eq!(decoded(&frame(0x305, &WANTED)).request(), Some(&Message::Wanted(Wanted { current_a: 150 })));
     assert_eq!(decoded(&frame(0x351, &LIMITS)).report(), Some(&Message::Limits(Limits { voltage_v: 50.0 })));
+}
+
+#[test]
+fn a_report_of_the_controller_keeps_to_limits_and_gets_no_reply() {
+    let told = Inverter { power_w: -2 }.tell(Target::Bus).expect("a power within the limits");
+    assert_eq!(*told.frame(), frame(0x306, &[0xFE, 0xFF, 0, 0, 0, 0, 0, 0]));
+    assert!(told.replies().filter().is_none());
+    assert!(Inverter { power_w: 5001 }.tell(Target::Bus).is_err());
+
+    let received = decoded(told.frame());
+    assert_eq!(received.report(), Some(&Message::Inverter(Inverter { power_w: -2 })));
+    assert_eq!((received.kind(), received.is_to_module()), (Kind::Report, true));
+    assert_eq!(received.addressing().map(|addressing| addressing.mode().name), Some("bus"));
+    assert_eq!(received.encode(), Ok(*told.frame()));
+    assert!(received.with_content(Message::Inverter(Inverter { power_w: 5001 })).encode().is_err());
+    assert!(!decoded(&frame(0x351, &LIMITS)).is_to_module());
 }
 
 #[test]

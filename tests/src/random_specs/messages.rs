@@ -24,6 +24,8 @@ struct Access {
 enum Role {
     Ordinary,
     Report,
+    /// A report of the controller.
+    Call,
     /// Asks for a set.
     Scan,
     /// Can be refused.
@@ -77,6 +79,9 @@ impl Draft {
         if bus.modes.iter().any(|mode| !mode.is_asked) && self.chance(70) {
             self.access(bus, traffic, &["report"], Role::Report);
         }
+        if bus.modes.iter().any(|mode| mode.is_asked) && self.chance(30) {
+            self.access(bus, traffic, &["report"], Role::Call);
+        }
         if bus.continues && bus.register.is_some() {
             self.access(bus, traffic, &["request", "reply"], Role::Scan);
         }
@@ -103,9 +108,14 @@ impl Draft {
         if carrying.len() < kinds.len() || self.chance(20) {
             access.put("in", list(carrying));
         }
+        if role == Role::Call {
+            access.put("from", "controller");
+        } else if role == Role::Report && self.chance(20) {
+            access.put("from", "module");
+        }
         let answers = self.answers(bus, kinds, role);
         access.put("answers", answers);
-        if role == Role::Report && !self.times.is_empty() && self.random.bool() {
+        if kinds.contains(&"report") && !self.times.is_empty() && self.random.bool() {
             access.put("every", self.times[0].clone());
         }
         self.remark(&mut access);
@@ -125,7 +135,8 @@ impl Draft {
     fn answers(&mut self, bus: &Bus, kinds: &[&str], role: Role) -> Map {
         let is_report = kinds == ["report"];
         let fits = |mode: &&Mode| {
-            (is_report || mode.is_asked) && (role != Role::Scan || mode.shows_sender && mode.answers[0] == "one")
+            (role == Role::Report || mode.is_asked)
+                && (role != Role::Scan || mode.shows_sender && mode.answers[0] == "one")
         };
         let modes: Vec<_> = bus.modes.iter().filter(fits).cloned().collect();
         let mut answers = Map::default();

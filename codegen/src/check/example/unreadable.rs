@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{At, Diagnostic};
 use crate::interpret::{Frame, Problem, Unrecognised, failed_tests};
-use crate::model::{Constant, Example, FieldTest, FrameLayout, Protocol, SelectorPlace};
+use crate::model::{Constant, Example, FieldTest, FrameLayout, Kind, Protocol, SelectorPlace};
 use crate::resolve::rules;
 
 /// Reports an example whose frame is not recognised.
@@ -40,7 +40,7 @@ fn undirected(protocol: &Protocol, example: &Example, at: At, wrongly: &str) -> 
     if frame.extended != identifier.extended || frame.id & identifier.mask != identifier.value {
         return None;
     }
-    let tests = failed_tests(protocol, &frame, example.kind);
+    let tests = failed_tests(protocol, &frame, is_to_module(protocol, example));
     let FieldTest { field, inside, .. } = tests.first()?;
     let ranges: Vec<_> = tests.iter().flat_map(|test| &test.ranges).collect();
     let shown = |(first, last): &&(u32, u32)| {
@@ -62,6 +62,13 @@ fn undirected(protocol: &Protocol, example: &Example, at: At, wrongly: &str) -> 
         )),
         None => diagnostic.help(format!("correct the frame, or add an addressing mode for it; {wrongly}")),
     })
+}
+
+/// Tests whether the frame of an example should go to a module.
+fn is_to_module(protocol: &Protocol, example: &Example) -> bool {
+    let mut frames = example.message.into_iter().flat_map(|id| protocol.frames_of(&protocol[id]));
+    let found = frames.find(|frame| frame.kind == example.kind);
+    found.map_or(example.kind == Kind::Request, FrameLayout::is_to_module)
 }
 
 /// A constant of a message whose digits are those of the frame, but in another base.

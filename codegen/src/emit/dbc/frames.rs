@@ -185,7 +185,7 @@ fn frame(protocol: &Protocol, group: Group, name: String) -> DbcMessage {
     let sent = &group.sent;
     let module = text::module(common(sent, |sent| sent.node).flatten());
     let controller = text::CONTROLLER.to_owned();
-    let is_to_module = sent[0].layout.kind.is_to_module();
+    let is_to_module = sent[0].layout.is_to_module();
     let (sender, receivers) = if is_to_module { (controller, module) } else { (module, controller) };
     DbcMessage {
         id: sent[0].id,

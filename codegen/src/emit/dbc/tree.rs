@@ -160,7 +160,7 @@ impl<'a> Grower<'_, 'a> {
         let space = if branch.label.is_empty() { "" } else { "_" };
         let name = format!("{}{space}{}", branch.label, selector.name);
         let place = place(self.protocol, id).unwrap_or(Place::byte(0));
-        let start = only.or(selector.normal.filter(|_| !of.layout.kind.is_to_module()));
+        let start = only.or(selector.normal.filter(|_| !of.layout.is_to_module()));
         Signal { start: start.map(i128::from), ..signals::selector(self.protocol, selector, place, only, name) }
     }
 

@@ -244,7 +244,7 @@ end
 
 -- Tests whether a kind of frame goes to a module.
 local function is_to_module(layout)
-  return layout.kind == "request"
+  return layout.kind == "request" or layout.sender == "controller"
 end
 
 -- Calls `found` with each mode that the identifier shows, who answers, and how well the mode fits.

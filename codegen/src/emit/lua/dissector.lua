@@ -195,7 +195,7 @@ end
 local function show_message(frame, decoded, tvb, pinfo, tree)
   local layout = decoded.layout
   local summary = layout.access .. " " .. layout.message.name .. " " .. layout.kind
-  tree:append_text(", " .. summary)
+  tree:append_text(", " .. summary .. (layout.sender and " from the " .. layout.sender or ""))
   tree:add(known.message, layout.message.name)
   tree:add(known.access, layout.access)
   tree:add(known.kind, layout.kind)

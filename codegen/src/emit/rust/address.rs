@@ -172,6 +172,14 @@ fn replies(variants: &[Target]) -> TokenStream {
         quote!((#pattern, Who::#who) => #filter)
     });
     let sender = sender_argument(replies().flat_map(|(.., shown)| shown));
+    if arms.clone().next().is_none() {
+        return quote!(
+            #[inline]
+            fn replies(self, _: Who, _: Option<i32>) -> Option<IdFilter> {
+                None
+            }
+        );
+    }
     quote! {
         #[inline]
         fn replies(self, who: Who, #sender: Option<i32>) -> Option<IdFilter> {

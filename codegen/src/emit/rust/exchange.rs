@@ -9,7 +9,7 @@ use crate::model::Who;
 
 /// Emits the part of an access that messages share.
 pub fn access(access: &Access) -> TokenStream {
-    let Access { constant, comment, name, answers, has_values, member_of, frames } = access;
+    let Access { constant, comment, name, answers, has_values, member_of, frames, is_from_controller } = access;
     let answers = answers_list(answers);
     let has_values = has_values.then(|| quote!(.with_values()));
     let member_of = member_of.iter().map(|set| quote!(.member_of(#set)));
@@ -17,9 +17,11 @@ pub fn access(access: &Access) -> TokenStream {
         let filter = filter(shown);
         quote!(.#kind(#filter))
     });
+    let from_controller = is_from_controller.then(|| quote!(.from_controller()));
     quote! {
         #comment
-        pub const #constant: Exchange = Exchange::new(#name, &#answers) #has_values #(#member_of)* #(#frames)*;
+        pub const #constant: Exchange =
+            Exchange::new(#name, &#answers) #has_values #(#member_of)* #(#frames)* #from_controller;
     }
 }
 

@@ -129,6 +129,12 @@ fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
 fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
     let normal = normal(&plan.base);
     let modes = plan.modes.iter().map(|mode| &mode.constant);
+    let is_from_controller = plan.accesses.iter().any(|access| access.is_from_controller);
+    let controller_reports = is_from_controller.then(|| {
+        quote!(
+            const CONTROLLER_REPORTS: bool = true;
+        )
+    });
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
     quote! {
         impl Protocol for Message {
@@ -138,6 +144,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             #(const LENGTH: Option<u8> = Some(#length);)*
             const MODES: &'static [Mode] = &[#(#modes),*];
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+            #controller_reports
 
             #(#functions)*
         }

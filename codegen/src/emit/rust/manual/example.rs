@@ -11,7 +11,7 @@ use crate::emit::rust::plan::signal::Member;
 use crate::emit::rust::plan::usage::frame;
 use crate::emit::rust::plan::{address, doc};
 use crate::interpret::{Decoded, Frame, Target, decode, padded, request};
-use crate::model::{Example, Kind, Protocol, SignalId};
+use crate::model::{Example, Protocol, Side, SignalId};
 use value::{literal, shown, squeezed};
 
 /// How wide a line of code can be.
@@ -44,7 +44,7 @@ impl Manual<'_> {
         if parts.is_empty() { String::new() } else { written(&parts) }
     }
 
-    /// Builds a request that comes out as it is printed.
+    /// Builds a request or a report of the controller that comes out as it is printed.
     fn built(&self, printed: &Printed) -> Option<Part> {
         let Printed { protocol, decoded, .. } = printed;
         let (target, argument) = self.target(printed)?;
@@ -92,9 +92,9 @@ impl Manual<'_> {
         Some((Target { name: mode.name.clone(), number }, format!("Target::{}{argument}", variant.variant)))
     }
 
-    /// Decodes a reply or a report.
+    /// Decodes what a module sends.
     fn decoded(&self, Printed { protocol, example, decoded }: &Printed) -> Option<Part> {
-        if decoded.kind == Kind::Request || decoded.signals.is_empty() {
+        if decoded.sender == Side::Controller || decoded.signals.is_empty() {
             return None;
         }
         let message = &protocol[decoded.message];
@@ -129,9 +129,10 @@ impl<'a> Printed<'a> {
     /// Returns how little the frame shows: whether it only echoes or asks, has errata that matter, or few values.
     fn rank(&self) -> Rank {
         let Self { protocol, example, decoded } = self;
-        let sets = protocol[decoded.access].carries.contains(&Kind::Request);
+        let access = &protocol[decoded.access];
+        let sets = access.carries.iter().any(|kind| access.sender(*kind) == Side::Controller);
         let has_errata = example.doc.errata.iter().any(|name| doc::erratum(protocol, name).is_some());
-        ((decoded.kind == Kind::Request) != sets, has_errata, Reverse(decoded.signals.len()))
+        ((decoded.sender == Side::Controller) != sets, has_errata, Reverse(decoded.signals.len()))
     }
 
     /// Builds the request anew from what the document says that it means.
@@ -140,8 +141,8 @@ impl<'a> Printed<'a> {
         let message = &protocol[decoded.message];
         let values = example.means.iter().map(|known| (message[known.signal].name.clone(), known.text.clone()));
         let (access, values) = (protocol[decoded.access].name.as_str(), values.collect::<Vec<_>>());
-        let is_request = decoded.kind == Kind::Request;
-        is_request.then(|| request(protocol, None, Some(access), &message.name, target, None, &values).ok())?
+        let is_sent = decoded.sender == Side::Controller;
+        is_sent.then(|| request(protocol, None, Some(access), &message.name, target, None, &values).ok())?
     }
 }
 

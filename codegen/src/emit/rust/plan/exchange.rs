@@ -11,7 +11,7 @@ use super::models::Models;
 use super::naming::{Pool, ident, screaming};
 use super::selector::{Filter, Selectors};
 use crate::model::{
-    AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Set, Table, Who,
+    AccessId, Constant, ExchangeId, FrameLayout, Kind, Message, MessageId, Protocol, SelectorId, Set, Side, Table, Who,
 };
 
 /// The shared parts of accesses, and the part that each message uses.
@@ -38,6 +38,8 @@ pub struct Access {
     pub member_of: Option<String>,
     /// The methods that add kinds of frames, and what such frames show.
     pub frames: Vec<(Ident, Filter)>,
+    /// Whether the controller sends its reports.
+    pub is_from_controller: bool,
 }
 
 /// How a message travels by one of its accesses.
@@ -141,7 +143,7 @@ impl Shown {
     fn new(message: &Message, frame: &FrameLayout) -> Self {
         Self {
             kind: frame.kind,
-            has_values: frame.kind == Kind::Request && !frame.signals.is_empty(),
+            has_values: frame.is_to_module() && !frame.signals.is_empty(),
             selectors: frame.selectors.clone(),
             constants: frame.constants.iter().copied().filter(|known| !message.constants.contains(known)).collect(),
         }
@@ -194,6 +196,7 @@ impl Access {
             has_values: way.frames.iter().any(|frame| frame.has_values),
             member_of: way.set.map(|set| protocol[set].name.clone()),
             frames: way.frames.iter().map(|frame| (ident(frame.kind.name()), filter(frame))).collect(),
+            is_from_controller: known.from == Side::Controller,
         }
     }
 }
@@ -238,7 +241,7 @@ impl Exchange {
         let known = &protocol[exchange.access];
         let set = membership(protocol, exchange.set);
         let frames = protocol.frames_of(message).filter(|frame| frame.exchange == id);
-        let mut requests = frames.filter(|frame| frame.kind == Kind::Request);
+        let mut requests = frames.filter(|frame| frame.is_to_module());
         let filled = requests.next().map(FrameLayout::filled).filter(|ones| *ones != 0);
         let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
         Self {

@@ -178,9 +178,7 @@ impl Planner<'_> {
         let frames = protocol[host.id].frames.iter().filter(|id| {
             let frame = &protocol[**id];
             let carried = types.frames[**id].carried.as_ref();
-            frame.kind == Kind::Request
-                && frame.set.is_none()
-                && carried.map_or(host.is_home, |carried| carried == host.name)
+            frame.is_to_module() && frame.set.is_none() && carried.map_or(host.is_home, |carried| carried == host.name)
         });
         frames.map(|id| &protocol[*id])
     }
@@ -220,7 +218,7 @@ impl Planner<'_> {
     fn request_comment(&self, frame: &FrameLayout, values: &str, refused: &str) -> Vec<String> {
         let protocol = self.context.protocol;
         let shared = self.accesses.constant(frame.message, frame.exchange);
-        let first = format!("Builds the request [`{}`]({shared}){values}.", protocol[frame.access].name);
+        let first = format!("Builds the {} [`{}`]({shared}){values}.", frame.kind.name(), protocol[frame.access].name);
         let errors = format!("Refuses {refused}other addressing modes, and undocumented addresses.");
         vec![first, "# Errors".to_owned(), errors]
     }

@@ -6,7 +6,7 @@ use super::doc::{self, Comment};
 use super::limits;
 use super::naming::{Pool, model_variant};
 use crate::emit::Scaled;
-use crate::model::{FrameLayout, Kind, ModelId, Protocol, Range, Signal, SignalId, Table};
+use crate::model::{FrameLayout, ModelId, Protocol, Range, Signal, SignalId, Table};
 use crate::syntax::tree::Step;
 
 /// Device models.
@@ -137,5 +137,5 @@ fn type_name(signal: &Signal) -> Option<&str> {
 pub fn depends_on_model(protocol: &Protocol, frame: &FrameLayout) -> bool {
     let has_own_limits = |(_, signal): (SignalId, &Signal)| !signal.model_ranges.is_empty();
     let depends = !protocol[frame.message].models.is_empty() || protocol.signals_of(frame).any(has_own_limits);
-    frame.kind == Kind::Request && frame.set.is_none() && depends && !frame.signals.is_empty()
+    frame.is_to_module() && frame.set.is_none() && depends && !frame.signals.is_empty()
 }

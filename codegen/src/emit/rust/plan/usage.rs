@@ -3,7 +3,9 @@
 use super::doc;
 use super::exchange::{Accesses, membership};
 use crate::hex;
-use crate::model::{Constant, Example, Exchange, ExchangeId, Kind, Meaning, Message, MessageId, Protocol, Timing, Who};
+use crate::model::{
+    Constant, Example, Exchange, ExchangeId, Kind, Meaning, Message, MessageId, Protocol, Side, Timing, Who,
+};
 use crate::text::Text;
 
 /// Describes a message: its selectors, accesses and printed frames, and the errata of all that.
@@ -65,11 +67,21 @@ fn way(protocol: &Protocol, accesses: &Accesses, id: MessageId, exchange: Exchan
     let (message, own) = (&protocol[id], &protocol[id][exchange]);
     let access = &protocol[own.access];
     let is_report = access.kinds.contains(&Kind::Report);
-    let senders = senders(protocol, own, if is_report { "sends it" } else { "answers" });
+    let senders = match access.from {
+        Side::Controller => format!("the controller sends it{}", modes(protocol, own)),
+        Side::Module => senders(protocol, own, if is_report { "sends it" } else { "answers" }),
+    };
     let (link, set) = (accesses.constant(id, exchange), membership(protocol, own.set));
     let colon = if senders.is_empty() { "" } else { ": " };
     let sentence = doc::sentence_of(&format!("[`{}`]({link}){set}{colon}{senders}", access.name));
     format!("{sentence}{}", period(protocol, message, own))
+}
+
+/// Names the modes of an exchange, if there are any.
+fn modes(protocol: &Protocol, exchange: &Exchange) -> String {
+    let modes = protocol.modes.iter().zip(&exchange.answers).filter(|(_, who)| who.is_some());
+    let names: Vec<_> = modes.map(|(mode, _)| format!("`{}`", mode.name)).collect();
+    if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
 }
 
 /// Says in which modes who answers or sends.
