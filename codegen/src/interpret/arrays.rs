@@ -40,7 +40,7 @@ pub fn parted_texts(message: &Message, given: &[(String, String)]) -> Result<Vec
     Ok(whole)
 }
 
-/// Returns the names of an array's elements, if there are enough for so many values.
+/// Returns the names of the first elements of an array, one for each value, if it has that many.
 fn elements<'a>(
     message: &'a Message,
     array: &'a Array,
