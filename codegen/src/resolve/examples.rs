@@ -217,6 +217,14 @@ impl Resolver<'_> {
             return self.elements(path, array, means, message);
         }
         let found = message.signals.position(|signal| signal.name == name);
+        if let (None, Means::Signals(parts)) = (found, means)
+            && message.signals.iter().any(|signal| is_part(&signal.name, name))
+        {
+            let part = |(part, means): (&String, &Means)| {
+                self.named_meaning(&path.key(part), &format!("{name}_{part}"), means, message)
+            };
+            return parts.iter().flat_map(part).collect();
+        }
         let id = found.or_else(|| self.no_signal(path, name, message));
         id.and_then(|id| self.meaning(path, id, &message[id], means)).into_iter().collect()
     }
@@ -360,8 +368,12 @@ fn only_array(message: &Message) -> Option<&Array> {
 
 /// Tests whether a name is that of an array with a number.
 fn is_element(name: &str, array: &str) -> bool {
-    let number = name.strip_prefix(array).and_then(|rest| rest.strip_prefix('_'));
-    number.is_some_and(|number| number.parse::<u16>().is_ok())
+    is_part(name, array) && name[array.len() + 1..].parse::<u16>().is_ok()
+}
+
+/// Tests whether a name is that of a group with the name of a field.
+fn is_part(name: &str, group: &str) -> bool {
+    name.strip_prefix(group).is_some_and(|rest| rest.starts_with('_'))
 }
 
 /// Finds the bit of a status word by its name, or by its number if it has no name.

@@ -57,19 +57,41 @@ struct Outer<'a> {
     around: &'a [Path],
     /// The array whose elements the fields are parts of.
     row: Row,
+    /// The group of fields that they belong to.
+    group: Group<'a>,
+}
+
+impl<'a> Outer<'a> {
+    /// Returns what is around the fields of a message.
+    fn of_message(doc: &'a Doc, owner: &'a str) -> Self {
+        Self { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE, group: Group::NONE }
+    }
+
+    /// Returns the name of a field as the spec writes it, without that of its group.
+    fn own_name<'n>(&self, name: &'n str) -> &'n str {
+        name.strip_prefix(self.group.prefix).unwrap_or(name)
+    }
+}
+
+/// Fields of a type, which are used under the name of the field that has the type.
+#[derive(Clone, Copy)]
+struct Group<'a> {
+    /// The type; empty outside of groups.
+    name: &'a str,
+    /// What the names of its signals begin with.
+    prefix: &'a str,
+}
+
+impl Group<'_> {
+    /// Fields that belong to no group.
+    const NONE: Self = Self { name: "", prefix: "" };
 }
 
 impl Resolver<'_> {
     /// Resolves the fields of the header.
     pub fn header_leaves(&mut self, path: &Path, fields: &ast::Map<Field>) -> Leaves {
-        let outer = Outer {
-            site: Site::Header,
-            word: None,
-            doc: &Doc::default(),
-            owner: "header",
-            around: &[],
-            row: Row::ALONE,
-        };
+        let doc = Doc::default();
+        let outer = Outer { site: Site::Header, ..Outer::of_message(&doc, "header") };
         self.free_of_constants(path, fields, outer)
     }
 
@@ -88,19 +110,14 @@ impl Resolver<'_> {
     pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaves(
-            path,
-            fields,
-            Outer { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE },
-            &mut leaves,
-        );
+        self.leaves(path, fields, Outer::of_message(doc, owner), &mut leaves);
         leaves.signals.sort_by_key(Signal::start);
         leaves
     }
 
     fn leaves(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer, leaves: &mut Leaves) {
         for (name, field) in fields {
-            self.leaf(&path.key(name), name, field, outer, leaves);
+            self.leaf(&path.key(name), &format!("{}{name}", outer.group.prefix), field, outer, leaves);
         }
     }
 
@@ -108,13 +125,7 @@ impl Resolver<'_> {
     pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaf(
-            path,
-            "value",
-            field,
-            Outer { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE },
-            &mut leaves,
-        );
+        self.leaf(path, "value", field, Outer::of_message(doc, owner), &mut leaves);
         leaves.signals.sort_by_key(Signal::start);
         leaves
     }
@@ -123,7 +134,7 @@ impl Resolver<'_> {
         if self.count_field(path, outer.owner).is_none() {
             return give_up(name, field, leaves);
         }
-        self.check_name(path, name);
+        self.check_name(path, outer.own_name(name));
         let Some(merged) = self.merged(path, field) else { return give_up(name, field, leaves) };
         if self.read_leaf(path, name, &merged, outer, leaves).is_none() {
             give_up(name, &merged.field, leaves);
@@ -135,7 +146,7 @@ impl Resolver<'_> {
     fn read_leaf(&mut self, path: &Path, name: &str, merged: &Merged, outer: Outer, leaves: &mut Leaves) -> Option<()> {
         let field = &merged.field;
         let fields = merged.path(self.diagnostics, Key::Fields);
-        self.check_not_around(path, name, &fields, outer.around)?;
+        self.check_not_around(path, outer.own_name(name), &fields, outer.around)?;
         let around = [outer.around, std::slice::from_ref(&fields)].concat();
         let outer = Outer { around: &around, ..outer };
         let doc = remarks!(field).doc(path, Some(outer.doc));
@@ -152,11 +163,19 @@ impl Resolver<'_> {
             self.check_keys(merged, Role::of_word(outer.site));
             self.tables.words.push(doc.clone());
             let row = self.row_in(path, merged, place, outer)?;
-            let inside = Outer { word: Some(place), doc: &doc, row, ..outer };
+            let prefix = format!("{name}_");
+            // Patterns name the fields of the header, and `value` is no name that the spec has written.
+            let is_group = outer.site == Site::Message && name != "value";
+            let kind = merged.type_at(&fields).filter(|_| is_group);
+            let group = kind.map_or(outer.group, |kind| Group { name: kind, prefix: &prefix });
+            let inside = Outer { word: Some(place), doc: &doc, row, group, ..outer };
             self.leaves(&fields, &merged.field.fields.clone(), inside, leaves);
             return Some(());
         }
-        let signal = self.signal(name, merged, place, doc, outer.owner)?;
+        // Each use of a group has the same types of named values.
+        let owner = if outer.group.name.is_empty() { outer.owner } else { outer.group.name };
+        let signal = self.signal(outer.own_name(name), merged, place, doc, owner)?;
+        let signal = Signal { name: name.to_owned(), ..signal };
         let is_sound = self.is_sound(merged);
         let constant = merged.field.constant.is_some();
         self.check_keys(merged, if constant { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) });
@@ -455,7 +474,7 @@ impl Resolver<'_> {
     /// Makes one text signal of several parts.
     fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
         let fields = merged.path(self.diagnostics, Key::Fields);
-        let inside = Outer { site: Site::Packed, doc: &doc, ..outer };
+        let inside = Outer { site: Site::Packed, doc: &doc, group: Group::NONE, ..outer };
         let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), inside);
         let parts: Table<PartId, Signal> = leaves.given_up.is_empty().then(|| leaves.signals.into_iter().collect())?;
         let format = merged.field.format.clone()?;
@@ -499,7 +518,8 @@ fn hidden_by(at: At, key: Key, name: &str, models: &[&DeviceModel]) -> Diagnosti
 /// Lets examples name a field, or the fields inside it, although the signal was given up.
 fn give_up(name: &str, field: &Field, leaves: &mut Leaves) {
     leaves.given_up.push(name.to_owned());
-    for (name, field) in &field.fields {
-        give_up(name, field, leaves);
+    for (inner, field) in &field.fields {
+        give_up(inner, field, leaves);
+        give_up(&format!("{name}_{inner}"), field, leaves);
     }
 }

@@ -270,3 +270,22 @@ messages: {heat: {section: "1", match: {command: 1, more: 0}, access: [read], va
     assert_eq!(notes(&protocol, "411#2007000000000000"), ["error_code"]);
     assert_eq!(protocol.continuation().map(|field| field.raw), Some(1));
 }
+
+#[test]
+fn a_group_has_signals_of_its_own_wherever_it_is_used() {
+    let groups = feature("groups");
+    let signals = groups.messages.iter().flat_map(|message| &message.signals);
+    let names: Vec<_> = signals.map(|signal| signal.name.as_str()).collect();
+    let fields = ["level", "pack", "cell_1", "cell_2"];
+    let [alarms, warnings] = ["alarms", "warnings"].map(|of| fields.map(|field| format!("{of}_{field}")));
+    assert!(alarms.iter().chain(&warnings).all(|name| names.contains(&name.as_str())), "{names:?}");
+    assert_eq!((names.len(), groups.enumerations.len()), (8, 1));
+    // 0x0168 and 0x0902: one half of a volt and 9 of them; bit 3 and bits 1..0.
+    let found = values(&groups, "103#01680209");
+    let value = |name: &str| found.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone());
+    assert_eq!(value("alarms_level"), Some(Value::Number(0.5)));
+    assert_eq!(value("warnings_level"), Some(Value::Number(4.5)));
+    assert_eq!([value("alarms_cell_1"), value("alarms_cell_2")], [0, 1].map(|bit| Some(Value::Integer(bit))));
+    assert_eq!(value("alarms_pack"), Some(Value::Name("off".to_owned())));
+    assert_eq!(value("warnings_pack"), Some(Value::None));
+}

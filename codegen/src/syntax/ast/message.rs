@@ -121,7 +121,8 @@ pub enum Means {
     /// `[fan_fault, 28]`. It is `[]` if no bit is set. Of an array it is a list of its elements:
     /// `[3.3 V, 3.2 V]`.
     List(Vec<Means>),
-    /// A value for each signal: `{voltage: 500 V, alarms: []}`.
+    /// A value for each signal: `{voltage: 500 V, alarms: []}`. Signals of a group can be a map
+    /// inside: `{alarms: {level: 52 V}}`.
     Signals(Map<Means>),
 }
 
