@@ -129,14 +129,13 @@ fn samples(key: Key) -> Vec<&'static str> {
     let samples: &[_] = match key {
         Key::Bytes => &["1", "5", "3..2"],
         Key::Bits => &["1", "2..1"],
-        Key::Repeat => &["3"],
         Key::Step => &["2"],
         Key::First => &["0"],
         Key::Type => &["titled"],
         Key::As | Key::Absent => return words(key),
         Key::Fill => &["0x20"],
         Key::Scale => &["1/4", "-1"],
-        Key::Offset => &["3"],
+        Key::Repeat | Key::Offset => &["3"],
         Key::Unit => &["V"],
         Key::Range => &["1..15"],
         // The second one names the addresses of the controllers.

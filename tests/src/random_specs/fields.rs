@@ -99,21 +99,21 @@ impl Draft {
     /// Returns an array in `count` bytes, of words or of other fields.
     fn array(&mut self, first: u8, count: u8, scope: &mut Scope, site: &Site, has_reply: &mut bool) -> Map {
         let elements = self.random.u8(2..=count);
-        let size = count / elements;
-        let step = if elements == 2 { count - size } else { size };
+        let each = count / elements;
+        let step = if elements == 2 { count - each } else { each };
         let is_falling = self.chance(20);
         let start = if is_falling { first + (elements - 1) * step } else { first };
-        let mut field = Map::of([("bytes", self.bytes(start, size))]);
-        if size <= 4 && self.chance(30) {
-            let parts = self.parts(8 * size, scope, false);
+        let mut field = Map::of([("bytes", self.bytes(start, each))]);
+        if each <= 4 && self.chance(30) {
+            let parts = self.parts(8 * each, scope, false);
             field.put("fields", parts);
             self.refer(&mut field);
         } else {
-            self.fill(&mut field, 8 * size);
+            self.fill(&mut field, 8 * each);
             self.restrict(&mut field, site, has_reply);
         }
-        self.repeat(&mut field, elements, if is_falling { -i16::from(step) } else { step.into() }, size);
-        self.with_types(field, &[], 8 * size)
+        self.repeat(&mut field, elements, if is_falling { -i16::from(step) } else { step.into() }, each);
+        self.with_types(field, &[], 8 * each)
     }
 
     /// Adds the keys of an array.
