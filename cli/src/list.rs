@@ -74,7 +74,9 @@ fn protocol_row(name: &str, protocol: &Protocol) -> Row {
 
 /// Writes a table of messages, each followed by its signals.
 fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    writeln!(out, "{}: {}\n{}\n", protocol.name, protocol.title.for_people(), document(&protocol.document))?;
+    writeln!(out, "{}: {}\n{}", protocol.name, protocol.title.for_people(), document(&protocol.document))?;
+    protocol.sides.sentence().map_or(Ok(()), |sentence| writeln!(out, "{sentence}"))?;
+    writeln!(out)?;
     let selectors = selectors(protocol);
     let upper: Vec<String> = selectors.iter().map(|id| protocol[*id].name.to_uppercase()).collect();
     let mut headings: Vec<&str> = upper.iter().map(String::as_str).collect();
@@ -99,7 +101,10 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
 fn reports(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     let reports = protocol.accesses.iter().filter(|access| access.sender(Kind::Report) == Side::Controller);
     let names: Vec<_> = reports.map(|access| format!("`{}`", access.name)).collect();
-    if names.is_empty() { Ok(()) } else { writeln!(out, "\nThe controller sends reports by {}.", names.join(", ")) }
+    if names.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nThe {} sends reports by {}.", protocol.sides.controller, names.join(", "))
 }
 
 /// Writes a table of the device models, if there are any.

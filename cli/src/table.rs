@@ -132,11 +132,17 @@ fn grown(time: &str) -> String {
     format!("{time}{}", " ".repeat(missing))
 }
 
+/// Returns what stands for the addresses of a frame that has none: the mode, or the module if there is but one.
+fn alone_in<'a>(protocol: &'a Protocol, mode: &'a Mode) -> &'a str {
+    let is_alone = protocol.sides.are_named() && protocol.address_types.is_empty();
+    if is_alone { &protocol.sides.module } else { &mode.name }
+}
+
 /// Returns the longest text that a request shows in this mode, as far as the document goes.
 fn widest_address(protocol: &Protocol, mode: &Mode) -> String {
     match mode.target.map(|target| &protocol.address_types[target]) {
         Some(target) => format!("→ {} {}", target.name, target.first.max(target.last)),
-        None => format!("→ {}", mode.name),
+        None => format!("→ {}", alone_in(protocol, mode)),
     }
 }
 
@@ -152,7 +158,7 @@ fn address(text: &mut String, outcome: &Outcome<'_>, decoded: &Decoded) {
     let alone = text.len();
     others(text, outcome, decoded);
     if text.len() == alone {
-        text.push_str(&outcome.protocol[travel.mode].name);
+        text.push_str(alone_in(outcome.protocol, &outcome.protocol[travel.mode]));
     }
 }
 

@@ -22,7 +22,7 @@ mod signal;
 pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
 pub use array::{Array, Element};
-pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Timing, TypeOfModel};
+pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, Meaning, Misfit, Origin, Said, ValueExample};
 pub use id::{
@@ -55,6 +55,8 @@ pub struct Protocol {
     pub title: Text,
     /// The vendor document that the spec follows.
     pub document: Document,
+    /// What the two sides are called in texts.
+    pub sides: Sides,
     /// Bit rates of the bus in bit/s.
     pub bit_rates: Vec<u32>,
     /// Layout of the identifier.

@@ -17,6 +17,7 @@ mod printed;
 pub(crate) mod rules;
 mod sending;
 mod sets;
+mod sides;
 mod signals;
 mod status;
 mod texts;
@@ -85,6 +86,7 @@ impl Resolver<'_> {
         self.version();
         let name = self.protocol_name();
         let bit_rates = self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone());
+        let sides = self.sides();
         let timing = self.timing();
         self.tables.models = self.models();
         let procedures = self.procedures();
@@ -107,6 +109,7 @@ impl Resolver<'_> {
             file,
             title: Text::new(&self.spec.title),
             document: self.document(),
+            sides,
             bit_rates,
             identifier,
             address_types,

@@ -68,6 +68,10 @@ impl Draft {
         root.put("protocol", self.names.plain(&mut Scope::default()));
         root.put("title", self.text());
         root.put("document", self.document());
+        if self.chance(15) {
+            let sides = self.some(&[("module", "battery"), ("controller", "inverter")]);
+            root.put("sides", Map::of(sides));
+        }
         root.put("length", "8");
         if self.chance(20) {
             root.put("bit_rates", self.one(&[list(["125 kbit/s"]), list(["500 kbit/s", "1000 kbit/s"])]));

@@ -49,6 +49,7 @@ pub fn dbc(protocol: &Protocol, nodes: Option<RangeInclusive<i64>>) -> Dbc {
     let mut losses = losses::losses(protocol, mask);
     losses.extend(dropped.iter().map(|dropped| dropped.text.clone()));
     let counts = (protocol.messages.len(), frames.len());
-    let file = File { comment: text::header(protocol, mask, &losses), nodes: text::nodes(nodes), frames };
+    let file =
+        File { comment: text::header(protocol, mask, &losses), nodes: text::nodes(&protocol.sides, nodes), frames };
     Dbc { text: file.to_string(), mask, counts, losses, dropped }
 }

@@ -29,6 +29,7 @@ fn table(protocol: &Protocol) -> Value {
         .with("name", Value::text(&protocol.name))
         .with("title", Value::words(&protocol.title))
         .with("identifier", identifier(protocol))
+        .maybe("sides", protocol.sides.are_named().then(|| Value::text(&protocol.sides.either())))
         .with("foreign", Value::list(&protocol.foreign, foreign))
         .with("to_module", direction(&protocol.recognition.to_module))
         .with("to_controller", direction(&protocol.recognition.to_controller))
@@ -88,12 +89,14 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
 fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {
     let answers = protocol.modes.iter().zip(&message[frame.exchange].answers);
     let answers = answers.filter_map(|(mode, answer)| Some((Value::text(&mode.name), Value::text(who((*answer)?)))));
+    let tells_sender = protocol.sides.are_named() || frame.kind == Kind::Report && frame.is_to_module();
     let is_report_to_module = frame.kind == Kind::Report && frame.is_to_module();
     let set = frame.set.and_then(|set| Some((&protocol[set].name, protocol[set].set.as_ref()?)));
     Value::record()
         .with("access", Value::text(&protocol[frame.access].name))
         .with("kind", Value::text(frame.kind.name()))
-        .maybe("sender", is_report_to_module.then(|| Value::text("controller")))
+        .maybe("to_module", is_report_to_module.then(|| Value::flag(true)))
+        .maybe("sender", tells_sender.then(|| Value::text(protocol.sides.name(frame.sender))))
         .with("lengths", Value::map(frame.lengths.iter().map(|length| (Value::number(*length), Value::flag(true)))))
         .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
         .with("signals", Value::list(&frame.signals, |id| Value::id(*id)))

@@ -136,8 +136,9 @@ impl<'a> Decoder<'a> {
             (false, true) => Ok(replies),
             (true, true) => Ok(either),
             (false, false) => {
-                let text = "the addresses do not show whether it goes to a module or to the controller";
-                Err(self.unrecognised(Problem::Identifier, text.to_owned(), true, None))
+                let either = self.protocol.sides.either();
+                let text = format!("the addresses do not show whether it goes to {either}");
+                Err(self.unrecognised(Problem::Identifier, text, true, None))
             }
         }
     }

@@ -2,10 +2,54 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Quantity, Range, Unit};
+use crate::model::{Quantity, Range, Side, Unit};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
+
+/// What the two sides are called in texts.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Sides {
+    /// A module.
+    pub module: String,
+    /// The controller.
+    pub controller: String,
+}
+
+impl Default for Sides {
+    fn default() -> Self {
+        Self { module: "module".to_owned(), controller: "controller".to_owned() }
+    }
+}
+
+impl Sides {
+    /// Tests whether the spec names one of them.
+    pub fn are_named(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// Returns what a side is called.
+    pub fn name(&self, side: Side) -> &str {
+        match side {
+            Side::Module => &self.module,
+            Side::Controller => &self.controller,
+        }
+    }
+
+    /// Names both ends of a frame.
+    pub fn either(&self) -> String {
+        let Self { module, controller } = self;
+        let article = if self.are_named() { "the" } else { "a" };
+        format!("{article} {module} or to the {controller}")
+    }
+
+    /// Says which is which, if the spec names them.
+    pub fn sentence(&self) -> Option<String> {
+        let Self { module, controller } = self;
+        self.are_named().then(|| format!("The modules are called `{module}`, and the controller `{controller}`."))
+    }
+}
 
 /// The vendor document.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -29,6 +29,9 @@ pub struct Spec {
     pub title: String,
     /// The vendor document that the spec follows: `{title: Charging module CAN protocol, version: V1.0}`.
     pub document: Document,
+    /// What the two sides are called in texts: `{module: battery, controller: inverter}`; `module` and
+    /// `controller` if absent.
+    pub sides: Option<Sides>,
     /// Data bytes of each frame, 0 to 8, unless a message says otherwise: `8`.
     pub length: String,
     /// Speeds of the bus in whole kbit/s, a list: `[125 kbit/s, 250 kbit/s]`; none if absent.
@@ -103,6 +106,17 @@ pub struct Reserved {
     /// What they may be in received frames without a note: `sent` (what is sent) or `any`; `sent`
     /// if absent.
     pub expect: Option<String>,
+}
+
+/// What the two sides are called in texts.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Sides {
+    /// What a module is, in lower-case letters, digits and `_`: `battery`; `module` if absent.
+    pub module: Option<String>,
+    /// What the controller is, in lower-case letters, digits and `_`: `inverter`; `controller` if absent.
+    pub controller: Option<String>,
 }
 
 /// The vendor document that the spec follows.

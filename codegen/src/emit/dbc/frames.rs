@@ -183,8 +183,9 @@ fn how(protocol: &Protocol, layout: &FrameLayout) -> String {
 
 fn frame(protocol: &Protocol, group: Group, name: String) -> DbcMessage {
     let sent = &group.sent;
-    let module = text::module(common(sent, |sent| sent.node).flatten());
-    let controller = text::CONTROLLER.to_owned();
+    let sides = &protocol.sides;
+    let (module, controller) =
+        (text::module(sides, common(sent, |sent| sent.node).flatten()), sides.controller.clone());
     let is_to_module = sent[0].layout.is_to_module();
     let (sender, receivers) = if is_to_module { (controller, module) } else { (module, controller) };
     DbcMessage {

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::model::{Doc, Protocol, Unit};
+use crate::model::{Doc, Protocol, Sides, Unit};
 use crate::text::Text;
 
 /// Returns the symbol of a unit, in ASCII.
@@ -32,6 +32,7 @@ pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
         format!("Made by canspec from {}", protocol.file.in_dbc()),
         format!("Frame-id mask: {mask:#010X}. Compare only these bits of an identifier; the other ones vary"),
     ];
+    lines.extend(protocol.sides.sentence());
     if !losses.is_empty() {
         lines.push("What a DBC cannot say:".to_owned());
         lines.extend(losses.iter().map(|loss| format!("- {loss}")));
@@ -39,16 +40,14 @@ pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
     lines.join("\n")
 }
 
-/// The sender of frames to a module.
-pub const CONTROLLER: &str = "controller";
-
 /// Returns the name of a module, or of all.
-pub fn module(node: Option<i64>) -> String {
-    node.map_or_else(|| "module".to_owned(), |node| format!("module_{node}"))
+pub fn module(sides: &Sides, node: Option<i64>) -> String {
+    let name = &sides.module;
+    node.map_or_else(|| name.clone(), |node| format!("{name}_{node}"))
 }
 
 /// Returns everybody on the bus.
-pub fn nodes(nodes: Option<RangeInclusive<i64>>) -> Vec<String> {
-    let modules = nodes.into_iter().flatten().map(|node| module(Some(node)));
-    [CONTROLLER.to_owned(), module(None)].into_iter().chain(modules).collect()
+pub fn nodes(sides: &Sides, nodes: Option<RangeInclusive<i64>>) -> Vec<String> {
+    let modules = nodes.into_iter().flatten().map(|node| module(sides, Some(node)));
+    [sides.controller.clone(), module(sides, None)].into_iter().chain(modules).collect()
 }

@@ -244,7 +244,7 @@ end
 
 -- Tests whether a kind of frame goes to a module.
 local function is_to_module(layout)
-  return layout.kind == "request" or layout.sender == "controller"
+  return layout.kind == "request" or layout.to_module == true
 end
 
 -- Calls `found` with each mode that the identifier shows, who answers, and how well the mode fits.
@@ -407,7 +407,8 @@ local function other_identifier(kind, text)
   return { problem = kind, text = text, selectors = {}, has_other_identifier = true }
 end
 
-local NO_DIRECTION = "the addresses do not show whether it goes to a module or to the controller"
+local NO_DIRECTION = "the addresses do not show whether it goes to "
+  .. (protocol.sides or "a module or to the controller")
 
 -- Returns the layouts with the identifier, the length and the data bytes of a frame, or a problem.
 local function candidates(frame)

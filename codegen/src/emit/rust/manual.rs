@@ -23,7 +23,8 @@ pub struct Manual<'a> {
 impl Manual<'_> {
     /// Returns the documentation as inner doc comments.
     pub fn text(&self) -> String {
-        let head = Comment::new([self.title(), self.document(), SHARED.to_owned()]);
+        let sides = self.protocol.sides.sentence();
+        let head = Comment::new([self.title(), self.document()].into_iter().chain(sides).chain([SHARED.to_owned()]));
         let parts = [section(head.lines()), self.example(), self.table(), self.timing()];
         let parts: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         parts.join("//!\n")

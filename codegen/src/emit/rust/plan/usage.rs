@@ -68,7 +68,7 @@ fn way(protocol: &Protocol, accesses: &Accesses, id: MessageId, exchange: Exchan
     let access = &protocol[own.access];
     let is_report = access.kinds.contains(&Kind::Report);
     let senders = match access.from {
-        Side::Controller => format!("the controller sends it{}", modes(protocol, own)),
+        Side::Controller => format!("the {} sends it{}", protocol.sides.controller, modes(protocol, own)),
         Side::Module => senders(protocol, own, if is_report { "sends it" } else { "answers" }),
     };
     let (link, set) = (accesses.constant(id, exchange), membership(protocol, own.set));
@@ -95,14 +95,16 @@ fn senders(protocol: &Protocol, exchange: &Exchange, does: &str) -> String {
             None => senders.push((who, vec![name])),
         }
     }
-    let senders = senders.iter().map(|(who, names)| format!("{} ({})", sender(*who, does), names.join(", ")));
+    let senders = senders
+        .iter()
+        .map(|(who, names)| format!("{} ({})", sender(&protocol.sides.module, *who, does), names.join(", ")));
     senders.collect::<Vec<_>>().join(", ")
 }
 
-fn sender(who: Who, does: &str) -> String {
+fn sender(module: &str, who: Who, does: &str) -> String {
     match who {
-        Who::One => format!("the module {does}"),
-        Who::Each => format!("each module {does}"),
+        Who::One => format!("the {module} {does}"),
+        Who::Each => format!("each {module} {does}"),
         Who::Coordinator => format!("one {does} for all"),
         Who::Nobody => format!("nobody {does}"),
     }
