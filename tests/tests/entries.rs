@@ -43,8 +43,8 @@ impl Visitor for Listed {
             for frame in protocol.frames_of(message) {
                 let exchange = entry.exchanges[frame.exchange.place()];
                 assert!(exchange.filter(kind(frame.kind)).is_some(), "{name}");
-                let carries = frame.kind == Kind::Request && !frame.signals.is_empty();
-                assert!(frame.kind != Kind::Request || exchange.has_values() == carries, "{name}");
+                let carries = frame.is_to_module() && !frame.signals.is_empty();
+                assert!(!frame.is_to_module() || exchange.has_values() == carries, "{name}");
             }
             for (listed, signal) in entry.signals.iter().zip(&message.signals) {
                 assert_eq!(listed.name(), signal.name, "{name}");

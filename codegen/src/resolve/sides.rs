@@ -25,7 +25,7 @@ impl Resolver<'_> {
         }
         if is_one_of(&sides.controller, &sides.module) {
             let Sides { module, controller } = &sides;
-            let text = format!("the controller is called `{controller}`, and so is a module called `{module}`");
+            let text = format!("the controller `{controller}` has the name of a `{module}`");
             let help =
                 "give one of the two another name; modules with addresses are called by number, as in `module_2`";
             self.diagnostics.push(Diagnostic::error(&rules::NAME, path.at_key(), text).help(help));

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use can_dbc::MessageId;
 use canspec_codegen::emit::{self, Dbc, Options, Scaled, Switch};
 use canspec_codegen::interpret::{Content, Frame, decode, encode};
-use canspec_codegen::model::{Kind, ModelId, Protocol};
+use canspec_codegen::model::{ModelId, Protocol, Side};
 
 use super::names;
 use crate::{Frames, models};
@@ -60,7 +60,7 @@ fn frames(protocol: &Protocol) {
 
 fn comes_back(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) {
     let Ok(decoded) = decode(protocol, model, frame) else { return };
-    if decoded.kind != Kind::Request {
+    if decoded.sender == Side::Module {
         let encoded = encode(protocol, model, &Content::of(protocol, &decoded));
         assert_eq!(encoded.as_ref(), Ok(frame), "{decoded:?}");
     }
