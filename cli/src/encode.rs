@@ -5,8 +5,8 @@ mod access;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use canspec_codegen::interpret::{self, Frame, Refusal, Target, Targets};
-use canspec_codegen::model::{ModelId, Protocol, Signal};
+use canspec_codegen::interpret::{self, Frame, Refusal, Sent, Target, Targets};
+use canspec_codegen::model::{Kind, ModelId, Protocol, Signal};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Finish};
@@ -17,10 +17,10 @@ use crate::model::{Device, Model};
 use crate::output::output;
 use crate::protocols::{self, Several};
 
-/// Make a request, or turn decoded lines back into frames.
+/// Make a request, a report or a reply, or turn decoded lines back into frames.
 ///
-/// Name the message of the request, after its access if the message has several. Set signals as NAME=VALUE, with a
-/// unit or without. With --from jsonl, the lines that `canspec decode --format jsonl` writes become a log again. Frames
+/// Name the message, after its access if the message has several. Set signals as NAME=VALUE, with a unit or without.
+/// A message that modules only report becomes a report. For a reply, say --kind reply. With --from jsonl, the lines that `canspec decode --format jsonl` writes become a log again. Frames
 /// that were not recognised come back unchanged.
 #[derive(Args)]
 #[command(
@@ -30,6 +30,7 @@ use crate::protocols::{self, Several};
     after_long_help = "\
 Examples:
   canspec encode --protocol NAME set_output --to module:3 voltage=750V current=15A
+  canspec encode --protocol NAME output --kind reply --source 3 voltage=500V
   canspec encode --protocol NAME --from jsonl frames.jsonl"
 )]
 pub struct Encode {
@@ -38,14 +39,18 @@ pub struct Encode {
     #[command(flatten)]
     model: Model,
     /// Read decoded lines from the file, or from standard input.
-    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["to", "source"])]
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["to", "source", "kind"])]
     from: Option<Format>,
     /// Whom to address: `module:3`, `host:NAME`, `broadcast`, or `MODE:N` with an addressing mode; needed where there is a choice.
     #[arg(long, value_name = "TARGET")]
     to: Option<String>,
-    /// The sender's address or its name, instead of the one that the spec says is sent.
+    /// The sender's address or its name, instead of the one that the spec says is sent. A report or a reply needs that
+    /// of its module, if the identifier shows it.
     #[arg(long, value_name = "ADDRESS")]
     source: Option<String>,
+    /// What the frame is for, where a message has several kinds of frames; a request without it.
+    #[arg(long, value_enum, value_name = "KIND")]
+    kind: Option<Purpose>,
     /// `[ACCESS] MESSAGE NAME=VALUE...`, or the file after --from.
     #[arg(value_name = "WORD")]
     words: Vec<String>,
@@ -57,6 +62,23 @@ const PAIR: &str = "write NAME=VALUE without a blank or in quotes, with the unit
 #[derive(Clone, Copy, ValueEnum)]
 enum Format {
     Jsonl,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Purpose {
+    Request,
+    Reply,
+    Report,
+}
+
+impl Purpose {
+    fn kind(self) -> Kind {
+        match self {
+            Self::Request => Kind::Request,
+            Self::Reply => Kind::Reply,
+            Self::Report => Kind::Report,
+        }
+    }
 }
 
 impl Encode {
@@ -90,28 +112,26 @@ impl Encode {
         let first = self.words.iter().position(|word| word.contains('=')).unwrap_or(self.words.len());
         let (names, signals) = self.words.split_at(first);
         let signals = pairs(signals)?;
-        let (access, message) = match names {
-            [message] => (None, message),
-            [message, value] if has_message(protocol, message) && !has_message(protocol, value) => {
-                return Err(Failure::Call(format!("`{value}` stands alone behind `{message}`; {PAIR}")));
-            }
-            [access, message] => (Some(access.as_str()), message),
-            _ => {
-                let why = "name one message, or an access and a message, and then each value as NAME=VALUE";
-                return Err(Failure::Call(why.to_owned()));
-            }
-        };
+        let (access, message) = named(protocol, names)?;
         let refused = |refusal: Refusal| Failure::Call(refusal.to_string());
+        let sent = Sent { kind: self.kind.map(Purpose::kind), access, message, to: None, source: None };
+        if sent.is_of_module(protocol).map_err(refused)? {
+            return write(&[self.sent(protocol, sent, &signals).map_err(refused)?]);
+        }
         if access.is_none() {
             access::refuse_several(message, &interpret::accesses(protocol, message, &signals).map_err(refused)?)?;
         }
         let target = self.target(protocol, access, message)?;
         let source = self.source.as_ref().map(|text| interpret::source(protocol, text)).transpose().map_err(refused)?;
         let frames = interpret::requests(protocol, model, access, message, &target, source, &signals);
-        let frames = frames.map_err(refused)?;
-        let mut out = output()?;
-        frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
-        Ok(Finish::Done)
+        write(&frames.map_err(refused)?)
+    }
+
+    /// Returns the frame that a module sends.
+    fn sent(&self, protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Frame, Refusal> {
+        let to = self.to.as_ref().map(|text| Target::parse(protocol, text)).transpose()?;
+        let source = self.source.as_ref().map(|text| interpret::module(protocol, text)).transpose()?;
+        interpret::sent(protocol, Sent { to: to.as_ref(), source, ..sent }, signals)
     }
 }
 
@@ -132,8 +152,24 @@ impl Encode {
     }
 }
 
-fn has_message(protocol: &Protocol, name: &str) -> bool {
-    protocol.messages.iter().any(|message| message.name == name)
+fn write(frames: &[Frame]) -> Result<Finish, Failure> {
+    let mut out = output()?;
+    frames.iter().try_for_each(|frame| log::write(&mut out, None, None, frame))?;
+    Ok(Finish::Done)
+}
+
+/// Reads the words before the values: a message, after its access if the call names one.
+fn named<'a>(protocol: &Protocol, names: &'a [String]) -> Result<(Option<&'a str>, &'a str), Failure> {
+    let has_message = |name: &str| protocol.messages.iter().any(|message| message.name == name);
+    let why = match names {
+        [message] => return Ok((None, message)),
+        [message, value] if has_message(message) && !has_message(value) => {
+            format!("`{value}` stands alone behind `{message}`; {PAIR}")
+        }
+        [access, message] => return Ok((Some(access), message)),
+        _ => "name one message, or an access and a message, and then each value as NAME=VALUE".to_owned(),
+    };
+    Err(Failure::Call(why))
 }
 
 /// Splits words of the form NAME=VALUE. The first one has that form.

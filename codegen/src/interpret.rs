@@ -3,12 +3,14 @@
 mod arrays;
 mod content;
 mod decode;
+mod device;
 mod encode;
 mod request;
 mod value;
 
 pub use decode::decode;
 pub(crate) use decode::failed_tests;
+pub use device::{Sent, module, sent};
 pub use encode::encode;
 pub use request::{Target, Targets, accesses, request, requests, source, targets};
 pub use value::{Limits, physical, raw_of};

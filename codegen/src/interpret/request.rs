@@ -34,6 +34,11 @@ impl Target {
     }
 }
 
+/// Shows how an address is written.
+pub fn written_address(known: &AddressType) -> String {
+    known.names.first().map_or_else(|| format!("{:#04X}", known.first), |(_, name)| name.clone())
+}
+
 /// Reads the address of a sender: a number, or its name.
 ///
 /// # Errors
@@ -49,7 +54,7 @@ pub fn source(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
 }
 
 /// Reads an address: a number, or a name of one of the types.
-fn address<'a>(types: impl Iterator<Item = &'a AddressType>, text: &str, form: &str) -> Result<i64, Refusal> {
+pub fn address<'a>(types: impl Iterator<Item = &'a AddressType>, text: &str, form: &str) -> Result<i64, Refusal> {
     let whole = Rational::parse(text).and_then(Rational::to_integer).and_then(|number| i64::try_from(number).ok());
     if let Some(number) = whole {
         return Ok(number);
@@ -250,7 +255,7 @@ fn made(
     let id = identifier(protocol, message, layout, mode, target, source)?;
     let mut data = blank_data(layout);
     let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
-    put_signals(protocol, message, (layout, length), signals, model, &mut data)?;
+    put_signals(protocol, message, (layout, length), signals, (model, Limits::Range(model)), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
     decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
     Ok(frame)
@@ -325,7 +330,7 @@ fn identifier(
     Ok(id)
 }
 
-fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64>) -> Result<u32, Refusal> {
+pub fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64>) -> Result<u32, Refusal> {
     let number = number.unwrap_or(address_type.first);
     let raw = u32::try_from(address_type.raw(number)).ok();
     let documented = raw.filter(|_| address_type.has(number));
@@ -342,12 +347,12 @@ fn raw_address(message: &Message, address_type: &AddressType, number: Option<i64
     })
 }
 
-fn put_signals(
+pub fn put_signals(
     protocol: &Protocol,
     message: &Message,
     (layout, length): (&FrameLayout, usize),
     given: &[(String, String)],
-    model: Option<ModelId>,
+    (model, limits): (Option<ModelId>, Limits),
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
     let carried: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| signal).collect();
@@ -366,7 +371,7 @@ fn put_signals(
                     .ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?,
             ),
         };
-        signal.place.put(data, raw_of(protocol, message, signal, &input, Limits::Range(model))?);
+        signal.place.put(data, raw_of(protocol, message, signal, &input, limits)?);
     }
     Ok(())
 }
