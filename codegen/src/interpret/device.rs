@@ -59,8 +59,8 @@ pub fn module(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
 ///
 /// # Errors
 ///
-/// Refuses values that do not fit, addresses that the document does not name, and what is not clear: a kind of frame,
-/// an access, an addressing mode.
+/// Refuses values that do not fit, and addresses that the document does not name. It also refuses to choose among
+/// kinds of frames, accesses and addressing modes.
 pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, sent.message)?;
     let layout = layout(protocol, message, sent)?;
