@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Unrecognised};
+use canspec_codegen::number::Rational;
 use serde::Serialize;
 use serde_json::value::RawValue;
 
@@ -40,6 +41,15 @@ const MOST_REASONS: usize = 5;
 struct Span {
     first: (f64, String),
     last: (f64, String),
+}
+
+impl Span {
+    /// Returns how long it is, with the digits that the stamps have.
+    fn seconds(&self) -> f64 {
+        let [first, last] = [&self.first, &self.last].map(|(_, text)| Rational::parse(text));
+        let exact = first.zip(last).and_then(|(first, last)| last.minus(first));
+        exact.map_or_else(|| self.last.0 - self.first.0, Rational::to_f64)
+    }
 }
 
 /// How many frames there were, and the line of the first.
@@ -127,7 +137,7 @@ impl Summary {
     }
 
     fn seconds(&self) -> Option<f64> {
-        self.span.as_ref().map(|span| span.last.0 - span.first.0)
+        self.span.as_ref().map(Span::seconds)
     }
 
     /// Returns how many frames a second that is, if the log has a duration.
@@ -260,5 +270,18 @@ impl Reasons {
         let more = if self.has_more { "; ..." } else { "" };
         let text = self.texts.join("; ") + more;
         text.split(' ').map(str::to_owned).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_duration_has_the_digits_of_the_stamps() {
+        let at = |text: &str| (text.parse().expect("a number"), text.to_owned());
+        let seconds = |first, last| Span { first: at(first), last: at(last) }.seconds().to_string();
+        assert_eq!(seconds("1700000000.000001", "1700000006.399080"), "6.399079");
+        assert_eq!(seconds("1700000000", "1.7e9"), "0");
     }
 }
