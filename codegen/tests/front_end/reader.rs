@@ -67,7 +67,7 @@ fn values_of_the_wrong_kind_are_all_reported() {
     title: {a: b}
     examples:
       - text
-      - {reply: [1], notes: none, means: {a: [{b: c}]}}
+      - {reply: [1], notes: none, means: {a: b}}
     value: [1]
 bit_rates: [1, [2], {a: b}]
 types: {a: {type: {b: c}, erratum: [[x]]}}
@@ -84,7 +84,6 @@ header: []
             "mini.yaml:15:9: error[wrong_kind]: expected a map for an item of `messages.one.examples`, found the text `text`",
             "mini.yaml:16:10: error[wrong_kind]: expected a text for `reply`, found a list",
             "mini.yaml:16:29: error[wrong_kind]: expected a list for `notes`, found the text `none`",
-            "mini.yaml:16:47: error[wrong_kind]: expected a text for an item of `messages.one.examples[1].means.a`, found a map",
             "mini.yaml:17:5: error[wrong_kind]: expected a map for `value`, found a list",
             "mini.yaml:18:16: error[wrong_kind]: expected a text for an item of `bit_rates`, found a list",
             "mini.yaml:18:21: error[wrong_kind]: expected a text for an item of `bit_rates`, found a map",

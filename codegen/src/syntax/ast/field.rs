@@ -154,8 +154,8 @@ keys! {
     /// `Wh`, `Ω`, `Hz`, `°C`, `K`, `Pa`, `%`, `s`, `ms`, `min`, `h`, `rpm` and `m`.
     Unit "unit": unit: Option<String>, inherited;
     /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`. The unit
-    /// may follow, also with a prefix: `0.2..0.75 kV`. If absent, all that the bits hold is allowed. An address type has it, with the addresses
-    /// that the document names, `0x00..0x3B`, or else `values`.
+    /// may follow, also with a prefix: `0.2..0.75 kV`. If absent, all that the bits hold is allowed. An
+    /// address type has it, with the addresses that the document names, `0x00..0x3B`, or else `values`.
     Range "range": range: Option<String>, inherited;
     /// Names of raw values, before scale and offset: `{0: standby, 1: running}`; none if absent.
     /// Beside `unit`, `scale`, `offset` or `range` these are special values, and lie outside the

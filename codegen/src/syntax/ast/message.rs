@@ -74,7 +74,8 @@ pub struct Message {
 #[serde(deny_unknown_fields)]
 pub struct Example {
     /// A frame to a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` if the
-    /// document prints no data. `0x000302F0 00 00` and `000302F0: 00 00` are read, too. An example has one of `request`, `reply` and `report`.
+    /// document prints no data. `0x000302F0 00 00` and `000302F0: 00 00` are read, too. An example
+    /// has one of `request`, `reply` and `report`.
     pub request: Option<String>,
     /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` if the document prints
     /// no data.
@@ -87,8 +88,8 @@ pub struct Example {
     /// `foreign` or `unknown_message`.
     pub message: Option<String>,
     /// Values of signals in the frame, each with its unit: `{voltage: 500 V, alarms: [fan_fault]}`,
-    /// or `500 V` if there is only one signal. `~51.4 V` is a rounded
-    /// number. Absent if there are no signals or no data.
+    /// or `500 V` if there is only one signal. `~51.4 V` is a rounded number. Absent if there are no
+    /// signals or no data.
     pub means: Option<Means>,
     /// Device model that the frame comes from or goes to: `SM_750`. If absent, it is the first
     /// model that has the message, or none if every model has it.
