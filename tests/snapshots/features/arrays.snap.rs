@@ -312,16 +312,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new(
-        "Voltages and groups of cells",
-        &[("command", 0x12)],
-        &[&Cells::VOLTAGE_0, &Cells::GROUP_0, &Cells::VOLTAGE_1, &Cells::GROUP_1, &Cells::VOLTAGE_2, &Cells::GROUP_2],
-        &[&Cells::REPORT],
-    ),
-    Entry::new(
-        "state",
-        &[("command", 0x13)],
-        &[&State::CURRENT_1, &State::VALVE_1, &State::VALVE_2, &State::VALVE_3, &State::VALVE_4, &State::CURRENT_2],
-        &[&State::REPORT],
-    ),
+    Entry::of::<Cells>("Voltages and groups of cells", &[("command", 0x12)], &[&Cells::REPORT]),
+    Entry::of::<State>("state", &[("command", 0x13)], &[&State::REPORT]),
 ];

@@ -248,6 +248,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("delivered", &[("number", 0x01)], &[&Delivered::VOLTAGE], &[&Delivered::CHARGER_CYCLE]),
-    Entry::new("demanded", &[("number", 0x01)], &[&Demanded::VOLTAGE], &[&Demanded::VEHICLE_CYCLE]),
+    Entry::of::<Delivered>("delivered", &[("number", 0x01)], &[&Delivered::CHARGER_CYCLE]),
+    Entry::of::<Demanded>("demanded", &[("number", 0x01)], &[&Demanded::VEHICLE_CYCLE]),
 ];

@@ -244,18 +244,4 @@ impl Protocol for Message {
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[Entry::new(
-    "Alarms and warnings",
-    &[],
-    &[
-        &State::ALARMS_LEVEL,
-        &State::ALARMS_PACK,
-        &State::ALARMS_CELL_1,
-        &State::ALARMS_CELL_2,
-        &State::WARNINGS_PACK,
-        &State::WARNINGS_CELL_1,
-        &State::WARNINGS_CELL_2,
-        &State::WARNINGS_LEVEL,
-    ],
-    &[&State::REPORT],
-)];
+pub const MESSAGES: &[Entry<Message>] = &[Entry::of::<State>("Alarms and warnings", &[], &[&State::REPORT])];

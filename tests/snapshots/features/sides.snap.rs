@@ -255,6 +255,6 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("state", &[("number", 0x001)], &[&State::VOLTAGE], &[&State::READ]),
-    Entry::new("load", &[("number", 0x002)], &[&Load::POWER], &[&Load::TELL]),
+    Entry::of::<State>("state", &[("number", 0x001)], &[&State::READ]),
+    Entry::of::<Load>("load", &[("number", 0x002)], &[&Load::TELL]),
 ];

@@ -314,7 +314,7 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::new("wanted", &[("id", 0x305)], &[&Wanted::CURRENT], &[&Wanted::DEMAND]),
-    Entry::new("limits", &[("id", 0x351)], &[&Limits::VOLTAGE], &[&Limits::SUPPLY]),
-    Entry::new("cycles", &[], &[&Cycles::COUNT], &[&Cycles::QUERY]),
+    Entry::of::<Wanted>("wanted", &[("id", 0x305)], &[&Wanted::DEMAND]),
+    Entry::of::<Limits>("limits", &[("id", 0x351)], &[&Limits::SUPPLY]),
+    Entry::of::<Cycles>("cycles", &[], &[&Cycles::QUERY]),
 ];
