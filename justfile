@@ -16,7 +16,7 @@ size *words:
 bench:
     cd generated/benches && cargo test --release --quiet && cargo run --release --quiet
 
-# What the command costs for specs of 10 to 4,000 messages.
+# What the command costs for specs of 10 to 10,000 messages.
 growth:
     cargo bench --quiet -p canspec --bench growth
 

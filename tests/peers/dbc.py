@@ -19,7 +19,7 @@ import cantools
 COUNT = 10_000
 UNITS = {"°C": "degC", "Ω": "Ohm"}
 # Nodes of protocols that have none from 0 to 3.
-NODES = {"groups": "256-259", "reports_only": "256-259", "trio": "224-227"}
+NODES = {"groups": "256-259", "named_addresses": "80-81", "reports_only": "256-259", "trio": "224-227"}
 # Why canspec and cantools may differ; anything else is a failure.
 CAUSES = {
     "address": "a mask knows no ranges, so an address beyond those of the document may be found nowhere",
