@@ -151,7 +151,10 @@ class Completion(unittest.TestCase):
             (ACCESS, "  read: {answers: {point_to_point: ¦}}", answers),
             (MESSAGE, "  current: {answers: {point_to_point: ¦}}", answers),
             (MESSAGE, "  currents: {in: [¦]}", {"request", "reply"}),
-            (MESSAGE, "  current: {examples: [{origin: ¦}]}", {"ours"}),
+            (ACCESS, "  read: {from: ¦}", {"module", "controller"}),
+            (TYPE, "  current: {absent: ¦}", {"ones", "none"}),
+            (MESSAGE, "  current: {reserved: {expect: ¦}}", {"sent", "any"}),
+            (MESSAGE, "  current: {examples: [{origin: ¦}]}", {"ours", "captured"}),
             (ERRATUM, "  T0: {kind: ¦}", {"vendor", "translation", "ocr", "unclear", "gap", "note"}),
         ]:
             self.assertEqual(self.offered(line, written), words, written)
