@@ -320,6 +320,16 @@ fn a_frame_takes_other_values_but_not_another_message() {
 }
 
 #[test]
+fn a_request_built_anew_keeps_to_limits_and_a_reply_does_not() {
+    let hot = Message::Heat(Heat { power_w: 2010.0 });
+    let request = decode(&frame(0x0107_03F0, [1, 0, 0x00, 0x96])).expect("a known frame");
+    assert!(matches!(request.with_content(hot).encode(), Err(Error::Limits { .. })));
+    let reply = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
+    // 2010 W are 201 steps of 10 W.
+    assert_eq!(reply.with_content(hot).encode().expect("a legal reply").to_string(), "0107F003#02F000C9");
+}
+
+#[test]
 fn what_a_frame_says_can_be_written_without_knowing_the_message() {
     const KNOWN: &[StatusBit] = &[StatusBit::fault(0, "fan_fault", "Fan"), StatusBit::new(7, "cold", "Cold")];
     let reading = |unit, meaning| {

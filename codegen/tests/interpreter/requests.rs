@@ -1,7 +1,7 @@
 //! Requests by name, with values as a person types them.
 
-use canspec_codegen::interpret::{Target, Targets, requests, source, targets};
-use canspec_codegen::model::Protocol;
+use canspec_codegen::interpret::{Sent, Target, Targets, requests, sent, source, targets};
+use canspec_codegen::model::{Kind, Protocol};
 
 use super::{WIDE, feature, model, notes, printed, protocol, requested, written};
 
@@ -335,4 +335,27 @@ fn what_is_left_out_of_a_long_enough_request_is_sent_as_all_ones() {
     assert_eq!(send(&given), Ok("121#FFFF7F0301".to_owned()));
     assert_eq!(send(&[given[0], given[1], ("day", "90")]), Ok("121#FFFF7F03015A".to_owned()));
     assert!(send(&given[..1]).is_err(), "`counter` has `absent: none`");
+}
+
+#[test]
+fn named_values_without_one_that_is_absent_are_needed() {
+    let refused = requested(&feature("named_values"), None, "switch", "heater:3", &[("power", "off")]);
+    assert_eq!(refused.expect_err("it lacks a value").to_string(), "switch: the signal `lamp` is missing");
+}
+
+#[test]
+fn a_reply_of_a_module_is_the_printed_frame_and_says_that_all_is_well() {
+    let mxr = protocol("specs/mxr.yaml");
+    let reply = |kind| Sent { kind, access: None, message: "output_voltage", to: None, source: Some(1) };
+    let signals = [("value".to_owned(), "700 V".to_owned())];
+    let made = sent(&mxr, reply(Some(Kind::Reply)), &signals).expect("a reply of module 1");
+    assert_eq!(printed(&made), "060F8008#41F00001442F0000");
+    let is_of_module = |kind| reply(kind).is_of_module(&mxr).ok();
+    assert_eq!(
+        [Some(Kind::Reply), Some(Kind::Request), None].map(is_of_module),
+        [Some(true), Some(false), Some(false)]
+    );
+    let trio = protocol("specs/trio.yaml");
+    let report = Sent { message: "output_values", ..reply(None) };
+    assert_eq!(report.is_of_module(&trio).ok(), Some(true));
 }
