@@ -19,9 +19,9 @@ use crate::protocols::{self, Several};
 
 /// Make a request, a report or a reply, or turn decoded lines back into frames.
 ///
-/// Name the message, after its access if the message has several. Set signals as NAME=VALUE, with a unit or without.
-/// A message that modules only report becomes a report. For a reply, say --kind reply. With --from jsonl, the lines that `canspec decode --format jsonl` writes become a log again. Frames
-/// that were not recognised come back unchanged.
+/// Name the message, after its access if the message has several. Set signals as NAME=VALUE, with a unit or without. A
+/// message that modules only report becomes a report. For a reply, say --kind reply. With --from jsonl, the lines that
+/// `canspec decode --format jsonl` writes become a log again. Frames that were not recognised come back unchanged.
 #[derive(Args)]
 #[command(
     verbatim_doc_comment,
