@@ -6,7 +6,7 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::Resolver;
-use super::signals::Leaves;
+use super::fields::Leaves;
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Array, ArrayId, Doc, Element, Signal, SignalId, Table};

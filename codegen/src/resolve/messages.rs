@@ -2,8 +2,8 @@
 
 use super::Resolver;
 use super::access::{Modes, Times, pattern_of};
+use super::fields::Leaves;
 use super::sets::distinct;
-use super::signals::Leaves;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{

@@ -103,3 +103,16 @@ fn a_message_of_very_many_fields_is_refused() {
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].ends_with("`one` comes to more than 256 fields"), "{}", found[0]);
 }
+
+#[test]
+fn an_error_around_deeply_nested_fields_lets_examples_name_them() {
+    let inner = lines(25, |level| format!("a{level}: {{bits: 0, fields: {{"));
+    let fields = format!("{inner}last: {{bits: 0}}{}", "}}".repeat(25));
+    let message = format!(
+        "messages: {{one: {{access: [read], fields: {{first: {{bytes: 0..99, fields: {{{fields}}}}}}}, \
+         examples: [{{request: 01C, means: {{a24: 1, last: 1, a0_last: 1}}}}]}}}}\n"
+    );
+    let found = compile(source(&format!("{WHOLE}{message}"))).diagnostics.concise();
+    let names: Vec<_> = found.lines().filter(|line| line.contains("there is no signal")).collect();
+    assert_eq!(names, ["mini.yaml:8:785: error[name]: there is no signal `a0_last`"], "{found}");
+}

@@ -1,0 +1,285 @@
+//! Goes through the fields of a message: takes words, groups and packed values apart, and makes
+//! signals and constants of the rest.
+
+use canspec_runtime::Place;
+
+use super::Resolver;
+use super::arrays::Row;
+use super::keys::{Role, Site};
+use super::texts::{self, remarks};
+use super::types::Merged;
+use crate::diagnostic::Diagnostic;
+use crate::model::{Array, ArrayId, Doc, Encoding, Kind, PartId, Signal, Table};
+use crate::resolve::rules;
+use crate::syntax::ast::{self, Field, Key};
+use crate::syntax::tree::Path;
+
+/// Largest number of fields of a message, counting those of words, packed values and their types.
+const FIELD_LIMIT: usize = 256;
+
+/// The result of resolving the fields of a message.
+#[derive(Default)]
+pub struct Leaves {
+    pub signals: Vec<Signal>,
+    /// Arrays without their elements, which are signals.
+    pub arrays: Table<ArrayId, Array>,
+    /// Constant fields of the payload and their values.
+    pub constants: Vec<(Signal, u64)>,
+    /// Constants that a reply shows because of the fields, each with its place in the spec.
+    pub replies: Vec<(Path, ast::Pattern)>,
+    /// Names of fields with an error of their own.
+    pub given_up: Vec<String>,
+}
+
+impl Leaves {
+    /// Returns the names of all fields, also of those with an error.
+    pub fn names(self) -> impl Iterator<Item = String> {
+        let constants = self.constants.into_iter().map(|(signal, _)| signal);
+        self.signals.into_iter().chain(constants).map(|signal| signal.name).chain(self.given_up)
+    }
+}
+
+/// What is around a field.
+#[derive(Clone, Copy)]
+struct Outer<'a> {
+    site: Site,
+    /// The word whose bits the field's `bits` count.
+    word: Option<Place>,
+    doc: &'a Doc,
+    /// Name of the message, for types without a name of their own.
+    owner: &'a str,
+    /// Places of the fields around it, from the outermost on.
+    around: &'a [Path],
+    /// The array whose elements the fields are parts of.
+    row: Row,
+    /// The group of fields that they belong to.
+    group: Group<'a>,
+}
+
+impl<'a> Outer<'a> {
+    /// Returns what is around the fields of a message.
+    fn of_message(doc: &'a Doc, owner: &'a str) -> Self {
+        Self { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE, group: Group::NONE }
+    }
+
+    /// Returns the name of a field as the spec writes it, without that of its group.
+    fn own_name<'n>(&self, name: &'n str) -> &'n str {
+        name.strip_prefix(self.group.prefix).unwrap_or(name)
+    }
+}
+
+/// Fields of a type, which are used under the name of the field that has the type.
+#[derive(Clone, Copy)]
+struct Group<'a> {
+    /// The type; empty outside of groups.
+    name: &'a str,
+    /// What the names of its signals begin with.
+    prefix: &'a str,
+}
+
+impl Group<'_> {
+    /// Fields that belong to no group.
+    const NONE: Self = Self { name: "", prefix: "" };
+}
+
+impl Resolver<'_> {
+    /// Resolves the fields of the header.
+    pub fn header_leaves(&mut self, path: &Path, fields: &ast::Map<Field>) -> Leaves {
+        let doc = Doc::default();
+        let outer = Outer { site: Site::Header, ..Outer::of_message(&doc, "header") };
+        self.free_of_constants(path, fields, outer)
+    }
+
+    fn free_of_constants(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.leaves(path, fields, outer, &mut leaves);
+        for (constant, _) in &leaves.constants {
+            let message = format!("`{}` cannot be constant here", constant.name);
+            let help = "write constants of the header in `match` or in the access; parts of a text have none";
+            self.error_with_help(&rules::TYPE, constant.doc.path.key("const").at_key(), message, help);
+        }
+        leaves
+    }
+
+    /// Resolves the fields of a message; signals come by first byte, then as written.
+    pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.tables.fields = 0;
+        self.leaves(path, fields, Outer::of_message(doc, owner), &mut leaves);
+        leaves.signals.sort_by_key(Signal::start);
+        leaves
+    }
+
+    fn leaves(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer, leaves: &mut Leaves) {
+        for (name, field) in fields {
+            self.leaf(&path.key(name), &format!("{}{name}", outer.group.prefix), field, outer, leaves);
+        }
+    }
+
+    /// Resolves the only field of a message.
+    pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.tables.fields = 0;
+        self.leaf(path, "value", field, Outer::of_message(doc, owner), &mut leaves);
+        leaves.signals.sort_by_key(Signal::start);
+        leaves
+    }
+
+    fn leaf(&mut self, path: &Path, name: &str, field: &Field, outer: Outer, leaves: &mut Leaves) {
+        if self.count_field(path, outer.owner).is_none() {
+            return give_up(name, field, outer.group.prefix, leaves);
+        }
+        self.check_name(path, outer.own_name(name));
+        let Some(merged) = self.merged(path, field) else { return give_up(name, field, outer.group.prefix, leaves) };
+        let fields = merged.path(self.diagnostics, Key::Fields);
+        let prefix = format!("{name}_");
+        // Patterns name the fields of the header, and `value` is no name that the spec has written.
+        let is_group = outer.site == Site::Message && name != "value";
+        let kind = merged.type_at(&fields).filter(|_| is_group);
+        let group = kind.map_or(outer.group, |kind| Group { name: kind, prefix: &prefix });
+        if self.read_leaf(path, name, &merged, (outer, group), leaves).is_none() {
+            give_up(name, &merged.field, group.prefix, leaves);
+        }
+    }
+
+    /// Resolves a field, a word or a packed value. `group` is that of the fields inside. It returns
+    /// nothing if the field must be given up.
+    fn read_leaf(
+        &mut self,
+        path: &Path,
+        name: &str,
+        merged: &Merged,
+        (outer, group): (Outer, Group),
+        leaves: &mut Leaves,
+    ) -> Option<()> {
+        let fields = merged.path(self.diagnostics, Key::Fields);
+        self.check_not_around(path, outer.own_name(name), &fields, outer.around)?;
+        let around = [outer.around, std::slice::from_ref(&fields)].concat();
+        let outer = Outer { around: &around, ..outer };
+        let field = &merged.field;
+        let doc = remarks!(field).doc(path, Some(outer.doc));
+        let doc = Doc { title: texts::text(field.title.as_ref()), ..doc };
+        leaves.replies.push((merged.path(self.diagnostics, Key::Reply), field.reply.clone()));
+        if field.format.is_some() {
+            self.check_keys(merged, Role::of_packed(outer.site));
+            self.check_in_no_array(path, "a packed value", outer.row)?;
+            leaves.signals.push(self.packed(name, merged, doc, outer)?);
+            return Some(());
+        }
+        let place = self.place(path, name, merged, outer.word)?;
+        if field.fields.is_empty() {
+            return self.value(path, name, merged, (place, doc), outer, leaves);
+        }
+        self.check_keys(merged, Role::of_word(outer.site));
+        self.tables.words.push(doc.clone());
+        let row = self.row_in(path, merged, place, outer)?;
+        let inside = Outer { word: Some(place), doc: &doc, row, group, ..outer };
+        self.leaves(&fields, &field.fields, inside, leaves);
+        Some(())
+    }
+
+    /// Resolves a field without fields inside: a signal, an array or a constant.
+    fn value(
+        &mut self,
+        path: &Path,
+        name: &str,
+        merged: &Merged,
+        (place, doc): (Place, Doc),
+        outer: Outer,
+        leaves: &mut Leaves,
+    ) -> Option<()> {
+        // Each use of a group has the same types of named values.
+        let owner = if outer.group.name.is_empty() { outer.owner } else { outer.group.name };
+        let signal = self.signal(outer.own_name(name), merged, place, doc, owner)?;
+        let signal = Signal { name: name.to_owned(), ..signal };
+        let is_sound = self.is_sound(merged);
+        let constant = &merged.field.constant;
+        let role = if constant.is_some() { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) };
+        self.check_keys(merged, role);
+        let Some(text) = constant else {
+            let row = self.row_in(path, merged, place, outer)?;
+            self.add_signal(signal, row, leaves)?;
+            let names_another = self.diagnostics.has_errors_in(&path.key("type"));
+            return (is_sound && !names_another).then_some(());
+        };
+        self.check_in_no_array(path, "a constant", outer.row)?;
+        let value = self.integer(&merged.path(self.diagnostics, Key::Const), text, 0, place.max())?;
+        leaves.constants.push((signal, value));
+        self.is_sound(merged).then_some(())
+    }
+
+    /// Returns the row of elements that a field makes, or is a part of.
+    fn row_in(&mut self, path: &Path, merged: &Merged, place: Place, outer: Outer) -> Option<Row> {
+        if outer.site != Site::Message {
+            return Some(Row::ALONE);
+        }
+        if merged.field.repeat.is_some() {
+            self.check_in_no_array(path, "an array", outer.row)?;
+        }
+        let row = self.row(merged, place, outer.word)?;
+        Some(if row.is_array() { row } else { outer.row })
+    }
+
+    /// Counts a field of a message. It reports the limit only once.
+    fn count_field(&mut self, path: &Path, owner: &str) -> Option<()> {
+        self.tables.fields += 1;
+        if self.tables.fields == FIELD_LIMIT + 1 {
+            let text = format!("`{owner}` comes to more than {FIELD_LIMIT} fields");
+            let help = "a frame has 64 bits; take out fields, or types that bring fields with them";
+            self.error_with_help(&rules::TYPE, path.at_key(), text, help);
+        }
+        (self.tables.fields <= FIELD_LIMIT).then_some(())
+    }
+
+    /// Tests that the field is not inside a type that it takes its own fields from.
+    fn check_not_around(&mut self, path: &Path, name: &str, fields: &Path, around: &[Path]) -> Option<()> {
+        if !around.contains(fields) {
+            return Some(());
+        }
+        let text = format!("`{name}` has a type that brings `{name}` with it");
+        let problem = Diagnostic::error(&rules::TYPE, path.key("type").at_value(), text);
+        let help = "name another type, or write out the fields that you mean";
+        self.diagnostics.push(problem.other(fields.at_key(), "the fields of the type").help(help));
+        None
+    }
+
+    /// Makes one text signal of several parts.
+    fn packed(&mut self, name: &str, merged: &Merged, doc: Doc, outer: Outer) -> Option<Signal> {
+        let fields = merged.path(self.diagnostics, Key::Fields);
+        let inside = Outer { site: Site::Packed, doc: &doc, group: Group::NONE, ..outer };
+        let leaves = self.free_of_constants(&fields, &merged.field.fields.clone(), inside);
+        let parts: Table<PartId, Signal> = leaves.given_up.is_empty().then(|| leaves.signals.into_iter().collect())?;
+        let format = merged.field.format.clone()?;
+        let at = merged.path(self.diagnostics, Key::Format);
+        let (pieces, place) = self.format(&at, &format, &parts)?;
+        let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, Key::In), &merged.field.kinds);
+        let (range_path, default_path) = (doc.path.key("range"), doc.path.key("default"));
+        Some(Signal {
+            name: name.to_owned(),
+            doc,
+            types: merged.types.clone(),
+            place,
+            encoding: Encoding::Packed { pieces, parts },
+            unit: None,
+            range: None,
+            range_path,
+            specials: Vec::new(),
+            has_absent: false,
+            default: None,
+            default_path,
+            model_ranges: Vec::new(),
+            model_defaults: Vec::new(),
+            kinds,
+            element: None,
+        })
+    }
+}
+
+/// Lets examples name a field, or the fields inside it, although it has no signals. `prefix` is that of
+/// the fields inside.
+fn give_up(name: &str, field: &Field, prefix: &str, leaves: &mut Leaves) {
+    leaves.given_up.push(name.to_owned());
+    for (inner, field) in &field.fields {
+        give_up(&format!("{prefix}{inner}"), field, prefix, leaves);
+    }
+}
