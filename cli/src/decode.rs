@@ -1,6 +1,7 @@
 //! `canspec decode`.
 
 mod ahead;
+mod assemblies;
 mod choice;
 mod rows;
 mod summary;
@@ -8,7 +9,7 @@ mod summary;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use canspec_codegen::interpret::{self, Decoded, Frame, Unrecognised};
+use canspec_codegen::interpret::{self, Assembled, Decoded, Frame, Taken, Unrecognised};
 use canspec_codegen::model::Protocol;
 use clap::{Args, ValueEnum};
 
@@ -16,12 +17,13 @@ use crate::capture::{self, Capture};
 use crate::channels::{Channels, Others};
 use crate::failure::{Failure, Finish, shown, tell};
 use crate::input::{Input, Line};
-use crate::line::{self, Outcome};
+use crate::line::{self, Outcome, Whole};
 use crate::log::{Entry, Reader};
 use crate::model::{Device, Model};
 use crate::output::output;
 use crate::protocols::{self, Several};
 use crate::table::Table;
+use assemblies::{Assemblies, Mark};
 use choice::Choice;
 use rows::Rows;
 use summary::Summary;
@@ -44,6 +46,12 @@ pub struct Decode {
     /// A table, a JSON object for each frame, or a row of CSV for each signal.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+    /// Add messages that are longer than a frame, put together; the table shows them in any case.
+    #[arg(long, conflicts_with_all = ["summary", "to"])]
+    assemble: bool,
+    /// Show the frames of such messages in the table, too.
+    #[arg(long, conflicts_with_all = ["summary", "to"])]
+    frames: bool,
     /// Counts and rates in place of the frames.
     #[arg(long, conflicts_with = "to")]
     summary: bool,
@@ -80,13 +88,17 @@ enum Format {
 #[derive(Clone)]
 struct State {
     reader: Reader,
+    /// Long messages, if they are put together.
+    assemblies: Option<Assemblies>,
     printer: Printer,
 }
 
 impl State {
     /// Tests whether the lines to come are surely read and written in the same way.
     fn is_like(&self, other: &Self) -> bool {
-        self.reader.is_like(&other.reader) && self.printer.is_like(&other.printer)
+        self.reader.is_like(&other.reader)
+            && self.assemblies == other.assemblies
+            && self.printer.is_like(&other.printer)
     }
 }
 
@@ -158,7 +170,9 @@ impl Decode {
         let models = self.model.find(&protocols, &settings)?;
         self.choice.check(&protocols)?;
         let devices: Vec<_> = protocols.iter().zip(models).collect();
-        let mut state = State { reader: Reader::default(), printer: self.printer(&protocols)? };
+        let is_table = matches!(self.format, Format::Text) && !self.summary;
+        let assemblies = (self.assemble || is_table).then(Assemblies::default);
+        let mut state = State { reader: Reader::default(), assemblies, printer: self.printer(&protocols)? };
         let mut out = BufWriter::with_capacity(BUFFER, output()?);
         let open = if self.summary { Input::open_whole } else { Input::open };
         let input = open(self.file.as_deref())?;
@@ -170,6 +184,9 @@ impl Decode {
         } else {
             input.each(&mut out, |out, line| self.line(&devices, &mut state, &mut counts, out, line))?
         };
+        for (protocol, channel, whole) in state.assemblies.iter_mut().flat_map(|known| known.finish(&devices)) {
+            self.show_whole(&mut state.printer, &mut out, protocol, channel.as_deref(), whole)?;
+        }
         state.printer.end(&mut out)?;
         out.flush()?;
         self.suggest(&counts, finish);
@@ -194,7 +211,20 @@ impl Decode {
         let decoded = decode(devices, &entry.frame);
         counts.frames += 1;
         counts.recognised += u64::from(decoded.as_ref().is_some_and(|(_, decoded)| decoded.is_ok()));
-        Ok(decoded.map_or(Ok(()), |decoded| self.show(&mut state.printer, out, line.number, &entry, decoded)))
+        let Some((device, decoded)) = decoded else { return Ok(Ok(())) };
+        let taken = match (&mut state.assemblies, &decoded) {
+            (Some(assemblies), Ok(decoded)) => assemblies.take(device, line.number, &entry, decoded),
+            _ => Taken { is_part: false, ended: Vec::new() },
+        };
+        let is_hidden = taken.is_part && matches!(self.format, Format::Text) && !self.frames;
+        let show = || {
+            if !is_hidden {
+                self.show(&mut state.printer, out, line.number, &entry, (device.0, decoded))?;
+            }
+            let mut ended = taken.ended.into_iter();
+            ended.try_for_each(|whole| self.show_whole(&mut state.printer, out, device.0, entry.channel, whole))
+        };
+        Ok(show())
     }
 
     /// Says why nothing is shown: no frame is of a chosen channel, or there is none. A summary counts none itself.
@@ -233,7 +263,7 @@ impl Decode {
         out: &mut impl Write,
         line: usize,
         entry: &Entry<'_>,
-        (protocol, mut decoded): Answer<'_>,
+        (protocol, mut decoded): (&Protocol, Result<Decoded, Unrecognised>),
     ) -> io::Result<()> {
         let is_chosen = match &mut decoded {
             Ok(decoded) => self.choice.keep(protocol, decoded),
@@ -244,7 +274,28 @@ impl Decode {
         }
         let Entry { time, channel, frame, .. } = entry;
         let (time, channel, decoded) = (time.as_deref(), *channel, &decoded);
-        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded })
+        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: None })
+    }
+
+    fn show_whole(
+        &self,
+        printer: &mut Printer,
+        out: &mut impl Write,
+        protocol: &Protocol,
+        channel: Option<&str>,
+        assembled: Assembled<Mark>,
+    ) -> io::Result<()> {
+        let Assembled { marks, frame, mut decoded, data, reserved, incomplete } = assembled;
+        if !self.choice.keep(protocol, &mut decoded) {
+            return Ok(());
+        }
+        let lines: Vec<_> = marks.iter().map(|mark| mark.line).collect();
+        let last = marks.last();
+        let whole =
+            Whole { lines: &lines, data: data.as_deref(), reserved: &reserved, incomplete: incomplete.as_deref() };
+        let (line, time) = (last.map_or(0, |mark| mark.line), last.and_then(|mark| mark.time.as_deref()));
+        let (frame, decoded) = (&frame, &Ok(decoded));
+        printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: Some(whole) })
     }
 }
 
@@ -283,7 +334,7 @@ impl Printer {
 }
 
 /// What a protocol says of a frame.
-type Answer<'a> = (&'a Protocol, Result<Decoded, Unrecognised>);
+type Answer<'a> = (Device<'a>, Result<Decoded, Unrecognised>);
 
 /// Decodes by the first protocol that recognises the frame. If none does, it is the one whose tests the frame passes
 /// furthest.
@@ -291,11 +342,11 @@ fn decode<'a>(devices: &[Device<'a>], frame: &Frame) -> Option<Answer<'a>> {
     let mut nearest: Option<(u8, Answer<'a>)> = None;
     for &(protocol, model) in devices {
         match interpret::decode(protocol, model, frame) {
-            Ok(decoded) => return Some((protocol, Ok(decoded))),
+            Ok(decoded) => return Some(((protocol, model), Ok(decoded))),
             Err(unrecognised) => {
                 let passed = unrecognised.problem as u8;
                 if nearest.as_ref().is_none_or(|(known, _)| passed > *known) {
-                    nearest = Some((passed, (protocol, Err(unrecognised))));
+                    nearest = Some((passed, ((protocol, model), Err(unrecognised))));
                 }
             }
         }

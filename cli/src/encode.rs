@@ -2,6 +2,7 @@
 
 mod access;
 
+use std::collections::HashSet;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
@@ -116,7 +117,7 @@ impl Encode {
         let refused = |refusal: Refusal| Failure::Call(refusal.to_string());
         let sent = Sent { kind: self.kind.map(Purpose::kind), access, message, to: None, source: None };
         if sent.is_of_module(protocol).map_err(refused)? {
-            return write(&[self.sent(protocol, sent, &signals).map_err(refused)?]);
+            return write(&self.sent(protocol, model, sent, &signals).map_err(refused)?);
         }
         if access.is_none() {
             access::refuse_several(message, &interpret::accesses(protocol, message, &signals).map_err(refused)?)?;
@@ -127,11 +128,17 @@ impl Encode {
         write(&frames.map_err(refused)?)
     }
 
-    /// Returns the frame that a module sends.
-    fn sent(&self, protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Frame, Refusal> {
+    /// Returns the frames that a module sends.
+    fn sent(
+        &self,
+        protocol: &Protocol,
+        model: Option<ModelId>,
+        sent: Sent<'_>,
+        signals: &[(String, String)],
+    ) -> Result<Vec<Frame>, Refusal> {
         let to = self.to.as_ref().map(|text| Target::parse(protocol, text)).transpose()?;
         let source = self.source.as_ref().map(|text| interpret::module(protocol, text)).transpose()?;
-        interpret::sent(protocol, Sent { to: to.as_ref(), source, ..sent }, signals)
+        interpret::sent(protocol, model, Sent { to: to.as_ref(), source, ..sent }, signals)
     }
 }
 
@@ -182,32 +189,66 @@ fn pairs(words: &[String]) -> Result<Vec<(String, String)>, Failure> {
     Ok(words.iter().filter_map(pair).collect())
 }
 
-/// Turns a decoded line into one of a log.
-pub fn line(devices: &[Device<'_>], text: &str) -> Result<Option<String>, String> {
-    let Some(Line { time, channel, content }) = Line::read(text)? else { return Ok(None) };
-    let frame = match content {
-        Content::Message(message) => encoded(devices, &message)?,
-        Content::Frame(frame) => frame,
-    };
-    let mut out = Vec::new();
-    let time = time.as_ref().map(|time| time.get());
-    log::write(&mut out, time, channel.as_deref(), &frame).map_err(|error| error.to_string())?;
-    String::from_utf8(out).map(Some).map_err(|error| error.to_string())
+/// Turns decoded lines into those of a log.
+#[derive(Default)]
+pub struct Encoder {
+    /// Messages whose frames have lines of their own, by protocol. They are not made once more of the whole message.
+    by_frames: HashSet<(Option<String>, String)>,
+}
+
+impl Encoder {
+    /// Turns a decoded line into lines of a log.
+    ///
+    /// # Errors
+    ///
+    /// Says why the line cannot be read, or its message cannot be sent.
+    pub fn line(&mut self, devices: &[Device<'_>], text: &str) -> Result<String, String> {
+        let Some(Line { time, channel, content }) = Line::read(text)? else { return Ok(String::new()) };
+        let frames = match content {
+            Content::Message(message) => vec![self.frame(devices, &message)?],
+            Content::Long(message) => self.frames(devices, &message)?,
+            Content::Frame(frame) => vec![frame],
+        };
+        let mut out = Vec::new();
+        let time = time.as_ref().map(|time| time.get());
+        for frame in &frames {
+            log::write(&mut out, time, channel.as_deref(), frame).map_err(|error| error.to_string())?;
+        }
+        String::from_utf8(out).map_err(|error| error.to_string())
+    }
+
+    fn frame(&mut self, devices: &[Device<'_>], message: &Message) -> Result<Frame, String> {
+        let (protocol, model) = device(devices, message.protocol.as_deref())?;
+        check_units(protocol.messages.iter(), message)?;
+        let frame = interpret::encode(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())?;
+        if !protocol.long_messages.is_empty() {
+            self.by_frames.insert((message.protocol.clone(), message.frame.message.clone()));
+        }
+        Ok(frame)
+    }
+
+    /// Makes the frames of a long message, unless they have lines of their own.
+    fn frames(&self, devices: &[Device<'_>], message: &Message) -> Result<Vec<Frame>, String> {
+        if self.by_frames.contains(&(message.protocol.clone(), message.frame.message.clone())) {
+            return Ok(Vec::new());
+        }
+        if let Some(missing) = &message.incomplete {
+            return Err(format!("an incomplete message is not made again: {missing}"));
+        }
+        let (protocol, model) = device(devices, message.protocol.as_deref())?;
+        check_units(protocol.long_messages.iter().map(|long| &long.content), message)?;
+        interpret::encode_long(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())
+    }
 }
 
 /// Turns decoded lines into a log.
 fn lines(devices: &[Device<'_>], file: Option<&Path>) -> Result<Finish, Failure> {
     let out = BufWriter::new(output()?);
+    let mut encoder = Encoder::default();
     Input::open(file)?.each(out, |out, line| {
-        let made = line.text.and_then(|text| self::line(devices, text))?;
-        Ok(made.map_or(Ok(()), |made| out.write_all(made.as_bytes())))
+        let made = line.text.and_then(|text| encoder.line(devices, text))?;
+        Ok(out.write_all(made.as_bytes()))
     })
-}
-
-fn encoded(devices: &[Device<'_>], message: &Message) -> Result<Frame, String> {
-    let (protocol, model) = device(devices, message.protocol.as_deref())?;
-    check_units(protocol, message)?;
-    interpret::encode(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())
 }
 
 /// Returns the protocol that a line names. A line without a name is of the only protocol.
@@ -224,9 +265,11 @@ fn device<'a>(devices: &[Device<'a>], name: Option<&str>) -> Result<Device<'a>, 
 }
 
 /// Refuses a value whose stated unit is not that of its signal.
-fn check_units(protocol: &Protocol, line: &Message) -> Result<(), String> {
-    let message = protocol.messages.iter().find(|message| message.name == line.frame.message);
-    let Some(message) = message else { return Ok(()) };
+fn check_units<'a>(
+    mut messages: impl Iterator<Item = &'a canspec_codegen::model::Message>,
+    line: &Message,
+) -> Result<(), String> {
+    let Some(message) = messages.find(|message| message.name == line.frame.message) else { return Ok(()) };
     for (name, stated) in &line.units {
         let is_meant = |signal: &&Signal| signal.name == *name || message.field_name(signal) == name;
         let Some(signal) = message.signals.iter().find(is_meant) else { continue };

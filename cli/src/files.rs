@@ -34,7 +34,7 @@ impl Log {
         let Some(entry) = self.0.read(line)? else { return Ok(None) };
         let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
         let decoded = &decode(protocol, None, frame);
-        let outcome = Outcome { line: 1, time, channel, frame, protocol, decoded };
+        let outcome = Outcome { line: 1, time, channel, frame, protocol, decoded, whole: None };
         let (mut json, mut table, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
         let unwritten = |error: std::io::Error| error.to_string();
         line::write(&mut json, &outcome).map_err(unwritten)?;
@@ -45,13 +45,13 @@ impl Log {
     }
 }
 
-/// Makes the line of a log from a JSON object. A blank line gives `None`.
+/// Makes the lines of a log from a JSON object. A blank line gives none.
 ///
 /// # Errors
 ///
 /// Says why there is no such frame.
-pub fn encoded(protocol: &Protocol, json: &str) -> Result<Option<String>, String> {
-    encode::line(&[(protocol, None)], json)
+pub fn encoded(protocol: &Protocol, json: &str) -> Result<String, String> {
+    encode::Encoder::default().line(&[(protocol, None)], json)
 }
 
 /// Makes a spec of a DBC.

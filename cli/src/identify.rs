@@ -151,7 +151,7 @@ impl Candidate {
 /// Tests whether a frame with such a note speaks against its protocol.
 fn contradicts(rule: NoteRule) -> bool {
     match rule {
-        NoteRule::ErrorCode | NoteRule::ModelDependent => false,
+        NoteRule::ErrorCode | NoteRule::ModelDependent | NoteRule::Count => false,
         NoteRule::ReservedBit
         | NoteRule::UnknownValue
         | NoteRule::UnknownBit

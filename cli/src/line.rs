@@ -4,7 +4,7 @@ mod input;
 mod output;
 
 pub use input::{Content, Line, Message};
-pub use output::{Outcome, addresses, bit_names, set_bits, write};
+pub use output::{Outcome, Whole, addresses, bit_names, set_bits, write};
 
 use serde::{Serialize, Serializer};
 

@@ -7,7 +7,8 @@ use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
 use canspec_codegen::model::{
-    DeviceModel, Doc, Document, Example, Kind, Message, MessageId, Protocol, SelectorId, Side, Signal, StatusBit,
+    DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, Protocol, SelectorId, Side, Signal,
+    StatusBit,
 };
 use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
@@ -84,6 +85,8 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     let mut rows = Vec::new();
     for message in &protocol.messages {
         rows.push(message_row(protocol, &selectors, message));
+        // What the parts say together tells more than what each frame says.
+        let message = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
         let signals = message.signals.iter().filter(|_| value(message).is_none());
         let fields = signals.filter(|signal| signal.element.is_none_or(|element| element.index == 0));
         rows.extend(fields.map(|signal| signal_row(protocol, selectors.len(), message, signal)));
@@ -173,7 +176,8 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     cells.push(words(message.doc.section.as_ref()));
     let models = message.models.iter().map(|model| protocol.models[*model].name.as_str()).collect::<Vec<_>>();
     let models = if models.is_empty() { String::new() } else { format!(" (only {})", models.join(", ")) };
-    let title = format!("{}{models}", title(&message.doc).unwrap_or_default());
+    let parts = protocol.long_message(message).map_or(String::new(), |(_, long)| parts(protocol, long));
+    let title = format!("{}{models}{parts}", title(&message.doc).unwrap_or_default());
     let title = Some(title.trim_start()).filter(|title| !title.is_empty());
     match value(message) {
         Some(signal) => Row { cells, last: titled(title, meaning(protocol, signal)), separator: ", " },
@@ -182,6 +186,15 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
         }
         None => Row { cells, last: split(title.unwrap_or_default()), separator: " " },
     }
+}
+
+/// Says in how many parts a long message travels, and how they are numbered.
+fn parts(protocol: &Protocol, long: &LongMessage) -> String {
+    let of_models = long.parts.model_firsts.iter().map(|own| format!("{} ({})", own.value, protocol[own.model].name));
+    let firsts: Vec<_> = long.parts.first.map(|first| first.to_string()).into_iter().chain(of_models).collect();
+    let (least, most) = (long.parts_of(long.shortest()), long.parts_of(long.longest()));
+    let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
+    format!(" (in {count} parts of {} bytes, numbered from {})", long.parts.size, firsts.join(" or "))
 }
 
 /// Returns the names of the messages that travel in the frames of a set.

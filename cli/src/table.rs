@@ -177,7 +177,7 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
     match outcome.decoded {
         Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded, room),
         Ok(decoded) => {
-            for (name, field) in fields(&outcome.protocol.messages[decoded.message], decoded) {
+            for (name, field) in fields(decoded.content(outcome.protocol), decoded) {
                 item.clear();
                 item.extend([name, " "]);
                 let may_be_parted = add_field(item, outcome.protocol, &field);
@@ -189,6 +189,9 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
                 }
             }
             decoded.notes.iter().for_each(|note| remark(lines, item, note.rule.name(), &note.text, room));
+            if let Some(text) = outcome.whole.as_ref().and_then(|whole| whole.incomplete) {
+                remark(lines, item, "incomplete", text, room);
+            }
         }
         Err(Unrecognised { problem, text, .. }) => {
             let data = log::hexadecimal(&outcome.frame.data);

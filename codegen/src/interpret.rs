@@ -1,24 +1,30 @@
 //! The interpreter decodes and encodes by the model, at run time.
 
 mod arrays;
+mod assembly;
 mod content;
 mod decode;
 mod device;
 mod encode;
+mod long;
 mod request;
 mod value;
 
+pub use assembly::{Assembled, Assembly, Taken};
 pub use decode::decode;
 pub(crate) use decode::failed_tests;
 pub use device::{Sent, module, sent};
-pub use encode::encode;
+pub use encode::{encode, encode_long};
 pub use request::{Target, Targets, accesses, request, requests, source, targets};
 pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
 pub use crate::encoding::{Input, Value, description};
-use crate::model::{AccessId, FieldId, FrameId, Kind, MessageId, NoteRule, SelectorId, Side, SignalId, Table, Travel};
+use crate::model::{
+    AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, NoteRule, Protocol, SelectorId,
+    Side, SignalId, Table, Travel,
+};
 
 /// A frame as it stood on the bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,7 +87,9 @@ pub struct Decoded {
     pub identifier: Table<FieldId, u32>,
     /// Payload selectors and their raw values.
     pub selectors: Vec<(SelectorId, u64)>,
-    /// Values of the signals that the frame carries.
+    /// The long message whose signals these are, if they are not those of a frame.
+    pub long: Option<LongMessageId>,
+    /// Values of the signals.
     pub signals: Vec<Reading>,
     /// Set bits of the data bytes that nothing covers, first byte first.
     pub reserved: [u8; 8],
@@ -92,6 +100,24 @@ pub struct Decoded {
 }
 
 impl Decoded {
+    /// Returns the message that has the signals: that of the frame, or what its parts carry together.
+    pub fn content<'a>(&self, protocol: &'a Protocol) -> &'a Message {
+        self.long.map_or(&protocol[self.message], |long| &protocol[long].content)
+    }
+
+    /// Returns the addresses that the identifier shows, each with its kind.
+    pub fn addresses<'a>(
+        &self,
+        protocol: &'a Protocol,
+        id: u32,
+    ) -> impl Iterator<Item = (AddressTypeId, i64)> + Clone + use<'a> {
+        let is_to_module = protocol[self.frame].is_to_module();
+        let pattern = self.addressing.and_then(|travel| protocol[travel.mode].pattern(is_to_module, travel.who));
+        pattern.into_iter().flat_map(|pattern| &pattern.addresses).map(move |address| {
+            (address.address_type, protocol[address.address_type].number(protocol[address.field].get(id)))
+        })
+    }
+
     /// Tests whether a module reports an error by this frame, for instance a refused request. The
     /// values mean nothing then.
     pub fn is_error_reply(&self) -> bool {

@@ -11,6 +11,7 @@ mod encoding;
 mod example;
 mod id;
 mod identifier;
+mod long;
 mod message;
 mod note;
 mod numeral;
@@ -24,12 +25,13 @@ pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mo
 pub use array::{Array, Element};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
-pub use example::{Example, Failure, Meaning, Misfit, Origin, Said, ValueExample};
+pub use example::{Example, Failure, LongExample, Meaning, Misfit, Origin, Said, ValueExample};
 pub use id::{
-    AccessId, AddressTypeId, ArrayId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, MessageId, ModeId,
-    ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
+    AccessId, AddressTypeId, ArrayId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, LongMessageId,
+    MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
+pub use long::{LongMessage, Parts};
 pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
@@ -77,6 +79,8 @@ pub struct Protocol {
     pub foreign: Vec<Foreign>,
     /// Messages in the order of the spec.
     pub messages: Table<MessageId, Message>,
+    /// What the numbered parts of messages say together, in the order of the messages.
+    pub long_messages: Table<LongMessageId, LongMessage>,
     /// The frames that exist, message by message.
     pub frames: Table<FrameId, FrameLayout>,
     /// How frames are recognised.
@@ -89,6 +93,8 @@ pub struct Protocol {
     pub procedures: Vec<Procedure>,
     /// Examples of whole messages in the order of the spec, then those of the sequences.
     pub examples: Vec<Example>,
+    /// Examples of long messages: all their frames, and what they say together.
+    pub long_examples: Vec<LongExample>,
     /// Examples of types: bytes and their value.
     pub value_examples: Vec<ValueExample>,
     /// What the spec says beside the sequences of examples.
@@ -169,7 +175,7 @@ impl Protocol {
         docs.extend(self.accesses.iter().map(|access| &access.doc));
         docs.extend(self.foreign.iter().map(|foreign| &foreign.doc));
         docs.extend(self.messages.iter().map(|message| &message.doc));
-        docs.extend(self.messages.iter().flat_map(|message| &message.signals).flat_map(Signal::docs));
+        docs.extend(self.contents().flat_map(|message| &message.signals).flat_map(Signal::docs));
         docs.extend(self.models.iter().map(|model| &model.doc));
         docs.extend(self.models.iter().flat_map(|model| &model.types).map(|known| &known.doc));
         docs.extend(self.timing.iter().map(|timing| &timing.doc));
@@ -178,6 +184,7 @@ impl Protocol {
         docs.extend(self.types.iter());
         docs.extend(self.words.iter());
         docs.extend(self.examples.iter().map(|example| &example.doc));
+        docs.extend(self.long_examples.iter().map(|example| &example.doc));
         docs.extend(self.value_examples.iter().map(|example| &example.doc));
         docs
     }

@@ -13,6 +13,7 @@ mod fields;
 mod format;
 mod identifier;
 mod keys;
+mod long;
 mod messages;
 mod patterns;
 mod printed;
@@ -31,7 +32,9 @@ use indexmap::IndexSet;
 
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::Words;
-use crate::model::{self, EnumerationId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table};
+use crate::model::{
+    self, EnumerationId, LongMessageId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table,
+};
 use crate::rule::Rule;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -77,6 +80,8 @@ struct Tables {
     /// Types that a field names.
     used_types: HashSet<String>,
     models: Table<ModelId, model::DeviceModel>,
+    long_messages: Table<LongMessageId, model::LongMessage>,
+    long_examples: Vec<model::LongExample>,
     /// Number of fields in the current message so far.
     fields: usize,
     /// Whether all ones mean that there is no value, unless a field says otherwise.
@@ -104,13 +109,14 @@ impl Resolver<'_> {
         let foreign = self.foreign(&identifier);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
+        let (sequences, types, document) = (self.sequences(), self.type_docs(), self.document());
         self.check_types_used();
         self.check_allowances();
         Some(Protocol {
             name,
             file,
             title: Text::new(&self.spec.title),
-            document: self.document(),
+            document,
             sides,
             bit_rates,
             identifier,
@@ -119,14 +125,16 @@ impl Resolver<'_> {
             accesses,
             foreign,
             messages,
+            long_messages: self.tables.long_messages,
             recognition: Recognition::new(directions, &frames, &self.tables.selectors),
             frames,
             timing,
             procedures,
             examples,
+            long_examples: self.tables.long_examples,
             value_examples,
-            sequences: self.sequences(),
-            types: self.type_docs(),
+            sequences,
+            types,
             errata,
             models: self.tables.models,
             words: self.tables.words,

@@ -49,9 +49,11 @@ impl Summary {
             protocol: protocol.map(|protocol| protocol.name.clone()),
             messages: count(|protocol| protocol.messages.len()),
             selectors: protocol.map(selectors).unwrap_or_default(),
-            signals: count(|protocol| protocol.messages.iter().map(|message| message.signals.len()).sum()),
+            signals: count(|protocol| protocol.contents().map(|message| message.signals.len()).sum()),
             status_bits: count(|protocol| protocol.status_words.iter().map(|word| word.bits.len()).sum()),
-            examples: count(|protocol| protocol.examples.len() + protocol.value_examples.len()),
+            examples: count(|protocol| {
+                protocol.examples.len() + protocol.long_examples.len() + protocol.value_examples.len()
+            }),
             frames: counts.frames,
             identifiers: counts.identifiers,
             expected_failures: counts.expected_failures,

@@ -31,7 +31,7 @@ impl Choice {
     /// Says what can have been meant.
     pub fn check(&self, protocols: &[Protocol]) -> Result<(), Failure> {
         let messages =
-            || protocols.iter().flat_map(|protocol| protocol.messages.iter().map(move |message| (protocol, message)));
+            || protocols.iter().flat_map(|protocol| protocol.contents().map(move |message| (protocol, message)));
         for name in &self.message {
             let is_known = messages().any(|(protocol, message)| is_called(protocol, message, name));
             let known = messages().map(|(_, message)| message.name.as_str());
@@ -63,7 +63,7 @@ impl Choice {
 
     /// Takes away signals that are not chosen, and returns whether the frame is still to be shown.
     pub fn keep(&self, protocol: &Protocol, decoded: &mut Decoded) -> bool {
-        let message = &protocol.messages[decoded.message];
+        let message = decoded.content(protocol);
         if !self.has_message(protocol, message) {
             return false;
         }

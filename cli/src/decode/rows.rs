@@ -28,7 +28,7 @@ impl Rows {
         let (names, readings, notes) = match outcome.decoded {
             Ok(decoded) => {
                 others(&mut address, outcome, decoded);
-                (names(outcome, decoded), &decoded.signals[..], notes(&decoded.notes))
+                (names(outcome, decoded), &decoded.signals[..], notes(outcome, &decoded.notes))
             }
             Err(Unrecognised { problem, text, .. }) => {
                 (Default::default(), &[][..], format!("{}: {text}", problem.name()))
@@ -36,7 +36,9 @@ impl Rows {
         };
         let line = outcome.line.to_string();
         let (time, channel) = (outcome.time.unwrap_or_default(), outcome.channel.unwrap_or_default());
-        let (id, data) = (log::identifier_text(outcome.frame), log::hexadecimal(&outcome.frame.data));
+        let of_whole = outcome.whole.as_ref().map(|whole| whole.data.unwrap_or_default());
+        let data = log::hexadecimal(of_whole.unwrap_or(&outcome.frame.data));
+        let id = log::identifier_text(outcome.frame);
         let frame =
             [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names).chain([address.as_str()]);
         let signals = readings.iter().map(|reading| cells(outcome, reading));
@@ -66,7 +68,7 @@ fn names<'a>(outcome: &Outcome<'a>, decoded: &Decoded) -> [&'a str; 3] {
 /// Returns name, raw number, value and unit of a signal.
 fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
     let Ok(decoded) = outcome.decoded else { return Default::default() };
-    let signal = &outcome.protocol.messages[decoded.message].signals[reading.signal];
+    let signal = &decoded.content(outcome.protocol).signals[reading.signal];
     let value = match &reading.value {
         // It would look like a measurement.
         _ if decoded.is_error_reply() => String::new(),
@@ -80,8 +82,10 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
     [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit.to_owned()]
 }
 
-fn notes(notes: &[Note]) -> String {
-    let texts = notes.iter().map(|Note { rule, text }| format!("{}: {text}", rule.name()));
+fn notes(outcome: &Outcome<'_>, notes: &[Note]) -> String {
+    let incomplete = outcome.whole.as_ref().and_then(|whole| whole.incomplete);
+    let incomplete = incomplete.map(|text| format!("incomplete: {text}"));
+    let texts = notes.iter().map(|Note { rule, text }| format!("{}: {text}", rule.name())).chain(incomplete);
     texts.collect::<Vec<_>>().join("; ")
 }
 

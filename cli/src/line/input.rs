@@ -27,6 +27,8 @@ pub struct Line {
 #[derive(Debug)]
 pub enum Content {
     Message(Message),
+    /// A message that is longer than a frame.
+    Long(Message),
     /// The frame itself, which no protocol recognised.
     Frame(Frame),
 }
@@ -38,6 +40,8 @@ pub struct Message {
     pub frame: interpret::Content,
     /// The units that the line states, by signal.
     pub units: Vec<(String, String)>,
+    /// What is missing of a long message.
+    pub incomplete: Option<String>,
 }
 
 impl Line {
@@ -79,6 +83,8 @@ struct Object {
     reserved: Option<String>,
     #[serde(rename = "line")]
     _line: Option<IgnoredAny>,
+    lines: Option<IgnoredAny>,
+    incomplete: Option<String>,
     id: Option<Box<RawValue>>,
     data: Option<Box<RawValue>>,
     #[serde(rename = "addressing")]
@@ -101,6 +107,7 @@ impl Object {
         let time = self.time.take().map(stamp).transpose()?;
         let channel = self.channel.take().as_deref().map(channel).transpose()?;
         let content = match self.message.take() {
+            Some(message) if self.lines.is_some() => Content::Long(self.message(message)?),
             Some(message) => Content::Message(self.message(message)?),
             None => Content::Frame(self.frame()?),
         };
@@ -108,6 +115,7 @@ impl Object {
     }
 
     fn message(self, message: String) -> Result<Message, String> {
+        let most = if self.lines.is_some() { MOST_LONG_DIGITS } else { MOST_DIGITS };
         let Values { signals, arrays, units } = Values::of(self.signals.ok_or_else(|| missing("signals"))?)?;
         let frame = interpret::Content {
             message,
@@ -117,9 +125,9 @@ impl Object {
             selectors: self.selectors.ok_or_else(|| missing("selectors"))?.0,
             signals,
             arrays,
-            reserved: self.reserved.as_deref().map(reserved).transpose()?.unwrap_or_default(),
+            reserved: self.reserved.as_deref().map(|digits| reserved(digits, most)).transpose()?.unwrap_or_default(),
         };
-        Ok(Message { protocol: self.protocol, frame, units })
+        Ok(Message { protocol: self.protocol, frame, units, incomplete: self.incomplete })
     }
 
     /// Returns a frame that was not recognised. The line does not say which form it has, if it is no data frame.
@@ -135,6 +143,12 @@ impl Object {
         log::data_frame(&digits("id", self.id)?, &digits("data", self.data)?)
     }
 }
+
+/// Most digits of the bits of a frame that no signal covers.
+const MOST_DIGITS: usize = 16;
+
+/// The same for a long message.
+const MOST_LONG_DIGITS: usize = 2 * 4095;
 
 fn missing(field: &str) -> String {
     format!("missing field `{field}`")
@@ -175,10 +189,10 @@ fn kind(word: &str) -> Result<Kind, String> {
     kind.ok_or_else(|| format!("`kind` is request, reply or report, not {word:?}"))
 }
 
-fn reserved(digits: &str) -> Result<Vec<u8>, String> {
-    let refusal = || format!("`reserved` is an even number of hexadecimal digits, at most 16, not {digits:?}");
+fn reserved(digits: &str, most: usize) -> Result<Vec<u8>, String> {
+    let refusal = || format!("`reserved` is an even number of hexadecimal digits, at most {most}, not {digits:?}");
     let hexadecimal = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
-    if !hexadecimal || digits.len() > 16 || !digits.len().is_multiple_of(2) {
+    if !hexadecimal || digits.len() > most || !digits.len().is_multiple_of(2) {
         return Err(refusal());
     }
     let byte = |place: usize| u8::from_str_radix(&digits[place..place + 2], 16).map_err(|_| refusal());
@@ -338,7 +352,7 @@ mod tests {
 
     fn message(line: Line) -> Message {
         match line.content {
-            Content::Message(message) => message,
+            Content::Message(message) | Content::Long(message) => message,
             Content::Frame(frame) => panic!("{frame:?} is no message"),
         }
     }

@@ -18,6 +18,20 @@ pub struct Outcome<'a> {
     pub frame: &'a Frame,
     pub protocol: &'a Protocol,
     pub decoded: &'a Result<Decoded, Unrecognised>,
+    /// What several frames say together; `None` for a frame.
+    pub whole: Option<Whole<'a>>,
+}
+
+/// What a long message has besides its values.
+pub struct Whole<'a> {
+    /// The lines of its frames.
+    pub lines: &'a [usize],
+    /// The joined data, if no part is missing.
+    pub data: Option<&'a [u8]>,
+    /// Bits that no signal covers.
+    pub reserved: &'a [u8],
+    /// Which parts are missing.
+    pub incomplete: Option<&'a str>,
 }
 
 /// Writes a frame as one line.
@@ -35,17 +49,34 @@ pub fn write(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
 }
 
 fn head(out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
-    out.write_all(b"{\"line\":")?;
-    integer(out, outcome.line)?;
+    match &outcome.whole {
+        None => {
+            out.write_all(b"{\"line\":")?;
+            integer(out, outcome.line)?;
+        }
+        Some(whole) => {
+            out.write_all(b"{\"lines\":")?;
+            list(out, whole.lines, |out, line| integer(out, *line))?;
+        }
+    }
     out.write_all(b",\"time\":")?;
     out.write_all(outcome.time.unwrap_or("null").as_bytes())?;
     out.write_all(b",\"channel\":")?;
     optional(out, outcome.channel, text)?;
-    out.write_all(b",\"id\":\"")?;
-    log::write_identifier(out, outcome.frame)?;
-    out.write_all(b"\",\"data\":\"")?;
-    log::write_hexadecimal(out, &outcome.frame.data)?;
-    out.write_all(b"\",\"protocol\":\"")?;
+    match &outcome.whole {
+        None => {
+            out.write_all(b",\"id\":\"")?;
+            log::write_identifier(out, outcome.frame)?;
+            out.write_all(b"\",\"data\":\"")?;
+            log::write_hexadecimal(out, &outcome.frame.data)?;
+            out.write_all(b"\"")?;
+        }
+        Some(whole) => {
+            out.write_all(b",\"data\":")?;
+            optional(out, whole.data.map(log::hexadecimal).as_deref(), name)?;
+        }
+    }
+    out.write_all(b",\"protocol\":\"")?;
     out.write_all(outcome.protocol.name.as_bytes())
 }
 
@@ -65,15 +96,20 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     object(out, addresses, integer)?;
     selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
     out.write_all(b",\"signals\":")?;
-    object(out, fields(message, decoded), |out, field| match field {
+    object(out, fields(decoded.content(protocol), decoded), |out, field| match field {
         Field::Signal((signal, reading)) => value(out, protocol, signal, reading),
         Field::Array(elements) => array(out, protocol, &elements),
     })?;
-    let reserved = decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
+    let of_frame = || decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
+    let reserved = outcome.whole.as_ref().map_or_else(of_frame, |whole| whole.reserved);
     if reserved.iter().any(|byte| *byte != 0) {
         // It has as many digits as the data.
         out.write_all(b",\"reserved\":")?;
         name(out, &log::hexadecimal(reserved))?;
+    }
+    if let Some(incomplete) = outcome.whole.as_ref().and_then(|whole| whole.incomplete) {
+        out.write_all(b",\"incomplete\":")?;
+        text(out, incomplete)?;
     }
     out.write_all(b",\"notes\":")?;
     list(out, &decoded.notes, |out, note| {
@@ -220,13 +256,9 @@ pub fn addresses<'a>(
     outcome: &Outcome<'a>,
     decoded: &Decoded,
 ) -> impl Iterator<Item = (&'a AddressType, i64)> + Clone + use<'a> {
-    let (protocol, id) = (outcome.protocol, outcome.frame.id);
-    let is_to_module = protocol[decoded.frame].is_to_module();
-    let pattern = decoded.addressing.and_then(|travel| protocol[travel.mode].pattern(is_to_module, travel.who));
-    pattern.into_iter().flat_map(|pattern| &pattern.addresses).map(move |address| {
-        let kind = &protocol[address.address_type];
-        (kind, kind.number(protocol[address.field].get(id)))
-    })
+    let addresses = decoded.addresses(outcome.protocol, outcome.frame.id);
+    let protocol = outcome.protocol;
+    addresses.map(move |(kind, number)| (&protocol[kind], number))
 }
 
 /// Returns the set bits of a status word that have a name.
@@ -379,7 +411,7 @@ messages:
         let entry = reader.read(text).expect("the line is readable").expect("the line is not blank");
         let (time, channel, frame) = (entry.time.as_deref(), entry.channel, &entry.frame);
         let decoded = &decode(&protocol, None, frame);
-        let outcome = Outcome { line: 7, time, channel, frame, protocol: &protocol, decoded };
+        let outcome = Outcome { line: 7, time, channel, frame, protocol: &protocol, decoded, whole: None };
         let mut out = Vec::new();
         write(&mut out, &outcome).expect("a vector takes everything");
         String::from_utf8(out).expect("JSON is text")

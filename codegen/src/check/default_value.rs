@@ -10,7 +10,7 @@ rules! {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in &message.signals {
             check_for(protocol, None, message, signal, diagnostics);
             protocol.models.ids().for_each(|model| check_for(protocol, Some(model), message, signal, diagnostics));

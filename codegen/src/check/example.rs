@@ -5,6 +5,7 @@ mod accused;
 mod byte_order;
 mod evidence;
 mod limit;
+mod long;
 mod repair;
 mod unproven;
 mod unread;
@@ -58,6 +59,12 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
             (Ok(()), Some(_), _) => counts.expected_failures += 1,
             (Ok(()), None, Some(_)) => counts.frames += 1,
             (Ok(()), None, None) => counts.identifiers += 1,
+        }
+    }
+    for example in &protocol.long_examples {
+        match long::check(protocol, example) {
+            Ok(()) => counts.frames += example.frames.len(),
+            Err(diagnostic) => diagnostics.push(*diagnostic),
         }
     }
     counts.unproven = unproven(protocol).map(|of| of.signals.len()).sum();

@@ -73,7 +73,7 @@ fn each_scaled(
     help: &str,
     fault: impl Fn(&Signal, Linear) -> Option<String>,
 ) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in message.signals.iter().filter(|signal| !signal.encoding.is_unscaled()) {
             let fault = signal.encoding.linear().and_then(|linear| fault(signal, linear));
             if let Some(why) = fault {
@@ -89,7 +89,7 @@ fn each_scaled(
 /// integers.
 fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let help = "generate code in whole steps or with `f64`, or say the limits in the note";
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         let is_compared = |signal: &&Signal| signal.encoding.is_unscaled() && !signal.has_whole_limits();
         for signal in message.signals.iter().filter(is_compared) {
             let is_missed = |end: Rational| !is_below(Some(end.numerator()), EXACT);

@@ -5,7 +5,7 @@ use crate::model::Protocol;
 use crate::resolve::rules;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in &message.signals {
             let Some(range) = signal.range else { continue };
             for own in &signal.model_ranges {

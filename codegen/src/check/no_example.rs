@@ -24,7 +24,8 @@ pub fn check(protocol: &Protocol, percent: u8, diagnostics: &mut Diagnostics) {
 }
 
 fn has_example(protocol: &Protocol, message: MessageId) -> bool {
-    protocol.examples.iter().any(|example| example.message == Some(message) && example.fails.is_none())
+    let is_long = || protocol.long_examples.iter().any(|example| protocol[example.long].message == message);
+    protocol.examples.iter().any(|example| example.message == Some(message) && example.fails.is_none()) || is_long()
 }
 
 fn nothing_shows(protocol: &Protocol, message: &Message) -> Diagnostic {

@@ -10,7 +10,7 @@ rules! {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in message.signals.iter().filter(|signal| is_nameless(signal)) {
             let what = if has_scale(signal) { "a scale" } else { "an offset" };
             let text = format!("`{}.{}` has {what}, but neither a unit nor a title", message.name, signal.name);

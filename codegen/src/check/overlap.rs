@@ -1,6 +1,6 @@
 #![doc = include_str!("../rules/overlap.md")]
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::misplaced::{Claim, misplaced};
@@ -24,6 +24,31 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         for signal in &message.signals {
             let parts: Vec<_> = signal.encoding.parts().iter().map(leaf).collect();
             check_leaves(message, &parts, &mut HashSet::new(), diagnostics);
+        }
+    }
+    for long in &protocol.long_messages {
+        check_windows(&long.content, diagnostics);
+    }
+}
+
+/// Reports each pair of fields of a long message that share bits, once.
+fn check_windows<'a>(content: &'a Message, diagnostics: &mut Diagnostics) {
+    let mut owners: HashMap<(usize, u8), &'a Signal> = HashMap::new();
+    let mut reported = HashSet::new();
+    for signal in &content.signals {
+        let bytes = signal.place.mask().into_iter().enumerate();
+        let bits =
+            bytes.flat_map(|(byte, mask)| (0..8).filter(move |bit| mask >> bit & 1 == 1).map(move |bit| (byte, bit)));
+        for (byte, bit) in bits {
+            let byte = byte + usize::from(signal.window);
+            let Some(other) = owners.insert((byte, bit), signal) else { continue };
+            let [one, two] = [other, signal].map(|signal| content.field_name(signal));
+            if one != two && reported.insert([one, two]) {
+                let text = format!("`{one}` and `{two}` of `{}` share byte {byte}", content.name);
+                let help = "correct one of the two places, or remove one of the two";
+                let [at, other] = [signal, other].map(|known| diagnostics.written(&known.doc.path, &["bytes", "bits"]));
+                diagnostics.push(Diagnostic::error(&OVERLAP, at, text).help(help).other(other, "the other one"));
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ rules! {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in &message.signals {
             let Some(linear) = signal.encoding.linear() else { continue };
             for (range, path) in signal.ranges() {

@@ -12,7 +12,7 @@ rules! {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in &message.signals {
             let Some(holds) = signal.held() else { continue };
             let exceeds = |range: &Range| range.minimum < holds.minimum || range.maximum > holds.maximum;

@@ -9,7 +9,7 @@ rules! {
 }
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for message in &protocol.messages {
+    for message in protocol.contents() {
         for signal in &message.signals {
             for (range, path) in signal.ranges() {
                 let names = names_inside(signal, range);

@@ -1,6 +1,6 @@
 //! Turns what was decoded into what can be encoded.
 
-use super::{Content, Decoded, Form, Frame, Input, Value};
+use super::{Assembled, Content, Decoded, Form, Frame, Input, Value};
 use crate::model::{Example, FrameLayout, Message, Protocol, Signal};
 
 impl Frame {
@@ -38,7 +38,7 @@ fn constant_data(frame: &FrameLayout) -> [u8; 8] {
 impl Content {
     /// Takes over a decoded frame, so that encoding gives the same frame.
     pub fn of(protocol: &Protocol, decoded: &Decoded) -> Self {
-        let message = &protocol[decoded.message];
+        let message = decoded.content(protocol);
         let fields = protocol.identifier.fields.iter().zip(&decoded.identifier);
         let selectors = decoded.selectors.iter().map(|(id, value)| (protocol[*id].name.clone(), *value));
         let signals = decoded.signals.iter().map(|reading| {
@@ -55,6 +55,14 @@ impl Content {
             arrays: Vec::new(),
             reserved: decoded.reserved.iter().copied().take(decoded.length).collect(),
         }
+    }
+}
+
+impl Content {
+    /// Takes over a long message, so that encoding gives the same frames.
+    pub fn of_long<M>(protocol: &Protocol, assembled: &Assembled<M>) -> Self {
+        let whole = Self::of(protocol, &assembled.decoded);
+        Self { reserved: assembled.reserved.clone(), ..whole }
     }
 }
 

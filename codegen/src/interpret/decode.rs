@@ -248,6 +248,13 @@ impl<'a> Decoder<'a> {
         (Reverse(is_of_model), addressing.fit, Reverse(addressing.constants))
     }
 
+    /// Says that the number of a part means nothing without the device model.
+    fn part_note(&self, message: &Message) -> Option<Note> {
+        let (_, long) = self.protocol.long_message(message)?;
+        let text = format!("the first part of `{}` has another number on each model", message.name);
+        long.first(self.model).is_none().then_some(Note { rule: NoteRule::ModelDependent, text })
+    }
+
     /// Says that the device model has no such message, or that the frame may be another message on another model.
     fn model_note(&self, best: Candidate, frames: &'a [FrameId]) -> Option<Note> {
         let message = self.message(best);
@@ -380,6 +387,7 @@ impl<'a> Decoder<'a> {
         notes.extend(self.address_notes(message, frame, &addressing));
         let note = |reading: &Reading| signal_note(self.protocol, &message[reading.signal], self.model, reading);
         notes.extend(signals.iter().filter_map(note));
+        notes.extend(self.part_note(message).filter(|_| !signals.is_empty()));
         notes.extend(self.reserved_note(frame, reserved));
         Decoded {
             frame: id,
@@ -391,6 +399,7 @@ impl<'a> Decoder<'a> {
             addressing: addressing.travel.map(|(travel, _)| travel),
             identifier: self.identifier(),
             selectors,
+            long: None,
             signals,
             reserved,
             length: self.frame.data.len(),
@@ -465,7 +474,7 @@ impl<'a> Decoder<'a> {
     }
 }
 
-fn signal_note(protocol: &Protocol, signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
+pub fn signal_note(protocol: &Protocol, signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
     let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
     if let Some((rule, text)) = oddity {
         return Some(Note { rule, text });

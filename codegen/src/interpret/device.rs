@@ -1,10 +1,14 @@
 //! Makes a frame that a module sends, by name: a report or a reply of `module:3`.
 
+use super::arrays::parted_texts;
 use super::content::blank_data;
-use super::encode::{find_message, frame, length_with, refuse};
+use super::encode::{continue_all_but_last, find_message, frame, length_with, refuse};
+use super::long::typed_parts;
 use super::request::{Target, address, put_signals, raw_address, written_address};
 use super::{Frame, Limits, Refusal, decode};
-use crate::model::{AddressPattern, AddressType, FrameLayout, Kind, Message, Mode, Protocol, SelectorPlace, Side};
+use crate::model::{
+    AddressPattern, AddressType, FrameLayout, Kind, Message, Mode, ModelId, Protocol, SelectorPlace, Side,
+};
 
 /// What a module sends.
 #[derive(Clone, Copy, Debug)]
@@ -55,23 +59,45 @@ pub fn module(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
     address(addresses.map(|address| &protocol[address.address_type]), text, "3` or `0x03")
 }
 
-/// Makes the frame that a module sends. A signal that is left out takes its default.
+/// Makes the frames that a module sends: one, or as many as a long message has parts. A signal that is left out takes
+/// its default.
 ///
 /// # Errors
 ///
 /// Refuses values that do not fit, and addresses that the document does not name. It also refuses to choose among
 /// kinds of frames, accesses and addressing modes.
-pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Frame, Refusal> {
+pub fn sent(
+    protocol: &Protocol,
+    model: Option<ModelId>,
+    sent: Sent<'_>,
+    signals: &[(String, String)],
+) -> Result<Vec<Frame>, Refusal> {
     let (_, message) = find_message(protocol, sent.message)?;
+    let parts = typed_parts(protocol, message, signals, (model, Limits::Bits))?;
+    let Some(parts) = parts else { return Ok(vec![one(protocol, model, sent, signals)?]) };
+    let mut frames = parts.iter().map(|signals| one(protocol, model, sent, signals)).collect::<Result<Vec<_>, _>>()?;
+    continue_all_but_last(protocol, &mut frames);
+    Ok(frames)
+}
+
+/// Makes one frame that a module sends.
+fn one(
+    protocol: &Protocol,
+    model: Option<ModelId>,
+    sent: Sent<'_>,
+    signals: &[(String, String)],
+) -> Result<Frame, Refusal> {
+    let (_, message) = find_message(protocol, sent.message)?;
+    let signals = &parted_texts(message, signals)?;
     let layout = layout(protocol, message, sent)?;
     let (mode, pattern) = way(protocol, message, layout, sent.to)?;
     let id = identifier(protocol, (message, layout), (mode, pattern), sent)?;
     let mut data = blank_data(layout);
     put_normal(protocol, layout, &mut data);
     let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
-    put_signals(protocol, message, (layout, length), signals, (None, Limits::Bits), &mut data)?;
+    put_signals(protocol, message, (layout, length), signals, (model, Limits::Bits), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
-    let decoded = decode(protocol, None, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    let decoded = decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
     if (decoded.message, decoded.kind) == (layout.message, layout.kind) {
         return Ok(frame);
     }

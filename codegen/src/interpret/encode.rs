@@ -1,7 +1,7 @@
 //! Encodes a message with its values to a frame.
 
 use super::value::{Limits, raw_of};
-use super::{Content, Decoded, Form, Frame, Refusal, arrays, decode, padded};
+use super::{Content, Decoded, Form, Frame, Input, Refusal, arrays, decode, long, padded};
 use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace, Signal};
 use crate::nearest;
 
@@ -28,6 +28,57 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
     let decoded = decode(protocol, one_that_has_it, &frame).map_err(|problem| refuse(message, &problem.text))?;
     confirm(protocol, message, layout, &decoded, model)?;
     Ok(frame)
+}
+
+/// Makes the frames that show a long message, for a device model or for any model.
+///
+/// # Errors
+///
+/// Refuses what [`encode()`] refuses, and a message without parts. Without a model, it refuses parts
+/// whose numbers depend on it.
+pub fn encode_long(protocol: &Protocol, model: Option<ModelId>, content: &Content) -> Result<Vec<Frame>, Refusal> {
+    let (_, message) = find_message(protocol, &content.message)?;
+    let (_, known) = protocol.long_message(message).ok_or_else(|| refuse(message, "it has no `parts`"))?;
+    let content = &*arrays::parted(&known.content, content)?;
+    let to_module = protocol.frames_of(message).any(|frame| content.kind == Some(frame.kind) && frame.is_to_module());
+    let limits = if to_module { Limits::Range(model) } else { Limits::Bits };
+    let data = long::joined(protocol, known, &content.signals, &content.reserved, (model, limits))?;
+    let mut frames = Vec::new();
+    for (number, data) in long::parts(known, model, &data)? {
+        let signals = vec![
+            (message[known.parts.number].name.clone(), Input::Integer(number.into())),
+            (message[known.parts.data].name.clone(), Input::Text(data)),
+        ];
+        let part = Content { signals, arrays: Vec::new(), reserved: Vec::new(), ..content.clone() };
+        frames.push(encode(protocol, model, &part)?);
+    }
+    continue_all_but_last(protocol, &mut frames);
+    Ok(frames)
+}
+
+/// Makes all frames but the last say that more follow.
+pub fn continue_all_but_last(protocol: &Protocol, frames: &mut [Frame]) {
+    if let Some((_, others)) = frames.split_last_mut() {
+        for frame in others {
+            continue_after(protocol, frame);
+        }
+    }
+}
+
+/// Makes a frame say that more follow.
+fn continue_after(protocol: &Protocol, frame: &mut Frame) {
+    let Some(continuation) = protocol.continuation() else { return };
+    match continuation.place {
+        SelectorPlace::Identifier(field) => {
+            let raw = u32::try_from(continuation.raw).unwrap_or(0);
+            frame.id = protocol[field].put(frame.id, raw);
+        }
+        SelectorPlace::Payload(place) => {
+            let mut data = frame.padded();
+            place.put(&mut data, continuation.raw);
+            frame.data = data.into_iter().take(frame.data.len()).collect();
+        }
+    }
 }
 
 /// Finds a message by name.

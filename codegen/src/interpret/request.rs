@@ -2,11 +2,12 @@
 
 use super::arrays::parted_texts;
 use super::content::blank_data;
-use super::encode::{find_message, frame, length_with, not_of, refuse, twice};
+use super::encode::{continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
+use super::long::typed_parts;
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
 use crate::encoding::Words;
-use crate::model::{AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, SelectorPlace, Set};
+use crate::model::{AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set};
 use crate::number::Rational;
 
 /// Where a request goes.
@@ -30,7 +31,8 @@ impl Target {
         };
         let is_meant = |mode: &&Mode| mode.name == name || protocol.target_name(mode) == name;
         let chosen = protocol.modes.iter().filter(is_meant).filter_map(|mode| Some(&protocol[mode.target?]));
-        Ok(Self { name: name.to_owned(), number: Some(address(chosen, number, &format!("{name}:3"))?) })
+        let named = protocol.address_types.iter().filter(|known| known.name == name);
+        Ok(Self { name: name.to_owned(), number: Some(address(chosen.chain(named), number, &format!("{name}:3"))?) })
     }
 }
 
@@ -152,8 +154,8 @@ fn layout_of_member<'a>(
     protocol.frames_of(member).find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))
 }
 
-/// Makes the frames of a request to a device model or to any: one, or as many as a
-/// set has members. A signal that is left out takes its default.
+/// Makes the frames of a request to a device model or to any. It is one frame, or one for each member of a set or each
+/// part of a long message. A signal that is left out takes its default.
 ///
 /// # Errors
 ///
@@ -168,10 +170,15 @@ pub fn requests(
     signals: &[(String, String)],
 ) -> Result<Vec<Frame>, Refusal> {
     let (id, known) = find_message(protocol, message)?;
-    match known.set.as_ref().filter(|set| set.kinds.contains(&Kind::Request)) {
-        Some(set) => of_members(protocol, model, (id, set), access, (target, source), signals),
-        None => Ok(vec![request(protocol, model, access, message, target, source, signals)?]),
+    if let Some(set) = known.set.as_ref().filter(|set| set.kinds.contains(&Kind::Request)) {
+        return of_members(protocol, model, (id, set), access, (target, source), signals);
     }
+    let one = |signals: &[_]| request(protocol, model, access, message, target, source, signals);
+    let parts = typed_parts(protocol, known, signals, (model, Limits::Range(model)))?;
+    let Some(parts) = parts else { return Ok(vec![one(signals)?]) };
+    let mut frames = parts.iter().map(|signals| one(signals)).collect::<Result<Vec<_>, _>>()?;
+    continue_all_but_last(protocol, &mut frames);
+    Ok(frames)
 }
 
 /// Makes one request for each member of a set. All but the last say that more follow.
@@ -196,28 +203,8 @@ fn of_members(
         let layout = layout_of_member(protocol, id, member)?;
         frames.push(made(protocol, model, (member, layout), to, signals)?);
     }
-    if let Some((_, others)) = frames.split_last_mut() {
-        for frame in others {
-            continue_after(protocol, frame);
-        }
-    }
+    continue_all_but_last(protocol, &mut frames);
     Ok(frames)
-}
-
-/// Makes a frame say that more follow.
-fn continue_after(protocol: &Protocol, frame: &mut Frame) {
-    let Some(continuation) = protocol.continuation() else { return };
-    match continuation.place {
-        SelectorPlace::Identifier(field) => {
-            let raw = u32::try_from(continuation.raw).unwrap_or(0);
-            frame.id = protocol[field].put(frame.id, raw);
-        }
-        SelectorPlace::Payload(place) => {
-            let mut data = frame.padded();
-            place.put(&mut data, continuation.raw);
-            frame.data = data.into_iter().take(frame.data.len()).collect();
-        }
-    }
 }
 
 /// Makes the frame of a request to a device model or to any model. A signal that is left out takes

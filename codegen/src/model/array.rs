@@ -14,6 +14,8 @@ pub struct Array {
     pub doc: Doc,
     /// The elements in order.
     pub elements: Vec<SignalId>,
+    /// The least number of elements, if a long message can have fewer than these.
+    pub least: Option<usize>,
 }
 
 /// Which element of an array a signal is.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Doc, Kind, MessageId, ModelId, NoteRule, Range, Signal, SignalId};
+use crate::model::{Doc, Kind, LongMessageId, MessageId, ModelId, NoteRule, Range, Signal, SignalId};
 use crate::syntax::tree::Path;
 
 /// A frame of the document and what it means.
@@ -40,6 +40,30 @@ impl Example {
     pub fn is_documented(&self) -> bool {
         self.origin == Origin::Document
     }
+}
+
+/// All frames of a long message, and what they say together.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct LongExample {
+    /// What the spec says beside it.
+    pub doc: Doc,
+    /// What the spec says the frames are for.
+    pub kind: Kind,
+    /// The long message.
+    pub long: LongMessageId,
+    /// Identifiers and data bytes of the frames, in the order of the document.
+    pub frames: Vec<(u32, Vec<u8>)>,
+    /// The device model of the frames.
+    pub model: Option<ModelId>,
+    /// How many elements the array of varying length has, if the example says it.
+    pub count: Option<u16>,
+    /// What the example says about signals of the long message, not necessarily all.
+    pub means: Vec<Meaning>,
+    /// Rules of the notes that decoding must report.
+    pub notes: Vec<NoteRule>,
+    /// Where the frames come from.
+    pub origin: Origin,
 }
 
 /// Where an example comes from.

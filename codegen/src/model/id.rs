@@ -10,8 +10,8 @@ use std::ops::{Deref, DerefMut, Index, IndexMut};
 use std::slice;
 
 use super::{
-    Access, AddressType, Array, DeviceModel, Enumeration, Exchange, FrameLayout, IdentifierField, Message, Mode,
-    Protocol, Selector, Signal, StatusWord, Timing,
+    Access, AddressType, Array, DeviceModel, Enumeration, Exchange, FrameLayout, IdentifierField, LongMessage, Message,
+    Mode, Protocol, Selector, Signal, StatusWord, Timing,
 };
 
 /// The place of a row in its table.
@@ -72,6 +72,8 @@ define_ids! {
     ExchangeId;
     /// A kind of frame of [`Protocol::frames`].
     FrameId;
+    /// What the parts of a message say together, of [`Protocol::long_messages`].
+    LongMessageId;
 }
 
 macro_rules! impl_index {
@@ -98,6 +100,7 @@ impl_index! {
     ModelId: models of Protocol is DeviceModel;
     TimingId: timing of Protocol is Timing;
     FrameId: frames of Protocol is FrameLayout;
+    LongMessageId: long_messages of Protocol is LongMessage;
     SignalId: signals of Message is Signal;
     ArrayId: arrays of Message is Array;
     ExchangeId: exchanges of Message is Exchange;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use canspec_runtime::Place;
 
 use crate::model::{
-    AccessId, Array, ArrayId, Doc, ExchangeId, FieldId, FrameId, MessageId, ModeId, ModelId, SelectorId, SelectorPlace,
-    Set, Signal, SignalId, Table, TimingId,
+    AccessId, Array, ArrayId, Doc, ExchangeId, FieldId, FrameId, LongMessageId, MessageId, ModeId, ModelId, SelectorId,
+    SelectorPlace, Set, Signal, SignalId, Table, TimingId,
 };
 
 /// What a frame is for.
@@ -134,6 +134,8 @@ pub struct Message {
     pub models: Vec<ModelId>,
     /// What it consists of, if it travels as several frames.
     pub set: Option<Set>,
+    /// What its frames say together, if they carry parts.
+    pub long: Option<LongMessageId>,
     /// Fields of the identifier that it sends with a value of its own. Received ones may have any.
     pub sends: Vec<(FieldId, u32)>,
     /// What the bits are that nothing names.

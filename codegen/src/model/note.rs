@@ -25,11 +25,13 @@ pub enum NoteRule {
     ReservedBit,
     /// The frame means something else on other device models, or nothing on the chosen model.
     ModelDependent,
+    /// Nothing says how many elements of an array are real.
+    Count,
 }
 
 impl NoteRule {
     /// Every rule with its word of the spec language and the output formats.
-    pub const ALL: [(Self, &'static str); 9] = [
+    pub const ALL: [(Self, &'static str); 10] = [
         (Self::ErrorCode, "error_code"),
         (Self::Addressing, "addressing"),
         (Self::Address, "address"),
@@ -39,6 +41,7 @@ impl NoteRule {
         (Self::NotFinite, "not_finite"),
         (Self::ReservedBit, "reserved_bit"),
         (Self::ModelDependent, "model_dependent"),
+        (Self::Count, "count"),
     ];
 
     /// Returns the word of the spec language.
@@ -58,6 +61,7 @@ impl NoteRule {
             Self::NotFinite => include_str!("../notes/not_finite.md"),
             Self::ReservedBit => include_str!("../notes/reserved_bit.md"),
             Self::ModelDependent => include_str!("../notes/model_dependent.md"),
+            Self::Count => include_str!("../notes/count.md"),
         }
     }
 }

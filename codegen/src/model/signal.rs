@@ -112,6 +112,8 @@ pub struct Signal {
     pub doc: Doc,
     /// The entries of `types` that it takes keys from, the last first.
     pub types: Vec<String>,
+    /// How many data bytes of a long message come before the eight that `place` counts. It is 0 in a frame.
+    pub window: u16,
     /// Bits of the data bytes.
     #[serde(with = "place")]
     pub place: Place,
@@ -210,6 +212,16 @@ impl Signal {
     pub fn end(&self) -> u8 {
         let last = u64::from_be_bytes(self.place.mask()).trailing_zeros() / 8;
         u8::try_from(8 - last).unwrap_or(8)
+    }
+
+    /// Returns how many data bytes a long message with the signal has at least.
+    pub fn reach(&self) -> usize {
+        usize::from(self.window) + usize::from(self.end())
+    }
+
+    /// Returns the data bytes that have its bits.
+    pub fn bytes(&self) -> std::ops::Range<usize> {
+        usize::from(self.window) + usize::from(self.start())..self.reach()
     }
 
     /// Tests whether bits are a number inside limits. It is exact but for a float, which is compared

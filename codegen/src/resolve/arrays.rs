@@ -7,6 +7,7 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::Resolver;
 use super::fields::Leaves;
+use super::long::MOST_BYTES;
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Array, ArrayId, Doc, Element, Signal, SignalId, Table};
@@ -15,18 +16,28 @@ use crate::syntax::ast::Key;
 use crate::syntax::tree::Path;
 use crate::text::Text;
 
-/// Most elements of an array. A status word has room for more bits.
-const MOST_ELEMENTS: u8 = 32;
+/// Most elements of an array in a frame. A status word has room for more bits.
+const MOST_ELEMENTS: u16 = 32;
+
+/// Most elements of an array in a long message.
+const MOST_LONG_ELEMENTS: u16 = 256;
+
+/// A place, and how many bytes of a long message come before its window.
+pub type Windowed = (u16, Place);
 
 /// How many equal fields stand in a row, and where.
 #[derive(Clone, Copy)]
 pub struct Row {
-    count: u8,
+    count: u16,
+    /// The least number of elements, if some may be missing.
+    least: Option<u16>,
     /// Number of the first element.
     first: u16,
     /// Bits from an element to the next one, in the eight bytes read in this order.
     distance: i16,
     order: ByteOrder,
+    /// Bytes from an element's window to that of the next one, in a long message.
+    stride: i16,
 }
 
 /// What the steps of a row are counted in.
@@ -40,7 +51,7 @@ struct Unit {
 
 impl Row {
     /// A field that stands alone.
-    pub const ALONE: Self = Self { count: 1, first: 1, distance: 0, order: ByteOrder::Big };
+    pub const ALONE: Self = Self { count: 1, least: None, first: 1, distance: 0, order: ByteOrder::Big, stride: 0 };
 
     /// Tests whether there are several elements.
     pub fn is_array(self) -> bool {
@@ -48,17 +59,23 @@ impl Row {
     }
 
     /// Returns the place of an element, if the data bytes have it. `place` is that of the first.
-    fn place(self, place: Place, index: u8) -> Option<Place> {
+    fn place(self, (window, place): Windowed, index: u16) -> Option<Windowed> {
+        let index = i16::try_from(index).ok()?;
+        if self.stride != 0 {
+            let moved = i32::from(window) + i32::from(self.stride) * i32::from(index);
+            let moved = u16::try_from(moved).ok().filter(|moved| *moved < MOST_BYTES)?;
+            return Some((moved, place));
+        }
         let distance = if place.order() == self.order { self.distance } else { -self.distance };
-        let low = i16::from(place.bits_of_payload().shift()).checked_add(distance.checked_mul(index.into())?)?;
+        let low = i16::from(place.bits_of_payload().shift()).checked_add(distance.checked_mul(index)?)?;
         let low = u8::try_from(low).ok().filter(|low| *low <= 64 - place.width())?;
         let payload = if place.order() == ByteOrder::Big { Place::bytes(0, 7) } else { Place::bytes(7, 0) };
-        Some(payload.bits(low + place.width() - 1, low))
+        Some((window, payload.bits(low + place.width() - 1, low)))
     }
 
     /// Tests whether an element lies inside the word that counts its bits.
-    fn is_inside(self, place: Place, index: u8, word: Option<Place>) -> bool {
-        let bits = |place: Place| u64::from_be_bytes(place.mask());
+    fn is_inside(self, place: Windowed, index: u16, word: Option<Windowed>) -> bool {
+        let bits = |(_, place): Windowed| u64::from_be_bytes(place.mask());
         self.place(place, index).is_some_and(|moved| word.is_none_or(|word| bits(moved) & !bits(word) == 0))
     }
 }
@@ -77,7 +94,7 @@ impl Unit {
 
 impl Resolver<'_> {
     /// Reads `repeat`, `step` and `first` of a field. `word` is the word around it.
-    pub fn row(&mut self, merged: &Merged, place: Place, word: Option<Place>) -> Option<Row> {
+    pub fn row(&mut self, merged: &Merged, placed: Windowed, word: Option<Windowed>, is_long: bool) -> Option<Row> {
         let field = &merged.field;
         let [repeat, step, first] = [Key::Repeat, Key::Step, Key::First].map(|key| merged.path(self.diagnostics, key));
         let Some(count) = &field.repeat else {
@@ -86,17 +103,32 @@ impl Resolver<'_> {
             }
             return Some(Row::ALONE);
         };
-        let count = self.integer(&repeat, count, 2, MOST_ELEMENTS)?;
+        let (least, count) = self.count(&repeat, count, is_long)?;
         let word = word.filter(|_| field.bits.is_some());
-        let unit = Unit::of(place, word);
+        let (_, place) = placed;
+        let unit = Unit::of(place, word.map(|(_, word)| word));
         let length = match &field.step {
             Some(text) => self.step(&step, text, &unit)?,
             None => unit.size,
         };
-        let first = field.first.as_ref().map_or(Some(1), |text| self.integer(&first, text, 0, u16::MAX - 32))?;
-        let row = Row { count, first, distance: length * unit.bits, order: place.order() };
-        self.check_inside(&repeat, row, place, word)?;
+        let first = field
+            .first
+            .as_ref()
+            .map_or(Some(1), |text| self.integer(&first, text, 0, u16::MAX - MOST_LONG_ELEMENTS))?;
+        let stride = if is_long && word.is_none() { length } else { 0 };
+        let row = Row { count, least, first, distance: length * unit.bits, order: place.order(), stride };
+        self.check_inside(&repeat, row, placed, word)?;
         Some(row)
+    }
+
+    /// Reads how many elements there are. In a long message it can be a range.
+    fn count(&mut self, path: &Path, text: &str, is_long: bool) -> Option<(Option<u16>, u16)> {
+        if let Some((least, most)) = text.split_once("..").filter(|_| is_long) {
+            let most = self.integer(path, most, 2, MOST_LONG_ELEMENTS)?;
+            return Some((Some(self.integer(path, least, 1, most - 1)?), most));
+        }
+        let most = if is_long { MOST_LONG_ELEMENTS } else { MOST_ELEMENTS };
+        Some((None, self.integer(path, text, 2, most)?))
     }
 
     /// Refuses a key that needs `repeat` beside it.
@@ -126,7 +158,7 @@ impl Resolver<'_> {
     }
 
     /// Tests that the word or the frame has room for all elements.
-    fn check_inside(&mut self, path: &Path, row: Row, place: Place, word: Option<Place>) -> Option<()> {
+    fn check_inside(&mut self, path: &Path, row: Row, place: Windowed, word: Option<Windowed>) -> Option<()> {
         let fitting = (0..row.count).take_while(|index| row.is_inside(place, *index, word)).count();
         if fitting == usize::from(row.count) {
             return Some(());
@@ -155,21 +187,23 @@ impl Resolver<'_> {
             leaves.signals.push(signal);
             return Some(());
         }
-        let Signal { name, doc, place, .. } = &signal;
-        let array = leaves.arrays.push(Array { name: name.clone(), doc: doc.clone(), elements: Vec::new() });
+        let Signal { name, doc, window, place, .. } = &signal;
+        let least = row.least.map(usize::from);
+        let array = leaves.arrays.push(Array { name: name.clone(), doc: doc.clone(), elements: Vec::new(), least });
         for index in 0..row.count {
-            let Some(place) = row.place(*place, index) else {
+            let Some((window, place)) = row.place((*window, *place), index) else {
                 let text = format!("the frame has no room for element {} of `{name}`", index + 1);
                 let help = "correct the count, the places or the `step`";
                 self.error_with_help(&rules::ARRAY, doc.path.at_key(), text, help);
                 return None;
             };
-            let number = row.first + u16::from(index);
+            let number = row.first + index;
             leaves.signals.push(Signal {
                 name: format!("{name}_{number}"),
                 doc: numbered(doc, number),
+                window,
                 place,
-                element: Some(Element { array, index }),
+                element: Some(Element { array, index: u8::try_from(index).unwrap_or(u8::MAX) }),
                 ..signal.clone()
             });
         }

@@ -10,8 +10,8 @@ use crate::diagnostic::Diagnostic;
 use crate::encoding::said;
 use crate::hex;
 use crate::model::{
-    Array, Doc, Example, Failure, Id, Identifier, Kind, Meaning, Message, MessageId, Misfit, NoteRule, Origin, Said,
-    Signal, SignalId, StatusBit, Table, ValueExample,
+    Array, Doc, Example, Failure, Id, Identifier, Kind, LongExample, Meaning, Message, MessageId, Misfit, NoteRule,
+    Origin, Said, Signal, SignalId, StatusBit, Table, ValueExample,
 };
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
@@ -99,9 +99,13 @@ impl Resolver<'_> {
         outer: &Doc,
         messages: &Messages,
     ) -> Option<Example> {
-        let (kind, text) = self.printed_kind(path, example)?;
-        let printed = self.printed(&path.key(kind.name()), text)?;
+        let (kind, texts) = self.printed_kind(path, example)?;
         let known = message.map(|index| &messages[index]);
+        let ([text], None) = (texts, &example.count) else {
+            self.long_example(path, (kind, texts), example, known, outer);
+            return None;
+        };
+        let printed = self.printed(&path.key(kind.name()), text)?;
         let means = known.map(|known| self.meanings(&path.key("means"), example.means.as_ref(), known));
         let model = example.model.as_ref().and_then(|name| self.device_model(&path.key("model"), name));
         Some(Example {
@@ -139,10 +143,59 @@ impl Resolver<'_> {
         Some(Failure::ALL[index].0)
     }
 
-    /// Returns the frame of an example and its kind.
-    fn printed_kind<'e>(&mut self, path: &Path, example: &'e ast::Example) -> Option<(Kind, &'e str)> {
+    /// Resolves an example that shows all frames of a message in parts.
+    fn long_example(
+        &mut self,
+        path: &Path,
+        (kind, texts): (Kind, &[String]),
+        example: &ast::Example,
+        message: Option<&Message>,
+        outer: &Doc,
+    ) {
+        let name = message.map_or("", |message| &message.name);
+        let has_parts = self.spec.messages.get(name).is_some_and(|message| message.parts.is_some());
+        let Some(long) = message.and_then(|message| message.long) else {
+            if has_parts {
+                return;
+            }
+            let text = "a list of frames, and a `count`, are for an example of a message in `parts`".to_owned();
+            let help = "write one frame without `count`, and an example for each other frame";
+            return self.error_with_help(&rules::EXAMPLE, path.key(kind.name()).at_value(), text, help);
+        };
+        if example.fails.is_some() {
+            let text = "`fails` means nothing for a list of frames".to_owned();
+            let help = "write an example of the frame that fails";
+            self.error_with_help(&rules::MISPLACED_KEY, path.key("fails").at_key(), text, help);
+        }
+        let content = self.tables.long_messages[long].content.clone();
+        let mut frames = Vec::new();
+        for (index, text) in texts.iter().enumerate() {
+            let at = path.key(kind.name()).index(index);
+            let Some(printed) = self.printed(&at, text) else { return };
+            frames.push((printed.id, printed.data.unwrap_or_default()));
+        }
+        let model = example.model.as_ref().and_then(|name| self.device_model(&path.key("model"), name));
+        let count = example.count.as_ref().and_then(|text| self.integer(&path.key("count"), text, 1, 256));
+        let means = self.meanings(&path.key("means"), example.means.as_ref(), &content);
+        let example = LongExample {
+            doc: example_remarks(example).doc(path, Some(outer)),
+            kind,
+            long,
+            frames,
+            model: model.or_else(|| content.models.first().copied()),
+            count,
+            means,
+            notes: self.notes(&path.key("notes"), &example.notes),
+            origin: self.origin(path, example.origin.as_deref()),
+        };
+        self.tables.long_examples.push(example);
+    }
+
+    /// Returns the frames of an example and their kind.
+    fn printed_kind<'e>(&mut self, path: &Path, example: &'e ast::Example) -> Option<(Kind, &'e [String])> {
         let texts = [&example.request, &example.reply, &example.report];
-        let mut given = Kind::ALL.into_iter().zip(texts).filter_map(|(kind, text)| Some((kind, text.as_deref()?)));
+        let given = Kind::ALL.into_iter().zip(texts).map(|(kind, texts)| (kind, texts.0.as_slice()));
+        let mut given = given.filter(|(_, texts)| !texts.is_empty());
         let (first, second) = (given.next(), given.next());
         if first.is_none() || second.is_some() {
             let help =

@@ -1,11 +1,10 @@
 //! Goes through the fields of a message: takes words, groups and packed values apart, and makes
 //! signals and constants of the rest.
 
-use canspec_runtime::Place;
-
 use super::Resolver;
-use super::arrays::Row;
+use super::arrays::{Row, Windowed};
 use super::keys::{Role, Site};
+use super::long::{DATA, PART};
 use super::texts::{self, remarks};
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
@@ -44,7 +43,9 @@ impl Leaves {
 struct Outer<'a> {
     site: Site,
     /// The word whose bits the field's `bits` count.
-    word: Option<Place>,
+    word: Option<Windowed>,
+    /// Whether `bytes` count in the data of several frames.
+    is_long: bool,
     doc: &'a Doc,
     /// Name of the message, for types without a name of their own.
     owner: &'a str,
@@ -59,7 +60,16 @@ struct Outer<'a> {
 impl<'a> Outer<'a> {
     /// Returns what is around the fields of a message.
     fn of_message(doc: &'a Doc, owner: &'a str) -> Self {
-        Self { site: Site::Message, word: None, doc, owner, around: &[], row: Row::ALONE, group: Group::NONE }
+        Self {
+            site: Site::Message,
+            word: None,
+            is_long: false,
+            doc,
+            owner,
+            around: &[],
+            row: Row::ALONE,
+            group: Group::NONE,
+        }
     }
 
     /// Returns the name of a field as the spec writes it, without that of its group.
@@ -102,11 +112,31 @@ impl Resolver<'_> {
     }
 
     /// Resolves the fields of a message; signals come by first byte, then as written.
-    pub fn message_leaves(&mut self, path: &Path, fields: &ast::Map<Field>, doc: &Doc, owner: &str) -> Leaves {
+    pub fn message_leaves(
+        &mut self,
+        path: &Path,
+        fields: &ast::Map<Field>,
+        doc: &Doc,
+        owner: &str,
+        is_long: bool,
+    ) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaves(path, fields, Outer::of_message(doc, owner), &mut leaves);
-        leaves.signals.sort_by_key(Signal::start);
+        self.leaves(path, fields, Outer { is_long, ..Outer::of_message(doc, owner) }, &mut leaves);
+        leaves.signals.sort_by_key(|signal| signal.bytes().start);
+        leaves
+    }
+
+    /// Resolves the fields of a frame that carries a part of a long message: the number of the part
+    /// and its data.
+    pub fn part_leaves(&mut self, path: &Path, parts: &ast::Parts, doc: &Doc, owner: &str) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.tables.fields = 0;
+        let outer = Outer::of_message(doc, owner);
+        self.leaf(&path.key("number"), PART, &parts.number, outer, &mut leaves);
+        let data =
+            Field { bytes: Some(parts.data.clone()), format_of_number: Some("bytes".to_owned()), ..Field::default() };
+        self.leaf(&path.key("data"), DATA, &data, outer, &mut leaves);
         leaves
     }
 
@@ -117,11 +147,11 @@ impl Resolver<'_> {
     }
 
     /// Resolves the only field of a message.
-    pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Leaves {
+    pub fn value_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str, is_long: bool) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
-        self.leaf(path, "value", field, Outer::of_message(doc, owner), &mut leaves);
-        leaves.signals.sort_by_key(Signal::start);
+        self.leaf(path, "value", field, Outer { is_long, ..Outer::of_message(doc, owner) }, &mut leaves);
+        leaves.signals.sort_by_key(|signal| signal.bytes().start);
         leaves
     }
 
@@ -163,10 +193,11 @@ impl Resolver<'_> {
         if field.format.is_some() {
             self.check_keys(merged, Role::of_packed(outer.site));
             self.check_in_no_array(path, "a packed value", outer.row)?;
+            self.check_not_long(path, "a packed value", outer.is_long)?;
             leaves.signals.push(self.packed(name, merged, doc, outer)?);
             return Some(());
         }
-        let place = self.place(path, name, merged, outer.word)?;
+        let place = self.place(path, name, merged, outer.word, outer.is_long)?;
         if field.fields.is_empty() {
             return self.value(path, name, merged, (place, doc), outer, leaves);
         }
@@ -184,39 +215,41 @@ impl Resolver<'_> {
         path: &Path,
         name: &str,
         merged: &Merged,
-        (place, doc): (Place, Doc),
+        (placed, doc): (Windowed, Doc),
         outer: Outer,
         leaves: &mut Leaves,
     ) -> Option<()> {
+        let (window, place) = placed;
         // Each use of a group has the same types of named values.
         let owner = if outer.group.name.is_empty() { outer.owner } else { outer.group.name };
         let signal = self.signal(outer.own_name(name), merged, place, doc, owner)?;
-        let signal = Signal { name: name.to_owned(), ..signal };
+        let signal = Signal { name: name.to_owned(), window, ..signal };
         let is_sound = self.is_sound(merged);
         let constant = &merged.field.constant;
         let role = if constant.is_some() { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) };
         self.check_keys(merged, role);
         let Some(text) = constant else {
-            let row = self.row_in(path, merged, place, outer)?;
+            let row = self.row_in(path, merged, placed, outer)?;
             self.add_signal(signal, row, leaves)?;
             let names_another = self.diagnostics.has_errors_in(&path.key("type"));
             return (is_sound && !names_another).then_some(());
         };
         self.check_in_no_array(path, "a constant", outer.row)?;
+        self.check_not_long(path, "a constant", outer.is_long)?;
         let value = self.integer(&merged.path(self.diagnostics, Key::Const), text, 0, place.max())?;
         leaves.constants.push((signal, value));
         self.is_sound(merged).then_some(())
     }
 
     /// Returns the row of elements that a field makes, or is a part of.
-    fn row_in(&mut self, path: &Path, merged: &Merged, place: Place, outer: Outer) -> Option<Row> {
+    fn row_in(&mut self, path: &Path, merged: &Merged, place: Windowed, outer: Outer) -> Option<Row> {
         if outer.site != Site::Message {
             return Some(Row::ALONE);
         }
         if merged.field.repeat.is_some() {
             self.check_in_no_array(path, "an array", outer.row)?;
         }
-        let row = self.row(merged, place, outer.word)?;
+        let row = self.row(merged, place, outer.word, outer.is_long)?;
         Some(if row.is_array() { row } else { outer.row })
     }
 
@@ -258,6 +291,7 @@ impl Resolver<'_> {
             name: name.to_owned(),
             doc,
             types: merged.types.clone(),
+            window: 0,
             place,
             encoding: Encoding::Packed { pieces, parts },
             unit: None,

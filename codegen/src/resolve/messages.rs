@@ -105,6 +105,7 @@ impl Resolver<'_> {
             .collect();
         self.sets(&surroundings, &mut drafts);
         let (messages, frames) = self.complete(drafts, modes);
+        self.count_elements(&messages);
         self.check_travel(&messages);
         (messages, frames)
     }
@@ -120,9 +121,14 @@ impl Resolver<'_> {
         self.check_name(path, name);
         self.check_not_empty(path, &["answers", "models", "members", "in"]);
         let doc = remarks!(message).doc(path, None);
-        let leaves = self.contents(path, name, message, &doc);
+        let contents = self.contents(path, name, message, &doc);
         let lengths = self.lengths(&path.key("length"), &message.length.0, surroundings.length);
         let exchanges = self.exchanges(path, message, surroundings);
+        let models = self.message_models(&path.key("models"), &message.models);
+        let (leaves, long) = match &message.parts {
+            Some(parts) => self.long_message(id, path, (parts, contents), (name, &doc, &models)),
+            None => (contents, None),
+        };
         let choice = self.choice(path, message, leaves.constants, &leaves.replies, surroundings.identifier);
         let set = self.set(path, message);
         self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
@@ -147,7 +153,6 @@ impl Resolver<'_> {
         if message.every.is_some() && exchanges.len() == message.access.len() && !exchanges.iter().any(reports) {
             self.misplaced_every(path, "a message", "name an access that has a `report`");
         }
-        let models = self.message_models(&path.key("models"), &message.models);
         let sends = self.own_sends(&path.key("send"), &message.send, &frames, surroundings);
         let reserved = self.reserved(path, message.reserved.as_ref(), surroundings.reserved);
         let name = name.to_owned();
@@ -164,6 +169,7 @@ impl Resolver<'_> {
             every,
             models,
             set,
+            long,
             sends,
             reserved,
         };
@@ -266,18 +272,19 @@ impl Resolver<'_> {
 
     /// Resolves `fields` or `value`.
     fn contents(&mut self, path: &Path, name: &str, message: &ast::Message, doc: &Doc) -> Leaves {
+        let is_long = message.parts.is_some();
         match &message.value {
             Some(value) if !message.fields.is_empty() => {
                 let text = format!("`{name}` has both `fields` and `value`");
                 let help = "`value` is the short form of one field called `value`; write one of the two";
                 self.error_with_help(&rules::TYPE, path.key("value").at_key(), text, help);
-                let fields = self.message_leaves(&path.key("fields"), &message.fields, doc, name);
-                let value = self.value_leaf(&path.key("value"), value, doc, name);
+                let fields = self.message_leaves(&path.key("fields"), &message.fields, doc, name, is_long);
+                let value = self.value_leaf(&path.key("value"), value, doc, name, is_long);
                 let written = [fields, value].into_iter().flat_map(Leaves::names);
                 Leaves { given_up: written.collect(), ..Leaves::default() }
             }
-            Some(value) => self.value_leaf(&path.key("value"), value, doc, name),
-            None => self.message_leaves(&path.key("fields"), &message.fields, doc, name),
+            Some(value) => self.value_leaf(&path.key("value"), value, doc, name, is_long),
+            None => self.message_leaves(&path.key("fields"), &message.fields, doc, name, is_long),
         }
     }
 

@@ -19,6 +19,7 @@ rules! {
     VALUE_WIDTH "value_width" Resolve ERROR;
     STATUS_BIT "status_bit" Resolve ERROR;
     ARRAY "array" Resolve ERROR;
+    PARTS "parts" Resolve ERROR;
     VALUE "value" Resolve ERROR;
     ADDRESSING "addressing" Resolve EITHER;
     ACCESS "access" Resolve ERROR;
@@ -46,6 +47,7 @@ pub static RULES: &[&Rule] = &[
     &VALUE_WIDTH,
     &STATUS_BIT,
     &ARRAY,
+    &PARTS,
     &VALUE,
     &ADDRESSING,
     &ACCESS,

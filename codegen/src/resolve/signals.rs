@@ -3,6 +3,7 @@
 use canspec_runtime::Place;
 
 use super::Resolver;
+use super::arrays::Windowed;
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{DeviceModel, Doc, Misfit, ModelId, OfModel, Signal, TypeOfModel};
@@ -11,14 +12,22 @@ use crate::syntax::ast::Key;
 use crate::syntax::tree::Path;
 
 impl Resolver<'_> {
-    /// Reads `bytes` or `bits`.
-    pub fn place(&mut self, path: &Path, name: &str, merged: &Merged, word: Option<Place>) -> Option<Place> {
+    /// Reads `bytes` or `bits`. `word` is the word around the field.
+    pub fn place(
+        &mut self,
+        path: &Path,
+        name: &str,
+        merged: &Merged,
+        word: Option<Windowed>,
+        is_long: bool,
+    ) -> Option<Windowed> {
         let (bytes, bits) = (merged.path(self.diagnostics, Key::Bytes), merged.path(self.diagnostics, Key::Bits));
         match (&merged.field.bytes, &merged.field.bits, word) {
-            (Some(text), None, _) => self.bytes(&bytes, text),
-            (None, Some(text), Some(word)) => {
+            (Some(text), None, _) if is_long => self.window(&bytes, text),
+            (Some(text), None, _) => Some((0, self.bytes(&bytes, text)?)),
+            (None, Some(text), Some((window, word))) => {
                 let (high, low) = self.bits(&bits, text, word.width())?;
-                Some(word.bits(high, low))
+                Some((window, word.bits(high, low)))
             }
             (None, Some(text), None) => {
                 let message = format!("`{name}` counts bits, but stands in no word");
@@ -68,6 +77,7 @@ impl Resolver<'_> {
             name: name.to_owned(),
             doc,
             types: merged.types.clone(),
+            window: 0,
             place,
             encoding,
             unit,

@@ -154,7 +154,7 @@ impl Resolver<'_> {
     }
 
     /// Splits a place into its two ends.
-    fn ends<'t>(&mut self, path: &Path, text: &'t str, form: &str) -> Option<(&'t str, &'t str)> {
+    pub fn ends<'t>(&mut self, path: &Path, text: &'t str, form: &str) -> Option<(&'t str, &'t str)> {
         let ends = text.split_once("..").unwrap_or((text, text));
         if Rational::parse(ends.0).is_none() || Rational::parse(ends.1).is_none() {
             let parts: Vec<_> = text.trim_matches(['[', ']']).split(['-', ':', ',', '.']).map(str::trim).collect();

@@ -34,14 +34,16 @@ enum Demand {
 
 /// Keys whose texts have a form, with the struct that has the key. The keys of a field are in
 /// [`of_field`].
-const FORMS: [(&str, &str, Form); 12] = [
+const FORMS: [(&str, &str, Form); 14] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
     ("Access", "report", NUMBER),
     ("Access", "request", NUMBER),
+    ("Example", "count", NUMBER),
     ("Message", "length", NUMBER),
     ("Message", "match", NUMBER),
     ("Message", "send", NUMBER),
+    ("Parts", "data", PLACE),
     ("Reserved", "send", NUMBER),
     ("StatusBit", "bit", NUMBER),
     ("StatusBit", "byte", NUMBER),
@@ -77,7 +79,8 @@ fn of_field(key: Key) -> Demand {
     match key {
         Key::Bytes => Demand::Form(Form { message: "Write `0..3` or one number.", ..PLACE }),
         Key::Bits => Demand::Form(PLACE),
-        Key::Repeat | Key::Step | Key::First => Demand::Form(NUMBER),
+        Key::Repeat => Demand::Form(Form { message: "Write `3`, or `1..48` in a message of parts.", ..PLACE }),
+        Key::Step | Key::First => Demand::Form(NUMBER),
         Key::Fill | Key::Scale | Key::Offset | Key::Const | Key::Send | Key::Normal | Key::Continues | Key::Reply => {
             Demand::Form(NUMBER)
         }

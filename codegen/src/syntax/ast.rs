@@ -5,7 +5,7 @@ mod message;
 mod reading;
 
 pub use field::{Field, Key};
-pub use message::{Example, Means, Message, Sequence};
+pub use message::{Example, Means, Message, Parts, Sequence};
 
 use indexmap::IndexMap;
 use serde::Deserialize;
@@ -389,6 +389,15 @@ pub struct Allowance {
     pub at: String,
     /// Why they are accepted: `only seen on the bus`.
     pub because: String,
+}
+
+/// A number, or one for each device model.
+#[derive(Clone, Debug)]
+pub enum ByModel {
+    /// The same for every model: `1`.
+    Every(String),
+    /// One for each of these models: `{V10: 0, V11: 1}`.
+    Each(Map<String>),
 }
 
 /// One name, or a list of names.

@@ -1,7 +1,7 @@
 //! Examples of frames: random frames, and what the interpreter decodes them to.
 
 use canspec_codegen::interpret::{
-    Content, Decoded, Frame, Problem, Reading, Unrecognised, Value as Meaning, decode, encode,
+    Assembly, Content, Decoded, Frame, Problem, Reading, Unrecognised, Value as Meaning, decode, encode, encode_long,
 };
 use canspec_codegen::model::{Encoding, Kind, Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
@@ -50,6 +50,11 @@ impl Draft {
                 Err(unrecognised) => self.failing(protocol, &frame, &unrecognised),
             });
         }
+        for _ in 0..FRAMES {
+            let (model, frame) = (self.one(&models), frames.next_frame());
+            let decoded = decode(protocol, model, &frame).ok();
+            examples.extend(decoded.and_then(|decoded| self.long(protocol, model, &frame, &decoded)));
+        }
         examples.sort_by_key(|example| example.kind == Kind::Request);
         examples
     }
@@ -93,6 +98,55 @@ impl Draft {
         let outer = decoded.set.map_or_else(|| name.clone(), |set| protocol[set].name.clone());
         let inner = decoded.set.map(|_| name.clone());
         Some(Example { map, kind: decoded.kind, of: Some((outer, inner)), message: Some(name) })
+    }
+
+    /// Returns an example of all frames of a long message, the first of which has the form of `frame`.
+    fn long(
+        &mut self,
+        protocol: &Protocol,
+        model: Option<ModelId>,
+        frame: &Frame,
+        decoded: &Decoded,
+    ) -> Option<Example> {
+        let message = &protocol[decoded.message];
+        let (_, long) = protocol.long_message(message).filter(|_| !decoded.signals.is_empty())?;
+        let (number, data) = (message[long.parts.number].place, message[long.parts.data].place);
+        let varying = long.varying().and_then(|array| Some(array.least?..=array.elements.len()));
+        let count = varying.map(|counts| self.random.usize(counts));
+        let mut assembly = Assembly::default();
+        assembly.count_as(count);
+        let (mut printed, mut ended) = (Vec::new(), Vec::new());
+        for index in 0..long.parts_of(long.bytes_with(count)) {
+            let mut bytes = frame.padded();
+            number.put(&mut bytes, u64::from(long.first(model)?) + index as u64);
+            data.put(&mut bytes, self.random.u64(..));
+            let part = Frame { data: bytes[..frame.data.len()].to_vec(), ..frame.clone() };
+            let decoded = decode(protocol, model, &part).ok()?;
+            ended.extend(assembly.take(protocol, model, (), &part, &decoded).ended);
+            printed.push(part);
+        }
+        let whole = ended.pop()?;
+        let made = encode_long(protocol, model, &Content::of_long(protocol, &whole)).ok()?;
+        if made != printed || model.is_none() && !message.models.is_empty() {
+            return None;
+        }
+        let mut map = Map::of([(decoded.kind.name(), list(printed.iter().map(written)))]);
+        let said = whole.decoded.signals.iter().map(|reading| {
+            let signal = &long.content[reading.signal];
+            Some((signal.name.clone(), means(protocol, signal, reading)?))
+        });
+        map.put("means", Map::of(said.collect::<Option<Vec<_>>>()?));
+        if let Some(count) = count {
+            map.put("count", count.to_string());
+        }
+        if let Some(model) = model {
+            map.put("model", protocol.models[model].name.clone());
+        }
+        if !whole.decoded.notes.is_empty() {
+            map.put("notes", list(whole.decoded.notes.iter().map(|note| note.rule.name())));
+        }
+        let name = message.name.clone();
+        Some(Example { map, kind: decoded.kind, of: Some((name.clone(), None)), message: Some(name) })
     }
 
     /// Writes some numbers as rounded ones.

@@ -69,6 +69,33 @@ impl Draft {
         fields
     }
 
+    /// Returns the fields of a message that is longer than a frame, and whether the last one varies in length.
+    pub fn long_fields(&mut self) -> (Map, bool) {
+        let (mut fields, mut scope, mut first) = (Map::default(), Scope::default(), 0);
+        for _ in 0..self.random.u8(1..5) {
+            let count = self.random.u8(1..=8);
+            let mut field = Map::of([("bytes", self.bytes(first, count))]);
+            self.fill(&mut field, 8 * count);
+            let name = self.names.plain(&mut scope);
+            fields.put(name, field);
+            first += count + self.random.u8(..2);
+        }
+        let varies = self.random.bool();
+        let (size, most) = (self.random.u8(1..=4), self.random.u8(2..=30));
+        let mut array = Map::of([("bytes", self.bytes(first, size))]);
+        if self.random.bool() {
+            let parts = self.parts(8 * size, &mut scope, false);
+            array.put("fields", parts);
+        } else {
+            self.fill(&mut array, 8 * size);
+        }
+        let least = self.random.u8(1..most);
+        array.put("repeat", if varies { format!("{least}..{most}") } else { most.to_string() });
+        let name = self.names.plain(&mut scope);
+        fields.put(name, array);
+        (fields, varies)
+    }
+
     /// Returns a field of `count` bytes.
     pub fn field(&mut self, first: u8, count: u8, scope: &mut Scope, site: &Site, has_reply: &mut bool) -> Map {
         if count > 1 && self.chance(12) {

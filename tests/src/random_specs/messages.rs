@@ -210,9 +210,42 @@ impl Draft {
             let reserved = self.reserved();
             message.put("reserved", reserved);
         }
-        self.content(bus, &mut message, &kinds, false);
+        if bus.header_bytes < 5 && self.chance(12) {
+            self.long(bus, traffic, &mut message);
+        } else {
+            self.content(bus, &mut message, &kinds, false);
+        }
         self.remark(&mut message);
         self.add_message(traffic, message);
+    }
+
+    /// Adds what a message carries in several frames.
+    fn long(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map) {
+        let (number, data) = (bus.header_bytes, bus.header_bytes + 1);
+        let mut parts = Map::of([("number", Map::of([("bytes", number.to_string())]))]);
+        if self.models.is_empty() || self.random.bool() {
+            let first = self.random.u64(..3);
+            parts.put("first", self.number(first));
+        } else {
+            let models = self.models.clone();
+            let firsts = self.some(&models).into_iter().enumerate();
+            parts.put("first", Map::of(firsts.map(|(index, model)| (model, index.to_string()))));
+        }
+        let last = self.random.u8(data..8);
+        parts.put("data", format!("{data}..{last}"));
+        let (fields, varies) = self.long_fields();
+        let ordinary = |access: &&Access| access.role == Role::Ordinary && !access.has_command;
+        let access = traffic.accesses.iter().find(ordinary).cloned();
+        if let Some(access) = access.filter(|_| varies && self.random.bool()) {
+            let (name, value) = self.command(bus, traffic);
+            let mut counting = Map::of([("match", Map::of([(name, value)]))]);
+            counting.put("access", list([access.name]));
+            counting.put("value", Map::of([("bytes", number.to_string())]));
+            let name = self.add_message(traffic, counting);
+            parts.put("count", format!("{name}.value"));
+        }
+        message.put("parts", parts);
+        message.put("fields", fields);
     }
 
     /// Says what the bits are that nothing names.

@@ -19,6 +19,11 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
         is_beyond.then_some("names raw values from 2^63 on")
     }));
     losses.extend(protocol.messages.iter().filter_map(lengths));
+    losses.extend(
+        protocol.long_messages.iter().map(|long| {
+            format!("what the parts of `{}` say together; it has their numbers and data", long.content.name)
+        }),
+    );
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
         losses.push("which request a reply answers, and who answers it".to_owned());
     }

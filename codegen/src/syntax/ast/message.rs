@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Field, Map, Names, Pattern, Reserved};
+use super::{ByModel, Field, Map, Names, Pattern, Reserved};
 
 /// A message: what chooses it, how it travels, and what it carries.
 #[derive(Clone, Debug, Deserialize)]
@@ -49,6 +49,10 @@ pub struct Message {
     /// `[voltage, current]`; none if absent. They make the message a set of frames.
     #[serde(default)]
     pub members: Vec<String>,
+    /// How a message longer than a frame travels in several, each with a number:
+    /// `{number: {bytes: 0}, first: 1, data: 1..6}`; it is one frame if absent. The bytes of its
+    /// fields then count in the data of all parts together.
+    pub parts: Option<Parts>,
     /// Kinds of frames that each of the `members` has, out of `request` and `reply`:
     /// `[request, reply]`; `[reply]` if absent.
     #[serde(rename = "in", default)]
@@ -68,6 +72,22 @@ pub struct Message {
     pub erratum: Names,
 }
 
+/// How a message longer than a frame is parted.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Parts {
+    /// Field of the frame with the number of the part: `{bytes: 0}`.
+    pub number: Field,
+    /// Number of the first part, or one for each model: `1` or `{V10: 0, V11: 1}`.
+    pub first: ByModel,
+    /// Bytes of the frame with the data of the part, the first one first: `1..6`.
+    pub data: String,
+    /// Signal of the same device with the number of elements that an array really has:
+    /// `status.cells`. If absent, the number is not known.
+    pub count: Option<String>,
+}
+
 /// One frame of the document and what it means.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -75,14 +95,17 @@ pub struct Message {
 pub struct Example {
     /// A frame to a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` if the
     /// document prints no data. `0x000302F0 00 00` and `000302F0: 00 00` are read, too. An example
-    /// has one of `request`, `reply` and `report`.
-    pub request: Option<String>,
+    /// has one of `request`, `reply` and `report`. A list has all frames of a message in `parts`.
+    #[serde(default)]
+    pub request: Names,
     /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` if the document prints
-    /// no data.
-    pub reply: Option<String>,
+    /// no data. A list has all frames of a message in `parts`.
+    #[serde(default)]
+    pub reply: Names,
     /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` if the document prints no
-    /// data.
-    pub report: Option<String>,
+    /// data. A list has all frames of a message in `parts`.
+    #[serde(default)]
+    pub report: Names,
     /// Message of the frame, only in a sequence or a set of frames: `output`. If absent, a frame of
     /// a set belongs to the set, and a frame of a sequence fails. It then fails as `identifier`,
     /// `foreign` or `unknown_message`.
@@ -91,6 +114,8 @@ pub struct Example {
     /// or `500 V` if there is only one signal. `~51.4 V` is a rounded number. Absent if there are no
     /// signals or no data.
     pub means: Option<Means>,
+    /// How many elements the array of a message in `parts` really has: `13`; not known if absent.
+    pub count: Option<String>,
     /// Device model that the frame comes from or goes to: `SM_750`. If absent, it is the first
     /// model that has the message, or none if every model has it.
     pub model: Option<String>,

@@ -1,5 +1,5 @@
 //! Reads what can be written in several ways: one name or a list, a place or a field, a value or a
-//! map.
+//! map. A number can be one for each model.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::{Field, IdentifierEntry, Map, Means, Names};
+use super::{ByModel, Field, IdentifierEntry, Map, Means, Names};
 
 impl<'de> Deserialize<'de> for Names {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -76,5 +76,27 @@ impl<'de> Deserialize<'de> for Means {
             }
         }
         deserializer.deserialize_any(MeansVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for ByModel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ByModelVisitor;
+        impl<'de> Visitor<'de> for ByModelVisitor {
+            type Value = ByModel;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a number, or a number for each model")
+            }
+
+            fn visit_str<E>(self, number: &str) -> Result<ByModel, E> {
+                Ok(ByModel::Every(number.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ByModel, A::Error> {
+                Map::deserialize(MapAccessDeserializer::new(map)).map(ByModel::Each)
+            }
+        }
+        deserializer.deserialize_any(ByModelVisitor)
     }
 }

@@ -1,0 +1,60 @@
+//! Long messages of a log, put together from frames of each channel.
+
+use canspec_codegen::interpret::{Assembled, Assembly, Decoded, Taken};
+use canspec_codegen::model::Protocol;
+
+use crate::log::Entry;
+use crate::model::Device;
+
+/// What a long message remembers of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    pub line: usize,
+    pub time: Option<String>,
+}
+
+/// The parts that came so far, by protocol and channel.
+#[derive(Clone, Default, PartialEq)]
+pub struct Assemblies(Vec<Bus>);
+
+#[derive(Clone, PartialEq)]
+struct Bus {
+    protocol: String,
+    channel: Option<String>,
+    assembly: Assembly<Mark>,
+}
+
+impl Assemblies {
+    /// Takes a frame of the log.
+    pub fn take(
+        &mut self,
+        (protocol, model): Device<'_>,
+        line: usize,
+        entry: &Entry<'_>,
+        decoded: &Decoded,
+    ) -> Taken<Mark> {
+        if protocol.long_messages.is_empty() {
+            return Taken { is_part: false, ended: Vec::new() };
+        }
+        let is_its = |bus: &Bus| bus.protocol == protocol.name && bus.channel.as_deref() == entry.channel;
+        let place = self.0.iter().position(is_its).unwrap_or_else(|| {
+            let channel = entry.channel.map(str::to_owned);
+            self.0.push(Bus { protocol: protocol.name.clone(), channel, assembly: Assembly::default() });
+            self.0.len() - 1
+        });
+        let mark = Mark { line, time: entry.time.as_deref().map(str::to_owned) };
+        self.0[place].assembly.take(protocol, model, mark, &entry.frame, decoded)
+    }
+
+    /// Ends all messages, each with its device and its channel.
+    pub fn finish<'a>(&mut self, devices: &[Device<'a>]) -> Vec<(&'a Protocol, Option<String>, Assembled<Mark>)> {
+        let mut ended = Vec::new();
+        for bus in &mut self.0 {
+            let device = devices.iter().find(|(protocol, _)| protocol.name == bus.protocol);
+            let Some((protocol, model)) = device else { continue };
+            let whole = bus.assembly.finish(protocol, *model).into_iter();
+            ended.extend(whole.map(|whole| (*protocol, bus.channel.clone(), whole)));
+        }
+        ended
+    }
+}

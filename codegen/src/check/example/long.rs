@@ -1,0 +1,128 @@
+//! Runs the examples of long messages: all frames together must say what the example says.
+
+use super::{Checked, no_value, shown, wrong};
+use crate::diagnostic::At;
+use crate::hex;
+use crate::interpret::{Assembled, Assembly, Content, Form, Frame, decode, encode_long};
+use crate::model::{LongExample, LongMessage, Protocol};
+
+/// Decodes the frames, joins their parts, compares the values, and makes the frames again.
+pub fn check(protocol: &Protocol, example: &LongExample) -> Checked {
+    Checker { protocol, example, long: &protocol[example.long] }.run()
+}
+
+struct Checker<'a> {
+    protocol: &'a Protocol,
+    example: &'a LongExample,
+    long: &'a LongMessage,
+}
+
+impl Checker<'_> {
+    fn run(&self) -> Checked {
+        let assembled = self.assembled()?;
+        self.has_values(&assembled)?;
+        self.has_notes(&assembled)?;
+        self.encodes_back(&assembled)
+    }
+
+    fn frames(&self) -> Vec<Frame> {
+        let extended = self.protocol.identifier.extended;
+        let frame = |(id, data): &(u32, Vec<u8>)| Frame { id: *id, extended, data: data.clone(), form: Form::Data };
+        self.example.frames.iter().map(frame).collect()
+    }
+
+    fn frames_at(&self) -> At {
+        self.example.doc.path.key(self.example.kind.name()).at_value()
+    }
+
+    fn frame_at(&self, index: usize) -> At {
+        self.example.doc.path.key(self.example.kind.name()).index(index).at_value()
+    }
+
+    /// Joins the parts, which must be one whole message.
+    fn assembled(&self) -> Result<Assembled<usize>, Box<crate::diagnostic::Diagnostic>> {
+        let (protocol, model) = (self.protocol, self.example.model);
+        let mut assembly = Assembly::default();
+        assembly.count_as(self.example.count.map(usize::from));
+        let mut ended = Vec::new();
+        for (index, frame) in self.frames().iter().enumerate() {
+            let decoded =
+                decode(protocol, model, frame).map_err(|problem| wrong(self.frame_at(index), problem.text))?;
+            if (decoded.message, decoded.kind) != (self.long.message, self.example.kind) {
+                let text = format!("this frame is a {} of `{}`", decoded.kind.name(), protocol[decoded.message].name);
+                return Err(wrong(self.frame_at(index), text));
+            }
+            let taken = assembly.take(protocol, model, index, frame, &decoded);
+            if !taken.is_part {
+                let notes: Vec<_> = decoded.notes.into_iter().map(|note| note.text).collect();
+                return Err(wrong(self.frame_at(index), format!("this frame carries no part: {}", notes.join("; "))));
+            }
+            ended.extend(taken.ended);
+        }
+        ended.extend(assembly.finish(protocol, model));
+        let messages = ended.len();
+        match <[Assembled<usize>; 1]>::try_from(ended) {
+            Ok([whole]) if whole.incomplete.is_none() => Ok(whole),
+            Ok([whole]) => Err(wrong(
+                self.frames_at(),
+                format!("the message is not whole: {}", whole.incomplete.unwrap_or_default()),
+            )),
+            Err(_) => Err(wrong(self.frames_at(), format!("these frames are {messages} messages"))),
+        }
+    }
+
+    fn has_values(&self, assembled: &Assembled<usize>) -> Checked {
+        let content = &self.long.content;
+        for meaning in &self.example.means {
+            meaning.said.as_ref().map_err(|misfit| Box::new(no_value(meaning, misfit)))?;
+            let signal = &content[meaning.signal];
+            let reading = assembled.decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
+            let Some(reading) = reading else {
+                return Err(wrong(meaning.path.at_value(), format!("the frames have no `{}`", signal.name)));
+            };
+            if !meaning.is(signal, reading.bits) {
+                let read = shown(self.protocol, signal, &reading.value, reading.bits);
+                let text = format!("`{}` is {} here, but the frames say {read}", signal.name, meaning.text);
+                return Err(wrong(meaning.path.at_value(), text));
+            }
+        }
+        if self.example.means.is_empty() {
+            let text = "the example does not say what the frames mean together".to_owned();
+            return Err(wrong(self.example.doc.path.key("means").at_key(), text));
+        }
+        Ok(())
+    }
+
+    fn has_notes(&self, assembled: &Assembled<usize>) -> Checked {
+        let notes = &assembled.decoded.notes;
+        if let Some(note) = notes.iter().find(|note| !self.example.notes.contains(&note.rule)) {
+            return Err(wrong(self.frames_at(), format!("the message has the note `{}`: {}", note.rule, note.text)));
+        }
+        let missing = |rule| !notes.iter().any(|note| note.rule == rule);
+        match self.example.notes.iter().position(|rule| missing(*rule)) {
+            None => Ok(()),
+            Some(index) => {
+                let at = self.example.doc.path.key("notes").index(index).at_value();
+                Err(wrong(at, format!("the message has no note `{}`", self.example.notes[index])))
+            }
+        }
+    }
+
+    fn encodes_back(&self, assembled: &Assembled<usize>) -> Checked {
+        let content = Content::of_long(self.protocol, assembled);
+        let frames = self.frames();
+        let made = encode_long(self.protocol, self.example.model, &content)
+            .map_err(|refusal| wrong(self.frames_at(), format!("it does not encode back: {refusal}")))?;
+        let differing = made.iter().zip(&frames).position(|(made, frame)| made != frame);
+        match differing.or_else(|| (made.len() != frames.len()).then_some(made.len().min(frames.len()))) {
+            None => Ok(()),
+            Some(index) => {
+                let [found, wanted] =
+                    [&made, &frames].map(|frames| frames.get(index).map(|frame| hex::digits(&frame.data)));
+                let [found, wanted] = [found, wanted].map(|digits| digits.unwrap_or_else(|| "no frame".to_owned()));
+                let text = format!("it encodes back to other bytes: {found} instead of {wanted}");
+                Err(wrong(self.frames_at(), text))
+            }
+        }
+    }
+}

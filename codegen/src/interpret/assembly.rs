@@ -1,0 +1,263 @@
+//! Puts the parts of long messages together, for many devices at a time.
+
+use super::long::Joined;
+use super::{Decoded, Frame, Note};
+use crate::model::{
+    AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Protocol, SelectorPlace, SignalId,
+};
+
+/// The parts that came so far. `M` is what the caller remembers of each frame.
+///
+/// A device sends the parts of a message in their order. A part whose number is not greater than that of the part
+/// before begins another message, and so does a part after a request. A frame that is repeated at once counts once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assembly<M> {
+    transfers: Vec<Transfer<M>>,
+    counts: Vec<Count>,
+    /// How many elements every array has that varies, whatever the device says.
+    count: Option<usize>,
+}
+
+impl<M> Default for Assembly<M> {
+    fn default() -> Self {
+        Self { transfers: Vec::new(), counts: Vec::new(), count: None }
+    }
+}
+
+/// The addresses of the two sides, in the order of their kinds.
+type Peers = Vec<(AddressTypeId, i64)>;
+
+/// How many elements a device says that an array has.
+#[derive(Clone, Debug, PartialEq)]
+struct Count {
+    node: Peers,
+    signal: (MessageId, SignalId),
+    value: usize,
+}
+
+/// The parts of one message, up to now.
+#[derive(Clone, Debug, PartialEq)]
+struct Transfer<M> {
+    long: LongMessageId,
+    peers: Peers,
+    /// Each part that came: how many come before it, its data, and its frame.
+    parts: Vec<(usize, Vec<u8>, M)>,
+    /// The last frame.
+    frame: Frame,
+    decoded: Decoded,
+}
+
+/// What became of a frame.
+#[derive(Clone, Debug)]
+pub struct Taken<M> {
+    /// Whether the frame carries a part that was kept, or repeats the one before.
+    pub is_part: bool,
+    /// The messages that ended.
+    pub ended: Vec<Assembled<M>>,
+}
+
+/// A long message, or what came of it.
+#[derive(Clone, Debug)]
+pub struct Assembled<M> {
+    /// What the caller remembers of the frames, in order.
+    pub marks: Vec<M>,
+    /// The last frame.
+    pub frame: Frame,
+    /// The values. Their signals are those of the long message.
+    pub decoded: Decoded,
+    /// The joined data, if no part is missing.
+    pub data: Option<Vec<u8>>,
+    /// Bits that no signal covers, first byte first.
+    pub reserved: Vec<u8>,
+    /// What is missing, in one sentence without a full stop.
+    pub incomplete: Option<String>,
+}
+
+/// A part of a message.
+struct Part {
+    index: usize,
+    data: Vec<u8>,
+    /// Whether the frame says that no other follows.
+    is_last: bool,
+}
+
+impl<M: Clone> Assembly<M> {
+    /// Sets how many elements an array of varying length has, whatever a device says.
+    pub fn count_as(&mut self, count: Option<usize>) {
+        self.count = count;
+    }
+
+    /// Takes a frame, and returns the messages that it ends.
+    pub fn take(
+        &mut self,
+        protocol: &Protocol,
+        model: Option<ModelId>,
+        mark: M,
+        frame: &Frame,
+        decoded: &Decoded,
+    ) -> Taken<M> {
+        let mut peers: Peers = decoded.addresses(protocol, frame.id).collect();
+        peers.sort_unstable();
+        self.keep_counts(protocol, &peers, decoded);
+        let found = protocol.long_message(&protocol[decoded.message]);
+        let Some((id, long)) = found else { return Taken { is_part: false, ended: Vec::new() } };
+        let part = Part::of(protocol, long, model, frame, decoded);
+        let mut ended = Vec::new();
+        let open = self.transfers.iter().position(|known| (known.long, &known.peers) == (id, &peers));
+        let Some(part) = part else {
+            if let Some(open) = open.filter(|_| decoded.kind == Kind::Request) {
+                ended.push(self.end(protocol, model, open, None));
+            }
+            return Taken { is_part: false, ended };
+        };
+        let open = match open {
+            Some(open) if self.transfers[open].repeats(&part) => return Taken { is_part: true, ended },
+            Some(open) if self.transfers[open].is_before(&part) => open,
+            other => {
+                ended.extend(other.map(|open| self.end(protocol, model, open, None)));
+                let (frame, decoded) = (frame.clone(), decoded.clone());
+                self.transfers.push(Transfer { long: id, peers, parts: Vec::new(), frame, decoded });
+                self.transfers.len() - 1
+            }
+        };
+        let count = self.count(protocol, &self.transfers[open]);
+        let expected = if part.is_last { Some(part.index + 1) } else { expected(long, count) };
+        let transfer = &mut self.transfers[open];
+        (transfer.frame, transfer.decoded) = (frame.clone(), decoded.clone());
+        let is_end = expected.unwrap_or(long.parts_of(long.longest())) <= part.index + 1;
+        transfer.parts.push((part.index, part.data, mark));
+        if is_end {
+            ended.push(self.end(protocol, model, open, expected));
+        }
+        Taken { is_part: true, ended }
+    }
+
+    /// Ends all messages whose parts have begun to come.
+    pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
+        (0..self.transfers.len()).map(|_| self.end(protocol, model, 0, None)).collect()
+    }
+
+    /// Remembers how many elements a device says that its arrays have.
+    fn keep_counts(&mut self, protocol: &Protocol, node: &Peers, decoded: &Decoded) {
+        let wanted = protocol.long_messages.iter().filter_map(|long| long.parts.count);
+        for signal in wanted.filter(|(message, _)| *message == decoded.message) {
+            let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == signal.1) else { continue };
+            let (node, value) = (module(protocol, node), usize::try_from(reading.bits).unwrap_or(usize::MAX));
+            self.counts.retain(|known| (&known.node, known.signal) != (&node, signal));
+            self.counts.push(Count { node, signal, value });
+        }
+    }
+
+    /// Returns how many elements the array of a message really has, if the device has said it.
+    fn count(&self, protocol: &Protocol, transfer: &Transfer<M>) -> Option<usize> {
+        if self.count.is_some() {
+            return self.count;
+        }
+        let signal = protocol[transfer.long].parts.count?;
+        let node = module(protocol, &transfer.peers);
+        self.counts.iter().find(|known| (&known.node, known.signal) == (&node, signal)).map(|known| known.value)
+    }
+}
+
+impl<M: Clone> Assembly<M> {
+    /// Ends a message. `expected` is the number of its parts, if the frames say it.
+    fn end(
+        &mut self,
+        protocol: &Protocol,
+        model: Option<ModelId>,
+        open: usize,
+        expected: Option<usize>,
+    ) -> Assembled<M> {
+        let transfer = self.transfers.swap_remove(open);
+        let long = &protocol[transfer.long];
+        let count = self.count(protocol, &transfer);
+        let expected = expected.or_else(|| self::expected(long, count));
+        transfer.assembled(protocol, (long, model), (expected, count))
+    }
+}
+
+impl<M: Clone> Transfer<M> {
+    /// Tests whether a part is the last one once more.
+    fn repeats(&self, part: &Part) -> bool {
+        self.parts.last().is_some_and(|(index, data, _)| *index == part.index && *data == part.data)
+    }
+
+    /// Tests whether a part can follow those that came.
+    fn is_before(&self, part: &Part) -> bool {
+        self.parts.last().is_some_and(|(index, _, _)| *index < part.index)
+    }
+
+    fn assembled(
+        self,
+        protocol: &Protocol,
+        (long, model): (&LongMessage, Option<ModelId>),
+        (expected, count): (Option<usize>, Option<usize>),
+    ) -> Assembled<M> {
+        let incomplete = self.missing(long, model, expected);
+        let (size, parts) = (usize::from(long.parts.size), self.parts.last().map_or(0, |(index, _, _)| index + 1));
+        let mut joined = Joined { data: vec![0; parts * size], came: vec![false; parts * size], count };
+        for (index, data, _) in &self.parts {
+            let bytes = index * size..(index + 1) * size;
+            joined.data[bytes.clone()].copy_from_slice(data);
+            joined.came[bytes].fill(true);
+        }
+        let said = joined.read(protocol, long, model);
+        let of_addresses = |note: &&Note| matches!(note.rule, NoteRule::Addressing | NoteRule::Address);
+        let notes = self.decoded.notes.iter().filter(of_addresses).cloned().chain(said.notes).collect();
+        let decoded = Decoded { long: Some(self.long), signals: said.signals, notes, reserved: [0; 8], ..self.decoded };
+        let data = incomplete.is_none().then_some(joined.data);
+        let marks = self.parts.into_iter().map(|(_, _, mark)| mark).collect();
+        Assembled { marks, frame: self.frame, decoded, data, reserved: said.reserved, incomplete }
+    }
+
+    /// Says which parts did not come.
+    fn missing(&self, long: &LongMessage, model: Option<ModelId>, expected: Option<usize>) -> Option<String> {
+        let parts = expected.unwrap_or_else(|| self.parts.last().map_or(0, |(index, _, _)| index + 1));
+        let first = usize::from(long.first(model).unwrap_or(0));
+        let came = |index: &usize| self.parts.iter().any(|(known, _, _)| known == index);
+        let missing: Vec<_> =
+            (0..parts).filter(|index| !came(index)).map(|index| (first + index).to_string()).collect();
+        match missing.as_slice() {
+            [] => None,
+            [one] => Some(format!("part {one} is missing")),
+            several => Some(format!("the parts {} are missing", several.join(", "))),
+        }
+    }
+}
+
+impl Part {
+    /// Returns the part that a frame carries, if its number is one of the message's.
+    fn of(
+        protocol: &Protocol,
+        long: &LongMessage,
+        model: Option<ModelId>,
+        frame: &Frame,
+        decoded: &Decoded,
+    ) -> Option<Self> {
+        let bits = |signal| decoded.signals.iter().find(|reading| reading.signal == signal).map(|reading| reading.bits);
+        let (number, data) = (bits(long.parts.number)?, bits(long.parts.data)?);
+        let index = number.checked_sub(long.first(model)?.into())?;
+        let index = usize::try_from(index).ok().filter(|index| *index < long.parts_of(long.longest()))?;
+        let data = data.to_be_bytes()[8 - usize::from(long.parts.size)..].to_vec();
+        let is_last = protocol.continuation().is_some_and(|continuation| {
+            let found = match continuation.place {
+                SelectorPlace::Identifier(field) => u64::from(protocol[field].get(frame.id)),
+                SelectorPlace::Payload(place) => place.get(&frame.padded()),
+            };
+            found != continuation.raw
+        });
+        Some(Self { index, data, is_last })
+    }
+}
+
+/// Returns the number of parts, if it is known.
+fn expected(long: &LongMessage, count: Option<usize>) -> Option<usize> {
+    let is_known = long.varying().is_none() || count.is_some();
+    is_known.then(|| long.parts_of(long.bytes_with(count)))
+}
+
+/// Returns those addresses that are not sent by everybody.
+fn module(protocol: &Protocol, peers: &Peers) -> Peers {
+    let own = peers.iter().filter(|(kind, _)| protocol[*kind].send.is_none());
+    own.copied().collect()
+}

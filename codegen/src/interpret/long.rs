@@ -1,0 +1,165 @@
+//! Reads what the joined parts of a long message say, and makes its parts.
+
+use super::arrays::parted_texts;
+use super::decode::signal_note;
+use super::encode::{refuse, twice};
+use super::value::{Limits, physical, raw_of};
+use super::{Input, Note, Reading, Refusal};
+use crate::encoding::Words;
+use crate::hex;
+use crate::model::{LongMessage, Message, ModelId, NoteRule, Protocol, Signal};
+
+/// What a call writes for each signal, by name.
+pub type Texts = Vec<(String, String)>;
+
+/// The data of a long message, as far as they came.
+pub struct Joined {
+    /// The bytes; 0 where one is missing.
+    pub data: Vec<u8>,
+    /// Which of the bytes came.
+    pub came: Vec<bool>,
+    /// How many elements the array of varying length has, if that is known.
+    pub count: Option<usize>,
+}
+
+/// What the joined parts say.
+pub struct Said {
+    pub signals: Vec<Reading>,
+    pub notes: Vec<Note>,
+    /// Bits that none of the signals covers.
+    pub reserved: Vec<u8>,
+}
+
+impl Joined {
+    /// Reads the signals whose bytes all came.
+    pub fn read(&self, protocol: &Protocol, long: &LongMessage, model: Option<ModelId>) -> Said {
+        let content = &long.content;
+        let present = content.signals.entries().filter(|(_, signal)| self.has(long, signal));
+        let signals: Vec<_> = present
+            .map(|(id, signal)| {
+                let bits = signal.place.get(&window(&self.data, signal));
+                Reading { signal: id, bits, value: physical(protocol, signal, bits) }
+            })
+            .collect();
+        let note = |reading: &Reading| signal_note(protocol, &content[reading.signal], model, reading);
+        let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
+        notes.extend(self.count_note(long));
+        let reserved = self.without(signals.iter().map(|reading| &content[reading.signal]));
+        let unnamed = self.without(&content.signals);
+        if unnamed.iter().any(|byte| *byte != 0) {
+            let text = format!("bits are set that no field has: 0x{}", hex::digits(&unnamed));
+            notes.push(Note { rule: NoteRule::ReservedBit, text });
+        }
+        Said { signals, notes, reserved }
+    }
+
+    /// Tests whether a signal came. An element beyond the known number is none.
+    fn has(&self, long: &LongMessage, signal: &Signal) -> bool {
+        long.is_among(self.count, signal)
+            && self.came.get(signal.bytes()).is_some_and(|came| came.iter().all(|came| *came))
+    }
+
+    /// Notes that some of the elements may be none.
+    fn count_note(&self, long: &LongMessage) -> Option<Note> {
+        let array = long.varying().filter(|_| self.count.is_none())?;
+        let text = format!("nothing says how many of the elements of `{}` are real", array.name);
+        Some(Note { rule: NoteRule::Count, text })
+    }
+
+    /// Returns the bits that none of these signals covers.
+    fn without<'s>(&self, signals: impl IntoIterator<Item = &'s Signal>) -> Vec<u8> {
+        let mut rest = self.data.clone();
+        for signal in signals {
+            let bytes = rest.iter_mut().skip(signal.window.into());
+            bytes.zip(signal.place.mask()).for_each(|(byte, mask)| *byte &= !mask);
+        }
+        rest
+    }
+}
+
+/// Returns the eight bytes in which a signal has its place.
+fn window(data: &[u8], signal: &Signal) -> [u8; 8] {
+    let mut window = [0; 8];
+    window.iter_mut().zip(data.iter().skip(signal.window.into())).for_each(|(byte, given)| *byte = *given);
+    window
+}
+
+/// Makes the data of a long message. Elements of the array of varying length may be missing at its end.
+pub fn joined(
+    protocol: &Protocol,
+    long: &LongMessage,
+    given: &[(String, Input)],
+    reserved: &[u8],
+    (model, limits): (Option<ModelId>, Limits),
+) -> Result<Vec<u8>, Refusal> {
+    let content = &long.content;
+    if let Some((name, _)) = given.iter().find(|(name, _)| content.signals.iter().all(|signal| signal.name != *name)) {
+        return Err(refuse(content, &format!("there is no signal `{name}`")));
+    }
+    let is_given = |signal: &Signal| given.iter().any(|(name, _)| *name == signal.name);
+    let count = long.varying().map(|array| {
+        let given = content.signals.iter().filter(|signal| is_given(signal)).filter_map(|signal| long.counted(signal));
+        given.map(|index| index + 1).max().unwrap_or(0).max(array.least.unwrap_or(0))
+    });
+    let mut data = vec![0; long.bytes_with(count).max(reserved.len())];
+    if data.len() > long.parts_of(long.longest()) * usize::from(long.parts.size) {
+        return Err(refuse(
+            content,
+            &format!("`reserved` has {} bytes, which are more than the parts have", reserved.len()),
+        ));
+    }
+    data.iter_mut().zip(reserved).for_each(|(byte, given)| *byte = *given);
+    for signal in content.signals.iter().filter(|signal| long.is_among(count, signal)) {
+        let input = given.iter().find(|(name, _)| *name == signal.name).map(|(_, input)| input.clone());
+        let otherwise = || signal.default_for(model).filter(|_| limits != Limits::Bits).map(Input::Raw);
+        let input = input.or_else(otherwise);
+        let input = input.ok_or_else(|| refuse(content, &format!("the signal `{}` is missing", signal.name)))?;
+        let bits = raw_of(protocol, content, signal, &input, limits)?;
+        let mut bytes = window(&data, signal);
+        signal.place.put(&mut bytes, bits);
+        data.iter_mut().skip(signal.window.into()).zip(bytes).for_each(|(byte, new)| *byte = new);
+    }
+    Ok(data)
+}
+
+/// Returns the number of each part, and its data in hexadecimal.
+pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<Vec<(u16, String)>, Refusal> {
+    let first = long.first(model).ok_or_else(|| {
+        let text = "the first part has another number on each model; choose a model";
+        refuse(&long.content, text)
+    })?;
+    let size = usize::from(long.parts.size);
+    let chunks = data.chunks(size).map(|chunk| {
+        let mut whole = chunk.to_vec();
+        whole.resize(size, 0);
+        hex::digits(&whole)
+    });
+    Ok((first..).zip(chunks).collect())
+}
+
+/// Returns the texts for the signals of each frame, if what is given are signals of a long message.
+pub fn typed_parts(
+    protocol: &Protocol,
+    message: &Message,
+    given: &[(String, String)],
+    (model, limits): (Option<ModelId>, Limits),
+) -> Result<Option<Vec<Texts>>, Refusal> {
+    let Some((_, long)) = protocol.long_message(message) else { return Ok(None) };
+    let [number, data] = [long.parts.number, long.parts.data].map(|id| &message[id].name);
+    if given.is_empty() || given.iter().any(|(name, _)| name == number || name == data) {
+        return Ok(None);
+    }
+    let mut inputs = Vec::new();
+    for (name, text) in parted_texts(&long.content, given)? {
+        let signal = long.content.signals.iter().find(|signal| signal.name == name);
+        let typed = signal.map(|signal| Words::from(protocol).with(signal, |room| room.typed(&text)));
+        inputs.push((name, typed.unwrap_or(Input::Text(text))));
+    }
+    if let Some(name) = twice(&inputs) {
+        return Err(refuse(message, &format!("the signal `{name}` is given twice")));
+    }
+    let joined = joined(protocol, long, &inputs, &[], (model, limits))?;
+    let parts = parts(long, model, &joined)?.into_iter();
+    let texts = parts.map(|(part, text)| vec![(number.clone(), part.to_string()), (data.clone(), text)]);
+    Ok(Some(texts.collect()))
+}

@@ -1,0 +1,246 @@
+//! Resolves messages longer than a frame, which travel in numbered parts.
+
+use canspec_runtime::Place;
+use canspec_runtime::plumbing::ByteOrder;
+
+use super::Resolver;
+use super::arrays::Windowed;
+use super::fields::Leaves;
+use crate::diagnostic::Diagnostic;
+use crate::model::{
+    Array, ArrayId, Doc, Id, LongMessage, LongMessageId, Message, MessageId, ModelId, Numeral, OfModel, Parts, Range,
+    Reserved, Signal, SignalId, Table,
+};
+use crate::number::Rational;
+use crate::resolve::rules;
+use crate::syntax::ast::{self, ByModel};
+use crate::syntax::tree::Path;
+
+/// Name of the signal with the number of a part.
+pub const PART: &str = "part";
+
+/// Name of the signal with the data of a part.
+pub const DATA: &str = "data";
+
+/// Most data bytes of a long message. ISO 15765-2 has no more, either.
+pub const MOST_BYTES: u16 = 4095;
+
+/// The name of a long message, its remarks, and the only models that have it.
+type Head<'a> = (&'a str, &'a Doc, &'a [ModelId]);
+
+impl Resolver<'_> {
+    /// Reads `bytes` that count in the data of several frames.
+    pub fn window(&mut self, path: &Path, text: &str) -> Option<Windowed> {
+        let (first, last) = self.ends(path, text, "12..13")?;
+        let [first, last] = [first, last].map(|end| self.integer(path, end, 0, MOST_BYTES - 1));
+        let (first, last) = (first?, last?);
+        let window = first.min(last);
+        let [Ok(from @ 0..8), Ok(to @ 0..8)] = [first - window, last - window].map(u8::try_from) else {
+            let text = format!("`{text}` has {} bytes", first.abs_diff(last) + 1);
+            self.error_with_help(&rules::PLACE, path.at_value(), text, "a field has at most 8 bytes; make two of it");
+            return None;
+        };
+        Some((window, Place::bytes(from, to)))
+    }
+
+    /// Refuses a field that a long message cannot have.
+    pub fn check_not_long(&mut self, path: &Path, what: &str, is_long: bool) -> Option<()> {
+        if !is_long {
+            return Some(());
+        }
+        let text = format!("{what} cannot stand in a message of `parts`");
+        let help = "make fields of its parts; what chooses the frames stands in `match`";
+        self.error_with_help(&rules::PARTS, path.at_key(), text, help);
+        None
+    }
+
+    /// Makes a long message of what its parts carry together. It returns the fields of the frames.
+    pub fn long_message(
+        &mut self,
+        message: MessageId,
+        path: &Path,
+        (parts, whole): (&ast::Parts, Leaves),
+        head: Head,
+    ) -> (Leaves, Option<LongMessageId>) {
+        let (name, doc, _) = head;
+        let mut frame = self.part_leaves(&path.key("parts"), parts, doc, name);
+        frame.replies.extend(whole.replies);
+        frame.given_up.extend(whole.given_up);
+        let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
+        let arrays = self.arrays(whole.arrays, &signals);
+        let content = content(head, signals, arrays);
+        let path = path.key("parts");
+        let long = self.parts(&path, parts, &frame).map(|parts| LongMessage { message, content, parts });
+        let long = long.filter(|long| self.check_long(&path, long, frame.given_up.is_empty()).is_some());
+        let id = long.map(|long| {
+            let numbers = numbers(&long);
+            if let Some(signal) = frame.signals.iter_mut().find(|signal| signal.name == PART) {
+                self.set_numbers(&path.key("number"), signal, numbers);
+            }
+            self.tables.long_messages.push(long)
+        });
+        (frame, id)
+    }
+
+    /// Reads `parts`, but for `count`.
+    fn parts(&mut self, path: &Path, parts: &ast::Parts, frame: &Leaves) -> Option<Parts> {
+        let find = |name: &str| frame.signals.iter().position(|signal| signal.name == name);
+        let number = find(PART).filter(|number| is_plain(&frame.signals[*number]));
+        if number.is_none() && frame.given_up.is_empty() {
+            let text = "the number of a part is one plain number".to_owned();
+            let help = "write a place alone, as in `{bytes: 0}`";
+            self.error_with_help(&rules::PARTS, path.key("number").at_key(), text, help);
+        }
+        let (number, data) = (number?, find(DATA)?);
+        let place = frame.signals[data].place;
+        if place.order() != ByteOrder::Big {
+            let text = "the data of a part run from its first byte to its last".to_owned();
+            let help = "write the lower number first, as in `1..6`";
+            self.error_with_help(&rules::PARTS, path.key("data").at_value(), text, help);
+            return None;
+        }
+        let at = path.key("first");
+        let (first, model_firsts) = match &parts.first {
+            ByModel::Every(text) => (Some(self.integer(&at, text, 0, u16::MAX - MOST_BYTES)?), Vec::new()),
+            ByModel::Each(numbers) => (None, self.model_firsts(&at, numbers)),
+        };
+        let [number, data] = [number, data].map(Id::new);
+        Some(Parts { number, data, size: place.width() / 8, first, model_firsts, count: None })
+    }
+
+    /// Reads the number of the first part for each device model.
+    fn model_firsts(&mut self, path: &Path, numbers: &ast::Map<String>) -> Vec<OfModel<u16>> {
+        let mut firsts = Vec::new();
+        for (name, text) in numbers {
+            let path = path.key(name);
+            let names = self.spec.models.keys().map(String::as_str);
+            let Some(place) = self.lookup_key(&path, "model", name, names) else { continue };
+            let Some(value) = self.integer(&path, text, 0, u16::MAX - MOST_BYTES) else { continue };
+            firsts.push(OfModel { model: Id::new(place), value, path });
+        }
+        firsts
+    }
+
+    /// Tests what the parts carry together. `is_sound` tells that no field has an error of its own.
+    fn check_long(&mut self, path: &Path, long: &LongMessage, is_sound: bool) -> Option<()> {
+        let content = &long.content;
+        let mut refuse = |path: &Path, text: String, help: &str| {
+            self.error_with_help(&rules::PARTS, path.at_key(), text, help);
+            None
+        };
+        if content.signals.is_empty() {
+            let text = format!("the parts of `{}` carry no field", content.name);
+            return if is_sound {
+                refuse(path, text, "write its `fields`; their bytes count through all parts")
+            } else {
+                None
+            };
+        }
+        let Some(array) = long.varying() else { return Some(()) };
+        let at = array.doc.path.key("repeat");
+        let others = content.arrays.iter().filter(|other| other.least.is_some());
+        if let Some(other) =
+            others.into_iter().find(|other| (other.least, other.elements.len()) != (array.least, array.elements.len()))
+        {
+            let text = format!("`{}` and `{}` vary in length, each in its own way", array.name, other.name);
+            return refuse(&at, text, "only one field has a range in `repeat`, and it stands last");
+        }
+        let is_of_array = |signal: &&Signal| long.counted(signal).is_some();
+        let start = content.signals.iter().filter(is_of_array).map(|signal| signal.bytes().start).min().unwrap_or(0);
+        let mut others = content.signals.iter().filter(|signal| !is_of_array(signal));
+        if let Some(other) = others.find(|signal| signal.reach() > start) {
+            let text = format!("`{}` stands behind `{}`, whose length varies", other.name, array.name);
+            return refuse(&at, text, "an array of varying length stands last");
+        }
+        Some(())
+    }
+
+    /// Lets the number of a part be one of those that its message has.
+    fn set_numbers(&mut self, path: &Path, signal: &mut Signal, numbers: Option<(u16, u16)>) {
+        let Some((first, last)) = numbers else { return };
+        if u64::from(last) > signal.place.max() {
+            let text =
+                format!("the parts have the numbers {first} to {last}, and {} bits for them", signal.place.width());
+            let help = "correct the place of the number, or the length of the message";
+            self.error_with_help(&rules::PARTS, path.at_key(), text, help);
+        }
+        let [minimum, maximum] = [first, last].map(|end| Rational::integer(end.into()));
+        if signal.range.is_none() {
+            (signal.range, signal.range_path) = (Some(Range { minimum, maximum }), Path::default());
+        }
+    }
+
+    /// Finds the signals that say how many elements there are.
+    pub fn count_elements(&mut self, messages: &Table<MessageId, Message>) {
+        for id in self.tables.long_messages.ids() {
+            let long = &self.tables.long_messages[id];
+            let (path, is_varying) = (long.content.doc.path.key("parts").key("count"), long.varying().is_some());
+            let written = self.spec.messages.get(&long.content.name).and_then(|message| message.parts.as_ref());
+            let Some(text) = written.and_then(|parts| parts.count.clone()) else { continue };
+            if is_varying {
+                self.tables.long_messages[id].parts.count = self.counting(&path, &text, messages);
+            } else {
+                let text = "`count` means nothing here: no array of the message varies".to_owned();
+                let help = "take it out, or write the least and the greatest number: `repeat: 1..48`";
+                self.error_with_help(&rules::PARTS, path.at_key(), text, help);
+            }
+        }
+    }
+
+    /// Finds a signal by the names of its message and its own: `status.cells`.
+    fn counting(
+        &mut self,
+        path: &Path,
+        text: &str,
+        messages: &Table<MessageId, Message>,
+    ) -> Option<(MessageId, SignalId)> {
+        let Some((message, signal)) = text.split_once('.') else {
+            let help = "write the message and its signal: `status.cells`";
+            self.error_with_help(&rules::PARTS, path.at_value(), format!("`{text}` is not a signal"), help);
+            return None;
+        };
+        let id = self.lookup_in(path, "message", message, messages, |message| &message.name)?;
+        let found = self.lookup_in(path, "signal", signal, &messages[id].signals, |signal| &signal.name)?;
+        let known = &messages[id][found];
+        if is_plain(known) {
+            return Some((id, found));
+        }
+        let problem = Diagnostic::error(&rules::PARTS, path.at_value(), format!("`{text}` is no plain number"));
+        let help = "name a signal without scale, offset and names for its values";
+        self.diagnostics.push(problem.other(known.doc.path.at_key(), "the signal").help(help));
+        None
+    }
+}
+
+/// Tests whether the bits of a signal are its value.
+fn is_plain(signal: &Signal) -> bool {
+    signal.encoding.is_unscaled() && signal.encoding.numeral() == Numeral::Unsigned
+}
+
+/// Returns the least and the greatest number that a part can have.
+fn numbers(long: &LongMessage) -> Option<(u16, u16)> {
+    let firsts = long.parts.model_firsts.iter().map(|own| own.value).chain(long.parts.first);
+    let others = u16::try_from(long.parts_of(long.longest())).unwrap_or(u16::MAX) - 1;
+    Some((firsts.clone().min()?, firsts.max()? + others))
+}
+
+/// Makes the message that the parts carry together.
+fn content((name, doc, models): Head, signals: Table<SignalId, Signal>, arrays: Table<ArrayId, Array>) -> Message {
+    Message {
+        name: name.to_owned(),
+        doc: doc.clone(),
+        lengths: Vec::new(),
+        signals,
+        arrays,
+        constants: Vec::new(),
+        exchanges: Table::default(),
+        frames: Vec::new(),
+        refusals: Vec::new(),
+        every: None,
+        models: models.to_vec(),
+        set: None,
+        long: None,
+        sends: Vec::new(),
+        reserved: Reserved::default(),
+    }
+}
