@@ -52,9 +52,11 @@ impl Manual<'_> {
             return None;
         }
         let (message, layout) = (&self.plan.messages[decoded.message], &protocol[decoded.frame]);
-        let own = message.structs.iter().find(|own| own.signals == layout.signals)?;
-        let (mut names, mut values) = (vec![own.name.to_string(), "Target".to_owned()], Vec::new());
-        for ids in &own.members {
+        // A request that carries nothing is a method of the message's own struct.
+        let carried = message.structs.iter().find(|own| own.signals == layout.signals);
+        let name = carried.map_or(&message.home, |own| &own.name).to_string();
+        let (mut names, mut values) = (vec![name.clone(), "Target".to_owned()], Vec::new());
+        for ids in carried.iter().flat_map(|own| &own.members) {
             let elements = ids.iter().map(|id| self.element(printed, *id)).collect::<Option<Vec<_>>>()?;
             let kinds = elements.iter().filter_map(|value| Some(value.trim_start_matches("Some(").split_once("::")?.0));
             names.extend(kinds.map(str::to_owned));
@@ -63,7 +65,7 @@ impl Manual<'_> {
             values.push(if index.is_some() { format!("{name}: [{value}]") } else { format!("{name}: {value}") });
         }
         let call = format!("{}({argument})?;", message.methods[layout.exchange]);
-        let mut lines = call_of(&own.name.to_string(), &values, &call);
+        let mut lines = call_of(&name, &values, &call);
         lines.push(format!("assert_eq!(request.frame().to_string(), \"{}\");", frame(printed.example)));
         Some(Part { names, lines })
     }
