@@ -21,7 +21,7 @@ struct Session {
     beyond_every_model: &'static [u64],
 }
 
-const SESSIONS: [Session; 6] = [
+const SESSIONS: [Session; 7] = [
     Session {
         name: "infy-session",
         protocol: "infy",
@@ -71,6 +71,14 @@ const SESSIONS: [Session; 6] = [
         model: Some("V48"),
         commands: &[64, 80, 128, 129, 130],
         out_of_range: &[634, 635, 636, 637, 638, 639, 640, 641, 642, 643, 644, 645, 646, 647, 648, 649],
+        beyond_every_model: &[],
+    },
+    Session {
+        name: "daly-session",
+        protocol: "daly",
+        model: None,
+        commands: &[144, 145, 146, 147, 148, 149, 150, 151, 152],
+        out_of_range: &[],
         beyond_every_model: &[],
     },
 ];
@@ -202,12 +210,22 @@ fn value(signal: &Value) -> String {
         let named = set.iter().filter_map(Value::as_str).map(str::to_owned);
         return format!("{{{}}}", named.chain(unnamed).collect::<Vec<_>>().join(","));
     }
-    let number = match &signal["value"] {
-        Value::String(text) => return text.clone(),
-        Value::Number(number) => number.to_string().trim_end_matches(".0").to_owned(),
-        _ => format!("?{}", signal["raw"]),
-    };
-    signal["unit"].as_str().map_or(number.clone(), |unit| format!("{number} {unit}"))
+    let text = plain(&signal["value"], &signal["raw"]);
+    let unit = signal["unit"].as_str().filter(|_| !signal["value"].is_string());
+    unit.map_or(text.clone(), |unit| format!("{text} {unit}"))
+}
+
+/// Shows a value without its unit, an array as `[1,2]`, or the raw value of one that has no name.
+fn plain(value: &Value, raw: &Value) -> String {
+    match (value, raw) {
+        (Value::String(text), _) => text.clone(),
+        (Value::Number(number), _) => number.to_string().trim_end_matches(".0").to_owned(),
+        (Value::Array(values), Value::Array(raws)) => {
+            let shown: Vec<_> = values.iter().zip(raws).map(|(value, raw)| plain(value, raw)).collect();
+            format!("[{}]", shown.join(","))
+        }
+        _ => format!("?{raw}"),
+    }
 }
 
 #[test]
@@ -313,8 +331,19 @@ fn blocks(table: &str) -> Vec<String> {
     blocks
 }
 
-/// Tells whether a text of the table stands for a value of the document: a number may be rounded to its last decimal.
+/// Returns the elements of an array such as `[1,2]`; any other text is one element.
+fn elements(text: &str) -> Vec<&str> {
+    text.trim_start_matches('[').trim_end_matches(']').split(',').collect()
+}
+
+/// Tells whether a text of the table stands for a value of the document, element by element.
 fn stands_for(text: &str, value: &str) -> bool {
+    let (shown, exact) = (elements(text), elements(value));
+    shown.len() == exact.len() && shown.iter().zip(exact).all(|(text, value)| element_stands_for(text, value))
+}
+
+/// Tells whether a text stands for one value: a number may be rounded to its last decimal.
+fn element_stands_for(text: &str, value: &str) -> bool {
     let number = |text: &str| text.parse::<f64>().ok();
     match (number(text), number(value)) {
         (Some(shown), Some(exact)) => {
@@ -330,6 +359,7 @@ fn stands_for(text: &str, value: &str) -> bool {
 fn has(block: &str, signal: &str) -> bool {
     let (name, value) = signal.split_once('=').expect("a signal has a value");
     let (value, unit) = value.split_once(' ').unwrap_or((value, ""));
+    let block = block.replace(", ", ",");
     let words: Vec<&str> = block.split(' ').collect();
     words.windows(2).enumerate().filter(|(_, words)| words[0] == name).any(|(at, found)| {
         match value.strip_prefix('?') {
@@ -364,6 +394,9 @@ fn a_rounded_number_stands_for_no_other_step_of_its_scale() {
     assert!(stands_for("51.4229", "51.4228515625"));
     assert!(!stands_for("51.4229", "51.423828125") && !stands_for("51.4", "51.5"));
     assert!(stands_for("350.000", "350") && stands_for("on", "on"));
+    assert!(stands_for("[3.3,3.301]", "[3.3,3.301]") && !stands_for("[3.3,3.302]", "[3.3,3.301]"));
+    assert!(!stands_for("[3.3]", "[3.3,3.301]"));
+    assert!(has("x cell [3.3, 3.301] V", "cell=[3.3,3.301] V") && !has("x cell [3.301, 3.3] V", "cell=[3.3,3.301] V"));
     assert!(has("x voltage 350.000 V", "voltage=350 V") && !has("x voltage 350.000 A", "voltage=350 V"));
     assert!(has("led ? (raw 0x2) ! x", "led=?2") && !has("led ? (raw 0x3)", "led=?2"));
 }
