@@ -15,6 +15,7 @@ from dbc import Protocol, cause, decoding, differences, encoding, run
 CANSPEC, FRAMES = os.environ["CANSPEC"], os.environ["FRAMES"]
 FEATURES = Path(__file__).parent.parent / "specs" / "features"
 LITTLE_ENDIAN = FEATURES / "little_endian.yaml"
+DALY = Path(__file__).parent.parent.parent / "specs" / "daly.yaml"
 
 
 def changed(before, after):
@@ -80,6 +81,25 @@ class Causes(unittest.TestCase):
         frame["time"] = 0
         self.assertEqual(protocol.message(frame).encode(values)[3], 0)
         self.assertEqual(protocol.encode([frame])[0][3], 1)
+
+
+class Directions(unittest.TestCase):
+    """Hosts whose addresses have no bit in common, so no mask tells requests from replies."""
+
+    REQUEST, REPLY = "18900140#0000000000000000", "18904001#0218021675300288"
+
+    def test_a_dbc_by_a_mask_holds_replies_alone(self):
+        protocol = Protocol(CANSPEC, DALY)
+        request, reply = protocol.decode([self.REQUEST, self.REPLY])
+        self.assertEqual([protocol.holds(request), protocol.holds(reply)], [False, True])
+        self.assertEqual(decoding(protocol, [reply])[1], [])
+        self.assertNotEqual(decoding(protocol, [request])[1], [])
+
+    def test_a_dbc_of_nodes_holds_both(self):
+        protocol = Protocol(CANSPEC, DALY, "--nodes", "1-2")
+        frames = protocol.decode([self.REQUEST, self.REPLY])
+        self.assertTrue(all(map(protocol.holds, frames)))
+        self.assertEqual(decoding(protocol, frames)[1], [])
 
 
 if __name__ == "__main__":
