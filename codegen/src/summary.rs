@@ -52,7 +52,8 @@ impl Summary {
             signals: count(|protocol| protocol.contents().map(|message| message.signals.len()).sum()),
             status_bits: count(|protocol| protocol.status_words.iter().map(|word| word.bits.len()).sum()),
             examples: count(|protocol| {
-                protocol.examples.len() + protocol.long_examples.len() + protocol.value_examples.len()
+                let long = protocol.long_examples.iter().map(|example| example.frames.len());
+                protocol.examples.len() + long.sum::<usize>() + protocol.value_examples.len()
             }),
             frames: counts.frames,
             identifiers: counts.identifiers,

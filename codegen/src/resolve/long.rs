@@ -8,8 +8,8 @@ use super::arrays::Windowed;
 use super::fields::Leaves;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Array, ArrayId, Doc, Id, LongMessage, LongMessageId, Message, MessageId, ModelId, Numeral, OfModel, Parts, Range,
-    Reserved, Signal, SignalId, Table,
+    Array, ArrayId, Doc, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, ModelId, Numeral, OfModel,
+    Parts, Range, Reserved, Signal, SignalId, Table,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -153,6 +153,15 @@ impl Resolver<'_> {
             return refuse(&at, text, "an array of varying length stands last");
         }
         Some(())
+    }
+
+    /// Tests that no frame to a module carries parts.
+    pub fn check_senders(&mut self, path: &Path, name: &str, frames: &[FrameLayout]) {
+        let Some(frame) = frames.iter().find(|frame| frame.is_to_module() && !frame.signals.is_empty()) else { return };
+        let text = format!("a {} of `{name}` would carry parts to a module", frame.kind.name());
+        let help = "only modules send parts yet, since generated Rust could not test the limits of their values; \
+                    write `in: [reply]` in the access";
+        self.error_with_help(&rules::PARTS, path.key("parts").at_key(), text, help);
     }
 
     /// Lets the number of a part be one of those that its message has.

@@ -146,6 +146,9 @@ impl Resolver<'_> {
             }
             refusals.extend(self.refusal(&owner, &choice, surroundings));
         }
+        if message.parts.is_some() {
+            self.check_senders(path, name, &frames);
+        }
         let always = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| *constant);
         let constants = choice.matched.iter().copied().chain(always).collect();
         let every = self.every(path, message.every.as_deref(), surroundings.timing);

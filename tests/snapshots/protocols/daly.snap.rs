@@ -135,6 +135,10 @@ impl Destination for Target {
 
 /// Address of a host: `0x20` (`gprs`), `0x40` (`upper_computer`), `0x80` (`bluetooth_app`). Section
 /// 2.2.
+///
+/// Erratum N7: printed is "three addresses of hosts, and no rule about others", used is "these three
+/// alone, and 0x40 unless said otherwise", because the first examples are of the upper computer; an
+/// address that nobody has can be a battery's.
 pub const HOST_ADDRESS: AddressType =
     AddressType::new("host", 0x20, 0x80).only(&[0x20, 0x40, 0x80]).strict().default_number(0x40);
 
@@ -161,7 +165,8 @@ pub const BATTERY_ADDRESS: AddressType = AddressType::new("battery", 0x01, 0x1F)
 /// Batteries with another address keep silent.
 ///
 /// Erratum Y1: printed is "the heading UART above the line about CAN", used is "CAN with 29-bit
-/// identifiers", because the line, the title and the identifiers are of CAN.
+/// identifiers", because the line, the title and the identifiers are of CAN; users report custom units
+/// with 11 bits, whose layout nobody tells.
 pub const POINT_TO_POINT_MODE: Mode = Mode {
     name: "point_to_point",
     target: Some(&BATTERY_ADDRESS),
@@ -194,7 +199,7 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
 /// on anything else", because a layout table after the document and descriptions by users have 0.
 pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
 
-/// Whether the battery is charged or discharged. Section 5.4.
+/// Whether the battery is charging or discharging. Section 5.4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OperatingState {
     /// 0: `stationary`.
@@ -391,101 +396,101 @@ impl core::ops::BitOr for InputsOutputs {
 pub struct Balance(pub u64);
 
 impl Balance {
-    /// Balance open, cell 1: bit 0, state.
+    /// Balance switch open, cell 1: bit 0, state.
     pub const CELL_1: Self = Self(0x0000_0000_0000_0001);
-    /// Balance open, cell 2: bit 1, state.
+    /// Balance switch open, cell 2: bit 1, state.
     pub const CELL_2: Self = Self(0x0000_0000_0000_0002);
-    /// Balance open, cell 3: bit 2, state.
+    /// Balance switch open, cell 3: bit 2, state.
     pub const CELL_3: Self = Self(0x0000_0000_0000_0004);
-    /// Balance open, cell 4: bit 3, state.
+    /// Balance switch open, cell 4: bit 3, state.
     pub const CELL_4: Self = Self(0x0000_0000_0000_0008);
-    /// Balance open, cell 5: bit 4, state.
+    /// Balance switch open, cell 5: bit 4, state.
     pub const CELL_5: Self = Self(0x0000_0000_0000_0010);
-    /// Balance open, cell 6: bit 5, state.
+    /// Balance switch open, cell 6: bit 5, state.
     pub const CELL_6: Self = Self(0x0000_0000_0000_0020);
-    /// Balance open, cell 7: bit 6, state.
+    /// Balance switch open, cell 7: bit 6, state.
     pub const CELL_7: Self = Self(0x0000_0000_0000_0040);
-    /// Balance open, cell 8: bit 7, state.
+    /// Balance switch open, cell 8: bit 7, state.
     pub const CELL_8: Self = Self(0x0000_0000_0000_0080);
-    /// Balance open, cell 9: bit 8, state.
+    /// Balance switch open, cell 9: bit 8, state.
     pub const CELL_9: Self = Self(0x0000_0000_0000_0100);
-    /// Balance open, cell 10: bit 9, state.
+    /// Balance switch open, cell 10: bit 9, state.
     pub const CELL_10: Self = Self(0x0000_0000_0000_0200);
-    /// Balance open, cell 11: bit 10, state.
+    /// Balance switch open, cell 11: bit 10, state.
     pub const CELL_11: Self = Self(0x0000_0000_0000_0400);
-    /// Balance open, cell 12: bit 11, state.
+    /// Balance switch open, cell 12: bit 11, state.
     pub const CELL_12: Self = Self(0x0000_0000_0000_0800);
-    /// Balance open, cell 13: bit 12, state.
+    /// Balance switch open, cell 13: bit 12, state.
     pub const CELL_13: Self = Self(0x0000_0000_0000_1000);
-    /// Balance open, cell 14: bit 13, state.
+    /// Balance switch open, cell 14: bit 13, state.
     pub const CELL_14: Self = Self(0x0000_0000_0000_2000);
-    /// Balance open, cell 15: bit 14, state.
+    /// Balance switch open, cell 15: bit 14, state.
     pub const CELL_15: Self = Self(0x0000_0000_0000_4000);
-    /// Balance open, cell 16: bit 15, state.
+    /// Balance switch open, cell 16: bit 15, state.
     pub const CELL_16: Self = Self(0x0000_0000_0000_8000);
-    /// Balance open, cell 17: bit 16, state.
+    /// Balance switch open, cell 17: bit 16, state.
     pub const CELL_17: Self = Self(0x0000_0000_0001_0000);
-    /// Balance open, cell 18: bit 17, state.
+    /// Balance switch open, cell 18: bit 17, state.
     pub const CELL_18: Self = Self(0x0000_0000_0002_0000);
-    /// Balance open, cell 19: bit 18, state.
+    /// Balance switch open, cell 19: bit 18, state.
     pub const CELL_19: Self = Self(0x0000_0000_0004_0000);
-    /// Balance open, cell 20: bit 19, state.
+    /// Balance switch open, cell 20: bit 19, state.
     pub const CELL_20: Self = Self(0x0000_0000_0008_0000);
-    /// Balance open, cell 21: bit 20, state.
+    /// Balance switch open, cell 21: bit 20, state.
     pub const CELL_21: Self = Self(0x0000_0000_0010_0000);
-    /// Balance open, cell 22: bit 21, state.
+    /// Balance switch open, cell 22: bit 21, state.
     pub const CELL_22: Self = Self(0x0000_0000_0020_0000);
-    /// Balance open, cell 23: bit 22, state.
+    /// Balance switch open, cell 23: bit 22, state.
     pub const CELL_23: Self = Self(0x0000_0000_0040_0000);
-    /// Balance open, cell 24: bit 23, state.
+    /// Balance switch open, cell 24: bit 23, state.
     pub const CELL_24: Self = Self(0x0000_0000_0080_0000);
-    /// Balance open, cell 25: bit 24, state.
+    /// Balance switch open, cell 25: bit 24, state.
     pub const CELL_25: Self = Self(0x0000_0000_0100_0000);
-    /// Balance open, cell 26: bit 25, state.
+    /// Balance switch open, cell 26: bit 25, state.
     pub const CELL_26: Self = Self(0x0000_0000_0200_0000);
-    /// Balance open, cell 27: bit 26, state.
+    /// Balance switch open, cell 27: bit 26, state.
     pub const CELL_27: Self = Self(0x0000_0000_0400_0000);
-    /// Balance open, cell 28: bit 27, state.
+    /// Balance switch open, cell 28: bit 27, state.
     pub const CELL_28: Self = Self(0x0000_0000_0800_0000);
-    /// Balance open, cell 29: bit 28, state.
+    /// Balance switch open, cell 29: bit 28, state.
     pub const CELL_29: Self = Self(0x0000_0000_1000_0000);
-    /// Balance open, cell 30: bit 29, state.
+    /// Balance switch open, cell 30: bit 29, state.
     pub const CELL_30: Self = Self(0x0000_0000_2000_0000);
-    /// Balance open, cell 31: bit 30, state.
+    /// Balance switch open, cell 31: bit 30, state.
     pub const CELL_31: Self = Self(0x0000_0000_4000_0000);
-    /// Balance open, cell 32: bit 31, state.
+    /// Balance switch open, cell 32: bit 31, state.
     pub const CELL_32: Self = Self(0x0000_0000_8000_0000);
-    /// Balance open, cell 33: bit 32, state.
+    /// Balance switch open, cell 33: bit 32, state.
     pub const CELL_33: Self = Self(0x0000_0001_0000_0000);
-    /// Balance open, cell 34: bit 33, state.
+    /// Balance switch open, cell 34: bit 33, state.
     pub const CELL_34: Self = Self(0x0000_0002_0000_0000);
-    /// Balance open, cell 35: bit 34, state.
+    /// Balance switch open, cell 35: bit 34, state.
     pub const CELL_35: Self = Self(0x0000_0004_0000_0000);
-    /// Balance open, cell 36: bit 35, state.
+    /// Balance switch open, cell 36: bit 35, state.
     pub const CELL_36: Self = Self(0x0000_0008_0000_0000);
-    /// Balance open, cell 37: bit 36, state.
+    /// Balance switch open, cell 37: bit 36, state.
     pub const CELL_37: Self = Self(0x0000_0010_0000_0000);
-    /// Balance open, cell 38: bit 37, state.
+    /// Balance switch open, cell 38: bit 37, state.
     pub const CELL_38: Self = Self(0x0000_0020_0000_0000);
-    /// Balance open, cell 39: bit 38, state.
+    /// Balance switch open, cell 39: bit 38, state.
     pub const CELL_39: Self = Self(0x0000_0040_0000_0000);
-    /// Balance open, cell 40: bit 39, state.
+    /// Balance switch open, cell 40: bit 39, state.
     pub const CELL_40: Self = Self(0x0000_0080_0000_0000);
-    /// Balance open, cell 41: bit 40, state.
+    /// Balance switch open, cell 41: bit 40, state.
     pub const CELL_41: Self = Self(0x0000_0100_0000_0000);
-    /// Balance open, cell 42: bit 41, state.
+    /// Balance switch open, cell 42: bit 41, state.
     pub const CELL_42: Self = Self(0x0000_0200_0000_0000);
-    /// Balance open, cell 43: bit 42, state.
+    /// Balance switch open, cell 43: bit 42, state.
     pub const CELL_43: Self = Self(0x0000_0400_0000_0000);
-    /// Balance open, cell 44: bit 43, state.
+    /// Balance switch open, cell 44: bit 43, state.
     pub const CELL_44: Self = Self(0x0000_0800_0000_0000);
-    /// Balance open, cell 45: bit 44, state.
+    /// Balance switch open, cell 45: bit 44, state.
     pub const CELL_45: Self = Self(0x0000_1000_0000_0000);
-    /// Balance open, cell 46: bit 45, state.
+    /// Balance switch open, cell 46: bit 45, state.
     pub const CELL_46: Self = Self(0x0000_2000_0000_0000);
-    /// Balance open, cell 47: bit 46, state.
+    /// Balance switch open, cell 47: bit 46, state.
     pub const CELL_47: Self = Self(0x0000_4000_0000_0000);
-    /// Balance open, cell 48: bit 47, state.
+    /// Balance switch open, cell 48: bit 47, state.
     pub const CELL_48: Self = Self(0x0000_8000_0000_0000);
 
     /// Tests whether all bits of `other` are set.
@@ -515,54 +520,54 @@ impl Balance {
 impl Word for Balance {
     type Raw = u64;
     const LEGEND: Legend<Self> = Legend::Bits(&[
-        StatusBit::state(0, "cell_1", "Balance open, cell 1"),
-        StatusBit::state(1, "cell_2", "Balance open, cell 2"),
-        StatusBit::state(2, "cell_3", "Balance open, cell 3"),
-        StatusBit::state(3, "cell_4", "Balance open, cell 4"),
-        StatusBit::state(4, "cell_5", "Balance open, cell 5"),
-        StatusBit::state(5, "cell_6", "Balance open, cell 6"),
-        StatusBit::state(6, "cell_7", "Balance open, cell 7"),
-        StatusBit::state(7, "cell_8", "Balance open, cell 8"),
-        StatusBit::state(8, "cell_9", "Balance open, cell 9"),
-        StatusBit::state(9, "cell_10", "Balance open, cell 10"),
-        StatusBit::state(10, "cell_11", "Balance open, cell 11"),
-        StatusBit::state(11, "cell_12", "Balance open, cell 12"),
-        StatusBit::state(12, "cell_13", "Balance open, cell 13"),
-        StatusBit::state(13, "cell_14", "Balance open, cell 14"),
-        StatusBit::state(14, "cell_15", "Balance open, cell 15"),
-        StatusBit::state(15, "cell_16", "Balance open, cell 16"),
-        StatusBit::state(16, "cell_17", "Balance open, cell 17"),
-        StatusBit::state(17, "cell_18", "Balance open, cell 18"),
-        StatusBit::state(18, "cell_19", "Balance open, cell 19"),
-        StatusBit::state(19, "cell_20", "Balance open, cell 20"),
-        StatusBit::state(20, "cell_21", "Balance open, cell 21"),
-        StatusBit::state(21, "cell_22", "Balance open, cell 22"),
-        StatusBit::state(22, "cell_23", "Balance open, cell 23"),
-        StatusBit::state(23, "cell_24", "Balance open, cell 24"),
-        StatusBit::state(24, "cell_25", "Balance open, cell 25"),
-        StatusBit::state(25, "cell_26", "Balance open, cell 26"),
-        StatusBit::state(26, "cell_27", "Balance open, cell 27"),
-        StatusBit::state(27, "cell_28", "Balance open, cell 28"),
-        StatusBit::state(28, "cell_29", "Balance open, cell 29"),
-        StatusBit::state(29, "cell_30", "Balance open, cell 30"),
-        StatusBit::state(30, "cell_31", "Balance open, cell 31"),
-        StatusBit::state(31, "cell_32", "Balance open, cell 32"),
-        StatusBit::state(32, "cell_33", "Balance open, cell 33"),
-        StatusBit::state(33, "cell_34", "Balance open, cell 34"),
-        StatusBit::state(34, "cell_35", "Balance open, cell 35"),
-        StatusBit::state(35, "cell_36", "Balance open, cell 36"),
-        StatusBit::state(36, "cell_37", "Balance open, cell 37"),
-        StatusBit::state(37, "cell_38", "Balance open, cell 38"),
-        StatusBit::state(38, "cell_39", "Balance open, cell 39"),
-        StatusBit::state(39, "cell_40", "Balance open, cell 40"),
-        StatusBit::state(40, "cell_41", "Balance open, cell 41"),
-        StatusBit::state(41, "cell_42", "Balance open, cell 42"),
-        StatusBit::state(42, "cell_43", "Balance open, cell 43"),
-        StatusBit::state(43, "cell_44", "Balance open, cell 44"),
-        StatusBit::state(44, "cell_45", "Balance open, cell 45"),
-        StatusBit::state(45, "cell_46", "Balance open, cell 46"),
-        StatusBit::state(46, "cell_47", "Balance open, cell 47"),
-        StatusBit::state(47, "cell_48", "Balance open, cell 48"),
+        StatusBit::state(0, "cell_1", "Balance switch open, cell 1"),
+        StatusBit::state(1, "cell_2", "Balance switch open, cell 2"),
+        StatusBit::state(2, "cell_3", "Balance switch open, cell 3"),
+        StatusBit::state(3, "cell_4", "Balance switch open, cell 4"),
+        StatusBit::state(4, "cell_5", "Balance switch open, cell 5"),
+        StatusBit::state(5, "cell_6", "Balance switch open, cell 6"),
+        StatusBit::state(6, "cell_7", "Balance switch open, cell 7"),
+        StatusBit::state(7, "cell_8", "Balance switch open, cell 8"),
+        StatusBit::state(8, "cell_9", "Balance switch open, cell 9"),
+        StatusBit::state(9, "cell_10", "Balance switch open, cell 10"),
+        StatusBit::state(10, "cell_11", "Balance switch open, cell 11"),
+        StatusBit::state(11, "cell_12", "Balance switch open, cell 12"),
+        StatusBit::state(12, "cell_13", "Balance switch open, cell 13"),
+        StatusBit::state(13, "cell_14", "Balance switch open, cell 14"),
+        StatusBit::state(14, "cell_15", "Balance switch open, cell 15"),
+        StatusBit::state(15, "cell_16", "Balance switch open, cell 16"),
+        StatusBit::state(16, "cell_17", "Balance switch open, cell 17"),
+        StatusBit::state(17, "cell_18", "Balance switch open, cell 18"),
+        StatusBit::state(18, "cell_19", "Balance switch open, cell 19"),
+        StatusBit::state(19, "cell_20", "Balance switch open, cell 20"),
+        StatusBit::state(20, "cell_21", "Balance switch open, cell 21"),
+        StatusBit::state(21, "cell_22", "Balance switch open, cell 22"),
+        StatusBit::state(22, "cell_23", "Balance switch open, cell 23"),
+        StatusBit::state(23, "cell_24", "Balance switch open, cell 24"),
+        StatusBit::state(24, "cell_25", "Balance switch open, cell 25"),
+        StatusBit::state(25, "cell_26", "Balance switch open, cell 26"),
+        StatusBit::state(26, "cell_27", "Balance switch open, cell 27"),
+        StatusBit::state(27, "cell_28", "Balance switch open, cell 28"),
+        StatusBit::state(28, "cell_29", "Balance switch open, cell 29"),
+        StatusBit::state(29, "cell_30", "Balance switch open, cell 30"),
+        StatusBit::state(30, "cell_31", "Balance switch open, cell 31"),
+        StatusBit::state(31, "cell_32", "Balance switch open, cell 32"),
+        StatusBit::state(32, "cell_33", "Balance switch open, cell 33"),
+        StatusBit::state(33, "cell_34", "Balance switch open, cell 34"),
+        StatusBit::state(34, "cell_35", "Balance switch open, cell 35"),
+        StatusBit::state(35, "cell_36", "Balance switch open, cell 36"),
+        StatusBit::state(36, "cell_37", "Balance switch open, cell 37"),
+        StatusBit::state(37, "cell_38", "Balance switch open, cell 38"),
+        StatusBit::state(38, "cell_39", "Balance switch open, cell 39"),
+        StatusBit::state(39, "cell_40", "Balance switch open, cell 40"),
+        StatusBit::state(40, "cell_41", "Balance switch open, cell 41"),
+        StatusBit::state(41, "cell_42", "Balance switch open, cell 42"),
+        StatusBit::state(42, "cell_43", "Balance switch open, cell 43"),
+        StatusBit::state(43, "cell_44", "Balance switch open, cell 44"),
+        StatusBit::state(44, "cell_45", "Balance switch open, cell 45"),
+        StatusBit::state(45, "cell_46", "Balance switch open, cell 46"),
+        StatusBit::state(46, "cell_47", "Balance switch open, cell 47"),
+        StatusBit::state(47, "cell_48", "Balance switch open, cell 48"),
     ]);
     const FROM_RAW: fn(u64) -> Self = Self;
     const RAW: fn(Self) -> u64 = |word| word.0;
@@ -580,6 +585,9 @@ impl core::ops::BitOr for Balance {
 ///
 /// Erratum N1: printed is "bits numbered from 0, and not from which end", used is "bit 0 as the least
 /// significant", because a layout table after the document and descriptions by users have it so.
+///
+/// Erratum N6: printed is "bits 4 to 7 of the bytes 3 and 6 as reserved", used is "reserved, with a
+/// note if a bit is set", because nothing else is said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Failures(pub u64);
 
@@ -640,9 +648,9 @@ impl Failures {
     pub const TEMPERATURE_DIFFERENCE_LEVEL_1: Self = Self(0x0000_0000_0400_0000);
     /// Temperatures too different (level 2): bit 27, fault.
     pub const TEMPERATURE_DIFFERENCE_LEVEL_2: Self = Self(0x0000_0000_0800_0000);
-    /// Charge MOS too hot: bit 32, alarm.
+    /// Temperature of the charge MOS too high: bit 32, alarm.
     pub const CHARGE_MOS_TEMPERATURE_HIGH: Self = Self(0x0000_0001_0000_0000);
-    /// Discharge MOS too hot: bit 33, alarm.
+    /// Temperature of the discharge MOS too high: bit 33, alarm.
     pub const DISCHARGE_MOS_TEMPERATURE_HIGH: Self = Self(0x0000_0002_0000_0000);
     /// Temperature sensor of the charge MOS in error: bit 34, fault.
     pub const CHARGE_MOS_SENSOR_ERROR: Self = Self(0x0000_0004_0000_0000);
@@ -676,7 +684,7 @@ impl Failures {
     pub const CURRENT_MODULE_FAULT: Self = Self(0x0001_0000_0000_0000);
     /// Detection of the total voltage failed: bit 49, fault.
     pub const TOTAL_VOLTAGE_DETECTION_FAULT: Self = Self(0x0002_0000_0000_0000);
-    /// Protection against short circuits failed: bit 50, fault.
+    /// Fault of the protection against short circuits: bit 50, fault.
     pub const SHORT_CIRCUIT_PROTECTION_FAULT: Self = Self(0x0004_0000_0000_0000);
     /// Voltage so low that charging is forbidden: bit 51, alarm.
     pub const LOW_VOLTAGE_CHARGING_FORBIDDEN: Self = Self(0x0008_0000_0000_0000);
@@ -736,8 +744,8 @@ impl Word for Failures {
         StatusBit::fault(25, "voltage_difference_level_2", "Voltages of the cells too different (level 2)"),
         StatusBit::alarm(26, "temperature_difference_level_1", "Temperatures too different (level 1)"),
         StatusBit::fault(27, "temperature_difference_level_2", "Temperatures too different (level 2)"),
-        StatusBit::alarm(32, "charge_mos_temperature_high", "Charge MOS too hot"),
-        StatusBit::alarm(33, "discharge_mos_temperature_high", "Discharge MOS too hot"),
+        StatusBit::alarm(32, "charge_mos_temperature_high", "Temperature of the charge MOS too high"),
+        StatusBit::alarm(33, "discharge_mos_temperature_high", "Temperature of the discharge MOS too high"),
         StatusBit::fault(34, "charge_mos_sensor_error", "Temperature sensor of the charge MOS in error"),
         StatusBit::fault(35, "discharge_mos_sensor_error", "Temperature sensor of the discharge MOS in error"),
         StatusBit::fault(36, "charge_mos_adhesion", "Charge MOS stuck"),
@@ -754,7 +762,7 @@ impl Word for Failures {
         StatusBit::fault(47, "internal_communication_failure", "Communication inside the battery failed"),
         StatusBit::fault(48, "current_module_fault", "Current module failed"),
         StatusBit::fault(49, "total_voltage_detection_fault", "Detection of the total voltage failed"),
-        StatusBit::fault(50, "short_circuit_protection_fault", "Protection against short circuits failed"),
+        StatusBit::fault(50, "short_circuit_protection_fault", "Fault of the protection against short circuits"),
         StatusBit::alarm(51, "low_voltage_charging_forbidden", "Voltage so low that charging is forbidden"),
     ]);
     const FROM_RAW: fn(u64) -> Self = Self;
@@ -784,18 +792,17 @@ pub struct PackValues {
     ///
     /// Positive while charging, negative while discharging.
     ///
-    /// Erratum Y7: printed is "nothing about the order of bytes", used is "high byte first", because a
-    /// layout table after the document and descriptions by users have it so.
+    /// Erratum Y7: printed is "nothing about the order of bytes", used is "high byte first, but for the
+    /// balance of 5.6", because a layout table after the document and descriptions by users have it so.
     ///
     /// Erratum Y8: printed is "30000 and 40 as offsets, and nothing about the sign of the current", used is
-    /// "the raw value less the offset; a positive current charges", because a layout table after the
-    /// document and descriptions by users subtract, the sign is from the latter; 0 to 255 less 40 is the
-    /// range of 5.3.
+    /// "the raw value less the offset; a positive current charges", because a layout table and users
+    /// subtract; users report the sign; 0 to 255 less 40 is the range of 5.3.
     pub current_a: f64,
     /// State of charge in %: bytes 6..7, steps of 0.1 %.
     ///
-    /// Erratum Y7: printed is "nothing about the order of bytes", used is "high byte first", because a
-    /// layout table after the document and descriptions by users have it so.
+    /// Erratum Y7: printed is "nothing about the order of bytes", used is "high byte first, but for the
+    /// balance of 5.6", because a layout table after the document and descriptions by users have it so.
     pub state_of_charge_percent: f64,
 }
 
@@ -858,14 +865,16 @@ pub struct CellVoltageExtremes {
     /// Number of the cell with the highest voltage: byte 2.
     ///
     /// Erratum Y9: printed is "numbers of cells, and not whether they begin with 0 or 1", used is "the
-    /// number as it is in the frame", because users report 1; 5.6 and 6.2 call the first cell 1 too.
+    /// number as it is in the frame", because users report 1 for 5.2; 5.6 and 6.3 call the first cell 1
+    /// too.
     pub maximum_cell: u8,
     /// Lowest voltage in V: bytes 3..4, steps of 0.001 V.
     pub minimum_voltage_v: f64,
     /// Number of the cell with the lowest voltage: byte 5.
     ///
     /// Erratum Y9: printed is "numbers of cells, and not whether they begin with 0 or 1", used is "the
-    /// number as it is in the frame", because users report 1; 5.6 and 6.2 call the first cell 1 too.
+    /// number as it is in the frame", because users report 1 for 5.2; 5.6 and 6.3 call the first cell 1
+    /// too.
     pub minimum_cell: u8,
 }
 
@@ -926,7 +935,8 @@ pub struct TemperatureExtremes {
     /// Number of the cell with the highest temperature: byte 1.
     ///
     /// Erratum Y9: printed is "numbers of cells, and not whether they begin with 0 or 1", used is "the
-    /// number as it is in the frame", because users report 1; 5.6 and 6.2 call the first cell 1 too.
+    /// number as it is in the frame", because users report 1 for 5.2; 5.6 and 6.3 call the first cell 1
+    /// too.
     ///
     /// Erratum Y10: printed is "a number of a cell beside each temperature", used is "a cell, as printed",
     /// because users report the number of a sensor; the number in the frame is the same.
@@ -936,7 +946,8 @@ pub struct TemperatureExtremes {
     /// Number of the cell with the lowest temperature: byte 3.
     ///
     /// Erratum Y9: printed is "numbers of cells, and not whether they begin with 0 or 1", used is "the
-    /// number as it is in the frame", because users report 1; 5.6 and 6.2 call the first cell 1 too.
+    /// number as it is in the frame", because users report 1 for 5.2; 5.6 and 6.3 call the first cell 1
+    /// too.
     ///
     /// Erratum Y10: printed is "a number of a cell beside each temperature", used is "a cell, as printed",
     /// because users report the number of a sensor; the number in the frame is the same.
@@ -992,30 +1003,30 @@ impl Layout for TemperatureExtremes {
 ///   200, `remaining_capacity` 123456 `mAh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChargeState {
-    /// Whether the battery is charged or discharged: byte 0.
+    /// Whether the battery is charging or discharging: byte 0.
     pub state: OperatingState,
     /// State of the charge MOS: byte 1.
     ///
-    /// Erratum Y11: printed is "MOS states and life as numbers, without meanings", used is "numbers",
-    /// because users report 0 for off and 1 for on, and a life that goes up with each frame; no document
-    /// names other numbers.
+    /// Erratum Y11: printed is "MOS states as numbers without meanings, and life as a counter of cycles",
+    /// used is "numbers", because users report on or off without the numbers, and a life that goes up with
+    /// each frame.
     pub charge_mos: u8,
     /// State of the discharge MOS: byte 2.
     ///
-    /// Erratum Y11: printed is "MOS states and life as numbers, without meanings", used is "numbers",
-    /// because users report 0 for off and 1 for on, and a life that goes up with each frame; no document
-    /// names other numbers.
+    /// Erratum Y11: printed is "MOS states as numbers without meanings, and life as a counter of cycles",
+    /// used is "numbers", because users report on or off without the numbers, and a life that goes up with
+    /// each frame.
     pub discharge_mos: u8,
     /// Counter of cycles: byte 3.
     ///
-    /// Erratum Y11: printed is "MOS states and life as numbers, without meanings", used is "numbers",
-    /// because users report 0 for off and 1 for on, and a life that goes up with each frame; no document
-    /// names other numbers.
+    /// Erratum Y11: printed is "MOS states as numbers without meanings, and life as a counter of cycles",
+    /// used is "numbers", because users report on or off without the numbers, and a life that goes up with
+    /// each frame.
     pub life: u8,
     /// Remaining capacity in Ah: bytes 4..7, steps of 0.001 Ah.
     ///
-    /// Erratum Y7: printed is "nothing about the order of bytes", used is "high byte first", because a
-    /// layout table after the document and descriptions by users have it so.
+    /// Erratum Y7: printed is "nothing about the order of bytes", used is "high byte first, but for the
+    /// balance of 5.6", because a layout table after the document and descriptions by users have it so.
     pub remaining_capacity_ah: f64,
 }
 
@@ -1145,13 +1156,15 @@ impl Layout for StatusInformation {
 /// where there is a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellVoltages {
-    /// Number of the frame: byte 0, `0..=16`, raw 255 is `invalid`. Section 6.3.
+    /// Number of the frame: byte 0, `0..=16`, raw 255 is `invalid`. Section 6.2, 6.3.
     ///
     /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, so numbers up to 16
-    /// for voltages", because devices are widely reported to begin with 1; which of the two it is only the
-    /// whole reply shows.
+    /// for voltages", because devices are widely reported to begin with 1; a frame 0, or one whose number
+    /// is the number of frames, shows which it is.
     pub part: u8,
-    /// Voltages of the three cells of this frame in V: bytes 1..2 to bytes 5..6, steps of 0.001 V.
+    /// Voltages of three cells in V: bytes 1..2 to bytes 5..6, steps of 0.001 V.
+    ///
+    /// If frames count from 0, frame n has the cells 3n + 1 to 3n + 3; if they count from 1, 3n - 2 to 3n.
     pub voltage_v: [f64; 3],
 }
 
@@ -1212,22 +1225,27 @@ impl Layout for CellVoltages {
 /// text", used is "up to 3 frames", because both fit into 3 frames of seven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperatures {
-    /// Number of the frame: byte 0. Section 7.2.
+    /// Number of the frame: byte 0, `0..=3`. Section 7.2.
     ///
     /// Erratum Y15: printed is "numbers of frames that begin with 0", used is "either, so numbers up to 16
-    /// for voltages", because devices are widely reported to begin with 1; which of the two it is only the
-    /// whole reply shows.
+    /// for voltages", because devices are widely reported to begin with 1; a frame 0, or one whose number
+    /// is the number of frames, shows which it is.
+    ///
+    /// Erratum Y17: printed is "16 temperatures in the name of the row, and 21 bytes in 3 frames in the
+    /// text", used is "up to 3 frames", because both fit into 3 frames of seven.
     ///
     /// Erratum Y18: printed is "`0xFF` as an invalid number of a frame of 0x95, and nothing of 0x96", used
-    /// is "a number like any other in 0x96", because nothing else is said.
+    /// is "no number of a frame of 0x96, so it gets a note", because nothing else is said.
     pub part: u8,
-    /// Temperatures of the seven sensors of this frame in °C: byte 1 to byte 7, raw 0 is -40 °C.
+    /// Seven temperatures in °C: byte 1 to byte 7, raw 0 is -40 °C.
+    ///
+    /// If frames count from 0, frame n has the temperatures 7n + 1 to 7n + 7.
     pub temperature_c: [f64; 7],
 }
 
 impl Temperatures {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
-    pub const PART: Signal<u8> = Signal::new("part", Place::byte(0));
+    pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 3);
     /// The signal `temperature_1`, to read or write it alone, or to ask for its limits.
     pub const TEMPERATURE_1: Signal<u8, f64> = Signal::new("temperature_1", Place::byte(1)).unit("°C").offset(-40, 1);
     /// The signal `temperature_2`, to read or write it alone, or to ask for its limits.

@@ -53,7 +53,7 @@ impl Draft {
         for _ in 0..FRAMES {
             let (model, frame) = (self.one(&models), frames.next_frame());
             let decoded = decode(protocol, model, &frame).ok();
-            examples.extend(decoded.and_then(|decoded| self.long(protocol, model, &frame, &decoded)));
+            examples.extend(decoded.and_then(|decoded| self.of_all_parts(protocol, model, &frame, &decoded)));
         }
         examples.sort_by_key(|example| example.kind == Kind::Request);
         examples
@@ -101,7 +101,7 @@ impl Draft {
     }
 
     /// Returns an example of all frames of a long message, the first of which has the form of `frame`.
-    fn long(
+    fn of_all_parts(
         &mut self,
         protocol: &Protocol,
         model: Option<ModelId>,

@@ -17,6 +17,8 @@ struct Access {
     is_apart: bool,
     /// Whether it says the command too, so that its messages have a register alone.
     has_command: bool,
+    /// Whether its requests carry values.
+    sends: bool,
     role: Role,
 }
 
@@ -105,6 +107,7 @@ impl Draft {
             access.put(*kind, constants.clone());
         }
         let carrying = self.carrying(kinds, role);
+        let sends = carrying.contains(&"request") || role == Role::Call;
         if carrying.len() < kinds.len() || self.chance(20) {
             access.put("in", list(carrying));
         }
@@ -121,7 +124,7 @@ impl Draft {
         self.remark(&mut access);
         let name = self.names.plain(&mut traffic.access_names);
         traffic.access.put(name.clone(), access);
-        traffic.accesses.push(Access { name, kinds: kinds.to_vec(), is_apart, has_command, role });
+        traffic.accesses.push(Access { name, kinds: kinds.to_vec(), is_apart, has_command, sends, role });
     }
 
     fn carrying(&mut self, kinds: &[&'static str], role: Role) -> Vec<&'static str> {
@@ -210,8 +213,9 @@ impl Draft {
             let reserved = self.reserved();
             message.put("reserved", reserved);
         }
-        if bus.header_bytes < 5 && self.chance(12) {
-            self.long(bus, traffic, &mut message);
+        let is_sent = accesses.iter().any(|access| access.sends);
+        if bus.header_bytes < 5 && !is_sent && self.chance(25) {
+            self.in_parts(bus, traffic, &mut message);
         } else {
             self.content(bus, &mut message, &kinds, false);
         }
@@ -220,7 +224,7 @@ impl Draft {
     }
 
     /// Adds what a message carries in several frames.
-    fn long(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map) {
+    fn in_parts(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map) {
         let (number, data) = (bus.header_bytes, bus.header_bytes + 1);
         let mut parts = Map::of([("number", Map::of([("bytes", number.to_string())]))]);
         if self.models.is_empty() || self.random.bool() {

@@ -1,0 +1,142 @@
+//! Messages in parts: the table shows one row for each, JSON lines add an object, and both ways back give the frames.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::{Value, json};
+
+/// Cells 1 to 5 of battery 1: 10 V, 0.1 V, 0.11 V, 0.12 V and 3.3 V. `cells` says that there are five.
+const LOG: &str = "\
+(1.0) can0 031#0500000000000000
+(1.1) can0 041#0000000000000000
+(1.2) can0 051#010201E8030A0000
+(1.3) can0 051#020B000C004A0100
+";
+
+/// The spec whose parts have other numbers on each model.
+const BY_MODEL: &str = "parts_by_model.yaml";
+
+fn spec(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features").join(name)
+}
+
+fn canspec(arguments: &[&str], input: &str) -> (String, String) {
+    canspec_with("parts.yaml", arguments, input)
+}
+
+fn canspec_with(name: &str, arguments: &[&str], input: &str) -> (String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
+    let command = command.args(arguments).arg("--spec").arg(spec(name)).stdin(Stdio::piped());
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");
+    let mut stdin = child.stdin.take().expect("it reads");
+    // A call that is refused does not read.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    let output = child.wait_with_output().expect("canspec ends");
+    let [out, complaints] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("it is text"));
+    (out, complaints)
+}
+
+fn objects(log: &str) -> Vec<Value> {
+    let (out, _) = canspec(&["decode", "--assemble", "--format", "jsonl", "-"], log);
+    out.lines().map(|line| serde_json::from_str(line).expect("a line is an object")).collect()
+}
+
+#[test]
+fn an_object_with_the_joined_values_stands_behind_that_of_the_last_frame() {
+    let objects = objects(LOG);
+    assert_eq!(objects.len(), 5);
+    let whole = &objects[4];
+    assert_eq!((&whole["lines"], &whole["time"]), (&json!([3, 4]), &json!(1.3)));
+    assert_eq!(whole["data"], "0201E8030A000B000C004A01");
+    assert_eq!(whole["signals"]["cycles"]["value"], 258);
+    assert_eq!(whole["signals"]["voltage"]["raw"], json!([1000, 10, 11, 12, 330]));
+    assert_eq!(whole["signals"]["voltage"]["value"], json!([10.0, 0.1, 0.11, 0.12, 3.3]));
+    assert!(whole.get("id").is_none() && whole.get("line").is_none() && whole.get("incomplete").is_none());
+    assert_eq!(objects[3]["signals"]["part"]["value"], 2);
+    assert_eq!(objects[3]["signals"]["data"]["value"], "0B000C004A01");
+}
+
+#[test]
+fn a_part_that_is_lost_is_said_and_nothing_of_it_is_shown() {
+    let log: String = LOG.lines().filter(|line| !line.contains("(1.2)")).map(|line| format!("{line}\n")).collect();
+    let objects = objects(&log);
+    let whole = objects.last().expect("there is one");
+    assert_eq!(whole["incomplete"], "part 1 is missing");
+    assert_eq!((&whole["lines"], &whole["data"]), (&json!([3]), &Value::Null));
+    assert_eq!(whole["signals"]["voltage"]["raw"], json!([null, null, 11, 12, 330]));
+    assert!(whole["signals"].get("cycles").is_none());
+}
+
+#[test]
+fn the_table_has_one_row_for_a_message_and_those_of_its_frames_on_demand() {
+    let (short, _) = canspec(&["decode", "-"], LOG);
+    let values = "cycles 258  voltage [10.00, 0.10, 0.11, 0.12, 3.30] V";
+    assert!(short.lines().any(|row| row.starts_with("1.3") && row.contains(values)), "{short}");
+    assert!(!short.contains("0B000C004A01") && !short.contains("1.2 "), "{short}");
+    let (long, _) = canspec(&["decode", "--frames", "-"], LOG);
+    assert!(long.contains("part 1  data 0201E8030A00") && long.contains("part 2  data 0B000C004A01"), "{long}");
+    assert!(long.contains(values), "{long}");
+}
+
+#[test]
+fn an_object_of_a_whole_message_becomes_frames_unless_these_have_objects() {
+    let (all, _) = canspec(&["decode", "--assemble", "--format", "jsonl", "-"], LOG);
+    let (back, complaints) = canspec(&["encode", "--from", "jsonl"], &all);
+    assert_eq!((back.as_str(), complaints.as_str()), (LOG, ""));
+    let whole: String = all.lines().filter(|line| line.contains("\"lines\"")).map(|line| format!("{line}\n")).collect();
+    let (back, complaints) = canspec(&["encode", "--from", "jsonl"], &whole);
+    let frames = "(1.3) can0 051#010201E8030A0000\n(1.3) can0 051#020B000C004A0100\n";
+    assert_eq!((back.as_str(), complaints.as_str()), (frames, ""));
+}
+
+#[test]
+fn an_incomplete_message_without_its_frames_is_refused() {
+    let log = LOG.lines().take(3).collect::<Vec<_>>().join("\n");
+    let (all, _) = canspec(&["decode", "--assemble", "--format", "jsonl", "-"], &log);
+    let whole = all.lines().find(|line| line.contains("\"lines\"")).expect("it ends with the log");
+    let (back, complaints) = canspec(&["encode", "--from", "jsonl"], whole);
+    assert_eq!(back, "");
+    assert!(complaints.contains("an incomplete message is not made again: part 2 is missing"), "{complaints}");
+}
+
+#[test]
+fn values_in_a_call_become_all_frames() {
+    let reply = ["encode", "cells", "--kind", "reply", "--source", "1", "cycles=258"];
+    let values = ["voltage=10V,0.1V,0.11V,0.12V,3300mV", "group=0,0,0,0,0"];
+    let (frames, complaints) = canspec(&[&reply[..], &values].concat(), "");
+    assert_eq!((frames.as_str(), complaints.as_str()), ("051#010201E8030A0000\n051#020B000C004A0100\n", ""));
+}
+
+#[test]
+fn a_model_says_which_number_the_first_part_has() {
+    let reply = ["encode", "label", "--kind", "reply", "--source", "1", "serial=AB123456", "hours=1000h"];
+    let (_, complaints) = canspec_with(BY_MODEL, &reply, "");
+    assert_eq!(complaints, "canspec: label: the first part has another number on each model; choose a model\n");
+    let (frames, _) = canspec_with(BY_MODEL, &[&reply[..], &["--model", "B"]].concat(), "");
+    assert_eq!(frames, "071#01414231\n071#02323334\n071#03353600\n071#040003E8\n");
+    let (table, _) = canspec_with(BY_MODEL, &["decode", "--model", "B", "-"], &frames);
+    assert!(table.contains("serial AB123456  hours 1000 h"), "{table}");
+    let (table, _) = canspec_with(BY_MODEL, &["decode", "-"], &frames);
+    assert_eq!(table.matches("! model_dependent").count(), 4, "{table}");
+}
+
+#[test]
+fn a_message_that_crosses_two_parts_of_a_file_is_the_same_as_from_a_live_bus() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let path = folder.path().join("bus.log");
+    let log = LOG.repeat(12_000);
+    fs::write(&path, &log).expect("there is room");
+    for format in ["text", "jsonl", "csv"] {
+        let run = |log: &Path, input: Stdio| {
+            let arguments = ["decode", "--assemble", "--format", format, "--spec"];
+            let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
+            command.args(arguments).arg(spec("parts.yaml")).arg(log).stdin(input).output().expect("canspec runs").stdout
+        };
+        let file = run(&path, Stdio::null());
+        let input = run(Path::new("-"), File::open(&path).expect("it is there").into());
+        assert!(file == input && !file.is_empty(), "{format} differs");
+    }
+}
