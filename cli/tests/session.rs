@@ -21,7 +21,7 @@ struct Session {
     beyond_every_model: &'static [u64],
 }
 
-const SESSIONS: [Session; 7] = [
+const SESSIONS: [Session; 8] = [
     Session {
         name: "infy-session",
         protocol: "infy",
@@ -79,6 +79,14 @@ const SESSIONS: [Session; 7] = [
         model: None,
         commands: &[144, 145, 146, 147, 148, 149, 150, 151, 152],
         out_of_range: &[],
+        beyond_every_model: &[],
+    },
+    Session {
+        name: "huawei-session",
+        protocol: "huawei",
+        model: Some("R4830S1"),
+        commands: &[16, 17, 64, 80, 128, 129, 130, 210],
+        out_of_range: &[484, 487, 490, 491, 494, 497, 508, 511, 516, 519, 534, 535, 542, 543],
         beyond_every_model: &[],
     },
 ];
