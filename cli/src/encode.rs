@@ -115,9 +115,9 @@ impl Encode {
         let signals = pairs(signals)?;
         let (access, message) = named(protocol, names)?;
         let refused = |refusal: Refusal| Failure::Call(refusal.to_string());
-        let sent = Sent { kind: self.kind.map(Purpose::kind), access, message, to: None, source: None };
+        let sent = Sent { kind: self.kind.map(Purpose::kind), access, model, message, to: None, source: None };
         if sent.is_of_module(protocol).map_err(refused)? {
-            return write(&self.sent(protocol, model, sent, &signals).map_err(refused)?);
+            return write(&self.sent(protocol, sent, &signals).map_err(refused)?);
         }
         if access.is_none() {
             access::refuse_several(message, &interpret::accesses(protocol, message, &signals).map_err(refused)?)?;
@@ -129,16 +129,10 @@ impl Encode {
     }
 
     /// Returns the frames that a module sends.
-    fn sent(
-        &self,
-        protocol: &Protocol,
-        model: Option<ModelId>,
-        sent: Sent<'_>,
-        signals: &[(String, String)],
-    ) -> Result<Vec<Frame>, Refusal> {
+    fn sent(&self, protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Vec<Frame>, Refusal> {
         let to = self.to.as_ref().map(|text| Target::parse(protocol, text)).transpose()?;
         let source = self.source.as_ref().map(|text| interpret::module(protocol, text)).transpose()?;
-        interpret::sent(protocol, model, Sent { to: to.as_ref(), source, ..sent }, signals)
+        interpret::sent(protocol, Sent { to: to.as_ref(), source, ..sent }, signals)
     }
 }
 
@@ -219,7 +213,7 @@ impl Encoder {
 
     fn frame(&mut self, devices: &[Device<'_>], message: &Message) -> Result<Frame, String> {
         let (protocol, model) = device(devices, message.protocol.as_deref())?;
-        check_units(protocol.messages.iter(), message)?;
+        check_units(protocol.messages.iter(), model, message)?;
         let frame = interpret::encode(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())?;
         if !protocol.long_messages.is_empty() {
             self.by_frames.insert((message.protocol.clone(), message.frame.message.clone()));
@@ -236,7 +230,7 @@ impl Encoder {
             return Err(format!("an incomplete message is not made again: {missing}"));
         }
         let (protocol, model) = device(devices, message.protocol.as_deref())?;
-        check_units(protocol.long_messages.iter().map(|long| &long.content), message)?;
+        check_units(protocol.long_messages.iter().map(|long| &long.content), model, message)?;
         interpret::encode_long(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())
     }
 }
@@ -267,13 +261,14 @@ fn device<'a>(devices: &[Device<'a>], name: Option<&str>) -> Result<Device<'a>, 
 /// Refuses a value whose stated unit is not that of its signal.
 fn check_units<'a>(
     mut messages: impl Iterator<Item = &'a canspec_codegen::model::Message>,
+    model: Option<ModelId>,
     line: &Message,
 ) -> Result<(), String> {
     let Some(message) = messages.find(|message| message.name == line.frame.message) else { return Ok(()) };
     for (name, stated) in &line.units {
         let is_meant = |signal: &&Signal| signal.name == *name || message.field_name(signal) == name;
         let Some(signal) = message.signals.iter().find(is_meant) else { continue };
-        let wanted = match signal.unit {
+        let wanted = match signal.on(model).unit {
             Some(unit) if unit.symbol == stated => continue,
             Some(unit) => format!("the unit is {}", unit.symbol),
             None => "there is no unit".to_owned(),

@@ -20,7 +20,7 @@ pub fn fields<'a>(
     message: &'a Message,
     decoded: &'a Decoded,
 ) -> impl Iterator<Item = (&'a str, Field<'a>)> + Clone + use<'a> {
-    let read = |reading: &'a Reading| (&message.signals[reading.signal], reading);
+    let read = |reading: &'a Reading| (message.signals[reading.signal].on(decoded.model), reading);
     decoded.signals.iter().enumerate().filter_map(move |(index, reading)| {
         let signal = &message.signals[reading.signal];
         let Some(array) = message.array_of(signal) else { return Some((&*signal.name, Field::Signal(read(reading)))) };

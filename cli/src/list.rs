@@ -237,7 +237,10 @@ fn titled(title: Option<&str>, mut items: Vec<String>) -> Vec<String> {
 fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     let mut items = Vec::new();
     items.extend(signal.range.map(|range| format!("{}..{}", range.minimum, range.maximum)));
-    items.extend((!signal.model_ranges.is_empty()).then(|| "limits by model".to_owned()));
+    items.extend(
+        (!signal.model_ranges.is_empty() && signal.encoding.by_model().is_empty())
+            .then(|| "limits by model".to_owned()),
+    );
     match signal.encoding.status_word() {
         Some(word) => items.extend(protocol.status_words[word].bits.iter().map(status_bit)),
         None => items.extend(description(protocol, signal)),

@@ -5,6 +5,7 @@
 //! is a file in this folder and an arm in [`Words::with`].
 
 mod allowed;
+mod by_model;
 mod float;
 mod named;
 mod number;
@@ -16,7 +17,8 @@ mod text;
 pub use allowed::Allowed;
 
 use crate::model::{
-    Encoding, Enumeration, EnumerationId, Misfit, NoteRule, Protocol, Said, Signal, StatusWord, StatusWordId, Table,
+    DeviceModel, Encoding, Enumeration, EnumerationId, Misfit, ModelId, NoteRule, Protocol, Said, Signal, StatusWord,
+    StatusWordId, Table,
 };
 use crate::number::Rational;
 
@@ -105,11 +107,12 @@ pub trait Room {
 pub struct Words<'a> {
     pub enumerations: &'a Table<EnumerationId, Enumeration>,
     pub status_words: &'a Table<StatusWordId, StatusWord>,
+    pub models: &'a Table<ModelId, DeviceModel>,
 }
 
 impl<'a> From<&'a Protocol> for Words<'a> {
     fn from(protocol: &'a Protocol) -> Self {
-        Self { enumerations: &protocol.enumerations, status_words: &protocol.status_words }
+        Self { enumerations: &protocol.enumerations, status_words: &protocol.status_words, models: &protocol.models }
     }
 }
 
@@ -120,6 +123,7 @@ impl Words<'_> {
             Encoding::Number { numeral, scale, offset } => {
                 ask(&number::Number { signal, numeral: *numeral, scale: *scale, offset: *offset })
             }
+            Encoding::ByModel { signals: own, .. } => ask(&by_model::ByModel { signal, own, models: self.models }),
             Encoding::Float => ask(&float::Float { signal }),
             Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
             Encoding::Status(id) => ask(&status::Status { signal, word: &self.status_words[*id] }),

@@ -22,8 +22,8 @@ use std::fmt;
 
 pub use crate::encoding::{Input, Value, description};
 use crate::model::{
-    AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, NoteRule, Protocol, SelectorId,
-    Side, SignalId, Table, Travel,
+    AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, ModelId, NoteRule, Protocol,
+    SelectorId, Side, SignalId, Table, Travel,
 };
 
 /// A frame as it stood on the bus.
@@ -79,6 +79,8 @@ pub struct Decoded {
     pub kind: Kind,
     /// Who sends it.
     pub sender: Side,
+    /// The device model that it was decoded for, if one was chosen.
+    pub model: Option<ModelId>,
     /// The set that the frame belongs to.
     pub set: Option<MessageId>,
     /// The addressing mode, if one fits, and who answers or sends the frame.

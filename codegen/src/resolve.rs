@@ -18,6 +18,7 @@ mod messages;
 mod patterns;
 mod printed;
 pub(crate) mod rules;
+mod scales;
 mod sending;
 mod sets;
 mod sides;
@@ -146,7 +147,11 @@ impl Resolver<'_> {
 
     /// Returns the tables that encodings refer to, as far as they are known.
     fn words(&self) -> Words<'_> {
-        Words { enumerations: &self.tables.enumerations, status_words: &self.tables.status_words }
+        Words {
+            enumerations: &self.tables.enumerations,
+            status_words: &self.tables.status_words,
+            models: &self.tables.models,
+        }
     }
 
     /// Tests that the allowances name rules.

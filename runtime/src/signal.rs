@@ -66,6 +66,8 @@ pub struct Signal<R: 'static, F: 'static = R> {
     model_limits: &'static [(u8, Option<(F, F)>)],
     specials: &'static [(i64, &'static str)],
     has_absent: bool,
+    /// Whether a value has a meaning only on a device model.
+    is_by_model: bool,
     raw: PhantomData<R>,
 }
 
@@ -81,6 +83,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             model_limits: &[],
             specials: &[],
             has_absent: false,
+            is_by_model: false,
             raw: PhantomData,
         }
     }
@@ -128,6 +131,19 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     #[must_use]
     pub const fn absent(self) -> Self {
         Self { has_absent: true, ..self }
+    }
+
+    /// Says that the scale depends on the device model. Without a model, the raw value has no meaning.
+    #[must_use]
+    pub const fn by_model(self) -> Self {
+        Self { is_by_model: true, ..self }
+    }
+
+    /// Returns the signal of a device model, with physical values of the type `P`, and without unit, scale and limits.
+    #[must_use]
+    pub const fn on_model<P: Physical<R>>(self) -> Signal<R, P> {
+        let Self { name, place, specials, has_absent, .. } = self;
+        Signal { specials, has_absent, ..Signal::new(name, place) }
     }
 
     /// Returns the place in the data.
@@ -287,6 +303,36 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 }
 
 impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
+    /// Returns the physical value of a raw value; `None` if the raw value means something else.
+    ///
+    /// ```
+    /// use canspec_runtime::{Place, Signal};
+    ///
+    /// const LIMIT: Signal<u16> = Signal::new("limit", Place::bytes(0, 1)).specials(&[(0, "off")]).by_model();
+    /// const ON_SMALL: Signal<u16, f64> = LIMIT.on_model().unit("A").scale(1, 20).limits(1.0, 40.0);
+    ///
+    /// assert_eq!(ON_SMALL.physical_of(440), Some(22.0));
+    /// assert_eq!(ON_SMALL.physical_of(0), None);
+    /// assert_eq!(ON_SMALL.raw_of(22.0, "set_limit"), Ok(440));
+    /// let error = ON_SMALL.raw_of(41.0, "set_limit").unwrap_err();
+    /// assert_eq!(error.to_string(), "`limit` of `set_limit` is 41 A, but its limits are 1 and 40 A");
+    /// ```
+    pub fn physical_of(&self, raw: R) -> Option<F> {
+        let bits = raw.to_bits();
+        self.special(bits).is_none().then(|| F::scaled(bits as i64, self.exact_scale()))
+    }
+
+    /// Returns the raw value nearest to a physical value within the limits, with ties away from zero.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`encode`](Self::encode) into a request of `message`.
+    pub fn raw_of(&self, physical: F, message: &'static str) -> Result<R, Error> {
+        let mut payload = Payload::within_limits(message, [0; 8]);
+        self.encode(physical, &mut payload)?;
+        Ok(self.get(payload.data()))
+    }
+
     /// Returns the physical value: the number of type `F` nearest to the exact one.
     #[inline(always)]
     pub fn decode(&self, data: &Data) -> F {

@@ -126,18 +126,23 @@ fn interpreted(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Re
         access: protocol.accesses[decoded.access].name.clone(),
         kind: format!("{:?}", decoded.kind),
         addressing: decoded.addressing.map(|travel| protocol[travel.mode].name.clone()),
-        signals: decoded.signals.iter().map(|reading| read(&message.signals[reading.signal], reading)).collect(),
+        signals: decoded
+            .signals
+            .iter()
+            .map(|reading| read(protocol, &message.signals[reading.signal], reading))
+            .collect(),
         selectors: selectors.map(|(index, raw)| (protocol.selectors[*index].name.clone(), *raw)).collect(),
         reserved: decoded.reserved,
         encoded: interpret::encode(protocol, model, &content).ok().map(|frame| frame.data),
     })
 }
 
-fn read(signal: &Signal, reading: &interpret::Reading) -> (String, Option<String>, u64, String) {
+/// Returns what a signal says without a device model, since readings of generated Rust know none.
+fn read(protocol: &Protocol, signal: &Signal, reading: &interpret::Reading) -> (String, Option<String>, u64, String) {
     let width = signal.place.width();
     let negative = signal.encoding.numeral().is_signed() && reading.bits >> (width - 1) == 1;
     let bits = if negative && width < 64 { reading.bits | u64::MAX << width } else { reading.bits };
-    let meaning = match &reading.value {
+    let meaning = match &interpret::physical(protocol, signal, reading.bits) {
         Value::None => "none".to_owned(),
         Value::Integer(value) => value.to_string(),
         Value::Number(value) => format!("{:016X}", value.to_bits()),

@@ -206,13 +206,9 @@ impl Draft {
         for index in 0..self.limited.len() {
             if self.random.bool() {
                 let known = self.limited[index].name.clone();
-                let (range, default) = self.one(&self.limited[index].ranges.clone());
-                let mut limits = Map::of([("range", range)]);
-                if self.random.bool() {
-                    limits.put("default", default);
-                }
-                self.refer(&mut limits);
-                types.put(known, limits);
+                let mut change = self.one(&self.limited[index].changes.clone());
+                self.refer(&mut change);
+                types.put(known, change);
             }
         }
         types

@@ -2,7 +2,9 @@
 
 use canspec_protocols::{infy, megmeet};
 use canspec_runtime::Frame;
-use canspec_tests::{features_model_layouts as layouts, features_model_limits as limits};
+use canspec_tests::{
+    features_model_layouts as layouts, features_model_limits as limits, features_scales_by_model as scales,
+};
 
 /// The limits that the INFY document prints for its models in 3.3: voltage and current.
 const PRINTED: [(infy::Model, [f64; 2], [f64; 2]); 8] = [
@@ -96,4 +98,45 @@ fn a_frame_is_decoded_by_the_layout_of_its_model() {
     assert_eq!(layouts::Message::decode(&frame).map(said), Ok(ac));
     assert_eq!(layouts::Message::decode_for(layouts::Model::P10a, &frame).map(said), Ok(ac));
     assert_eq!(layouts::Message::decode_for(layouts::Model::P48vDc, &frame).map(said), Ok(dc));
+}
+
+#[test]
+fn a_number_is_read_and_set_by_the_scale_of_the_model() {
+    use scales::{Model, SetOutput};
+    // 440 / 20, 440 / 1250, and 22 x 30.
+    let mut set = SetOutput { current_raw: 440, temperature_raw: 0 };
+    assert_eq!([Model::R4850X20, Model::R4830].map(|model| set.current(model)), [Some(22.0), Some(0.352)]);
+    assert_eq!(set.set_current(Model::R4850X30, 22.0), Ok(()));
+    assert_eq!(set, SetOutput { current_raw: 660, temperature_raw: 0 });
+    let error = set.set_current(Model::R4850X20, 50.05).expect_err("more than the model can give");
+    assert_eq!(error.to_string(), "`current` of `set_output` is 50.05 A, but its limits are 0 and 50 A");
+    assert_eq!(set, SetOutput { current_raw: 660, temperature_raw: 0 });
+    let unlimited = SetOutput { current_raw: 0xFFFF, temperature_raw: 0 };
+    assert_eq!(unlimited.current(Model::R4850X20), None, "unlimited is no number");
+}
+
+#[test]
+fn models_without_a_scale_of_their_own_have_that_of_the_type() {
+    // 50 / 2, and 50 / 2 - 40.
+    let set = scales::SetOutput { current_raw: 0, temperature_raw: 50 };
+    assert_eq!(scales::Model::ALL.map(|model| set.temperature(model)), [Some(25.0), Some(25.0), Some(-15.0)]);
+}
+
+#[test]
+fn raw_limits_are_those_of_the_model_or_the_widest() {
+    use scales::{Model, SetOutput, Target};
+    // 50 A x 20, and 53.5 A x 30.
+    let output = |current_raw| SetOutput { current_raw, temperature_raw: 0 };
+    let takes = |current_raw, model| output(current_raw).within(model).is_ok();
+    assert!(takes(1000, Model::R4850X20) && !takes(1001, Model::R4850X20) && takes(1605, Model::R4850X30));
+    let sends = |current_raw| output(current_raw).set(Target::Rectifier).is_ok();
+    assert!(sends(1605) && !sends(1606) && sends(0xFFFF));
+}
+
+#[test]
+fn without_a_model_such_a_number_has_no_meaning() {
+    let received = scales::Message::decode(&Frame::new_raw(0x004, false, [0x01, 0xB8, 0x32, 0, 0, 0, 0, 0], 4));
+    let mut shown = Vec::new();
+    received.expect("it is a request").visit(|reading| shown.push(reading.to_string()));
+    assert_eq!(shown, ["current ?", "temperature ?"]);
 }

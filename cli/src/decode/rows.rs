@@ -68,7 +68,7 @@ fn names<'a>(outcome: &Outcome<'a>, decoded: &Decoded) -> [&'a str; 3] {
 /// Returns name, raw number, value and unit of a signal.
 fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
     let Ok(decoded) = outcome.decoded else { return Default::default() };
-    let signal = &decoded.content(outcome.protocol).signals[reading.signal];
+    let signal = decoded.content(outcome.protocol).signals[reading.signal].on(decoded.model);
     let value = match &reading.value {
         // It would look like a measurement.
         _ if decoded.is_error_reply() => String::new(),

@@ -26,6 +26,7 @@ fn check_for(
     signal: &Signal,
     diagnostics: &mut Diagnostics,
 ) {
+    let signal = signal.on(model);
     let (Some(range), Some(raw)) = (signal.range_for(model), signal.default_for(model)) else { return };
     let Some(value) = outside(protocol, signal, &range, raw) else { return };
     let text = format!(

@@ -162,7 +162,7 @@ impl<'a> Checker<'a> {
 
     /// Compares value by value.
     fn has_values(&self, decoded: &Decoded) -> Checked {
-        let message = &self.protocol.messages[decoded.message];
+        let message = &self.protocol.messages[decoded.message].on(self.example.model);
         if let Some((meaning, signal)) = self.first_difference(decoded, message) {
             let reading = decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
             let field = (signal.doc.path.at_key(), "the field");
@@ -342,7 +342,7 @@ impl<'a> Checker<'a> {
             }
             Ok(decoded) => decoded,
         };
-        let message = &self.protocol.messages[decoded.message];
+        let message = &self.protocol.messages[decoded.message].on(self.example.model);
         if self.is_message(decoded).is_err() {
             Some(Failure::Message)
         } else if self.is_addressed(decoded).is_err() {

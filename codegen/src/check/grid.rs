@@ -74,7 +74,8 @@ fn each_scaled(
     fault: impl Fn(&Signal, Linear) -> Option<String>,
 ) {
     for message in protocol.contents() {
-        for signal in message.signals.iter().filter(|signal| !signal.encoding.is_unscaled()) {
+        let signals = message.signals.iter().flat_map(Signal::on_each);
+        for signal in signals.filter(|signal| !signal.encoding.is_unscaled()) {
             let fault = signal.encoding.linear().and_then(|linear| fault(signal, linear));
             if let Some(why) = fault {
                 let text = format!("`{}.{}`: {why}", message.name, signal.name);
@@ -91,7 +92,7 @@ fn limits(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let help = "generate code in whole steps or with `f64`, or say the limits in the note";
     for message in protocol.contents() {
         let is_compared = |signal: &&Signal| signal.encoding.is_unscaled() && !signal.has_whole_limits();
-        for signal in message.signals.iter().filter(is_compared) {
+        for signal in message.signals.iter().flat_map(Signal::on_each).filter(is_compared) {
             let is_missed = |end: Rational| !is_below(Some(end.numerator()), EXACT);
             let ranges = signal.ranges();
             for (_, path) in ranges.filter(|(range, _)| is_missed(range.minimum) || is_missed(range.maximum)) {

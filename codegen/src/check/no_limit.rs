@@ -14,15 +14,16 @@ const HARMFUL: [&str; 3] = ["V", "A", "W"];
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         for (id, signal) in message.signals.entries() {
-            if is_harmful(signal) && signal.ranges().next().is_none() && is_set(protocol, message, id) {
+            if signal.on_each().any(is_unlimited) && is_set(protocol, message, id) {
                 diagnostics.push(unlimited(message, signal));
             }
         }
     }
 }
 
-fn is_harmful(signal: &Signal) -> bool {
-    signal.unit.is_some_and(|unit| HARMFUL.contains(&unit.symbol))
+/// Tests whether nothing limits what can do harm.
+fn is_unlimited(signal: &Signal) -> bool {
+    signal.unit.is_some_and(|unit| HARMFUL.contains(&unit.symbol)) && signal.ranges().next().is_none()
 }
 
 fn is_set(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {

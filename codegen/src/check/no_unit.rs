@@ -11,7 +11,7 @@ rules! {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in protocol.contents() {
-        for signal in message.signals.iter().filter(|signal| is_nameless(signal)) {
+        for signal in message.signals.iter().flat_map(Signal::on_each).filter(|signal| is_nameless(signal)) {
             let what = if has_scale(signal) { "a scale" } else { "an offset" };
             let text = format!("`{}.{}` has {what}, but neither a unit nor a title", message.name, signal.name);
             let help = "write its `unit`; if the language does not have that unit, say it in the `title`";

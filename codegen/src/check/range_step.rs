@@ -11,7 +11,7 @@ rules! {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in protocol.contents() {
-        for signal in &message.signals {
+        for signal in message.signals.iter().flat_map(Signal::on_each) {
             let Some(linear) = signal.encoding.linear() else { continue };
             for (range, path) in signal.ranges() {
                 let missed = missed(range, linear);

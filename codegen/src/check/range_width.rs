@@ -13,7 +13,7 @@ rules! {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in protocol.contents() {
-        for signal in &message.signals {
+        for signal in message.signals.iter().flat_map(Signal::on_each) {
             let Some(holds) = signal.held() else { continue };
             let exceeds = |range: &Range| range.minimum < holds.minimum || range.maximum > holds.maximum;
             let exceeding: Vec<_> = signal.ranges().filter(|(range, _)| exceeds(range)).collect();

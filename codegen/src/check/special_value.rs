@@ -10,7 +10,7 @@ rules! {
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in protocol.contents() {
-        for signal in &message.signals {
+        for signal in message.signals.iter().flat_map(Signal::on_each) {
             for (range, path) in signal.ranges() {
                 let names = names_inside(signal, range);
                 if names.is_empty() {

@@ -15,6 +15,7 @@ mod model;
 mod parts;
 mod plan;
 mod protocol;
+mod scales;
 mod set;
 mod word;
 

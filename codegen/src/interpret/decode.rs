@@ -378,14 +378,15 @@ impl<'a> Decoder<'a> {
         let present = known.filter(|(_, signal)| usize::from(signal.end()) <= self.frame.data.len());
         let readings = present.map(|(id, signal)| {
             let bits = signal.place.get(&self.data);
-            Reading { signal: id, bits, value: physical(self.protocol, signal, bits) }
+            Reading { signal: id, bits, value: physical(self.protocol, signal.on(self.model), bits) }
         });
         let signals: Vec<_> = readings.collect();
         let selectors = self.selectors(&frame.selectors);
         let reserved = self.reserved(frame);
         let mut notes = self.error_notes(frame, &selectors);
         notes.extend(self.address_notes(message, frame, &addressing));
-        let note = |reading: &Reading| signal_note(self.protocol, &message[reading.signal], self.model, reading);
+        let note =
+            |reading: &Reading| signal_note(self.protocol, message[reading.signal].on(self.model), self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         notes.extend(self.part_note(message).filter(|_| !signals.is_empty()));
         notes.extend(self.reserved_note(frame, reserved));
@@ -395,6 +396,7 @@ impl<'a> Decoder<'a> {
             access: frame.access,
             kind: frame.kind,
             sender: frame.sender,
+            model: self.model,
             set: frame.set,
             addressing: addressing.travel.map(|(travel, _)| travel),
             identifier: self.identifier(),

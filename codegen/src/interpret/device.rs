@@ -17,6 +17,8 @@ pub struct Sent<'a> {
     pub kind: Option<Kind>,
     /// The access, if it is named.
     pub access: Option<&'a str>,
+    /// The device model, if one is chosen.
+    pub model: Option<ModelId>,
     /// The message.
     pub message: &'a str,
     /// The addressing mode or the controller's address, if it is named.
@@ -66,27 +68,17 @@ pub fn module(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
 ///
 /// Refuses values that do not fit, and addresses that the document does not name. It also refuses to choose among
 /// kinds of frames, accesses and addressing modes.
-pub fn sent(
-    protocol: &Protocol,
-    model: Option<ModelId>,
-    sent: Sent<'_>,
-    signals: &[(String, String)],
-) -> Result<Vec<Frame>, Refusal> {
+pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Vec<Frame>, Refusal> {
     let (_, message) = find_message(protocol, sent.message)?;
-    let parts = typed_parts(protocol, message, signals, (model, Limits::Bits))?;
-    let Some(parts) = parts else { return Ok(vec![one(protocol, model, sent, signals)?]) };
-    let mut frames = parts.iter().map(|signals| one(protocol, model, sent, signals)).collect::<Result<Vec<_>, _>>()?;
+    let parts = typed_parts(protocol, message, signals, (sent.model, Limits::Bits))?;
+    let Some(parts) = parts else { return Ok(vec![one(protocol, sent, signals)?]) };
+    let mut frames = parts.iter().map(|signals| one(protocol, sent, signals)).collect::<Result<Vec<_>, _>>()?;
     continue_all_but_last(protocol, &mut frames);
     Ok(frames)
 }
 
 /// Makes one frame that a module sends.
-fn one(
-    protocol: &Protocol,
-    model: Option<ModelId>,
-    sent: Sent<'_>,
-    signals: &[(String, String)],
-) -> Result<Frame, Refusal> {
+fn one(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, sent.message)?;
     let signals = &parted_texts(message, signals)?;
     let layout = layout(protocol, message, sent)?;
@@ -95,9 +87,9 @@ fn one(
     let mut data = blank_data(layout);
     put_normal(protocol, layout, &mut data);
     let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
-    put_signals(protocol, message, (layout, length), signals, (model, Limits::Bits), &mut data)?;
+    put_signals(protocol, message, (layout, length), signals, (sent.model, Limits::Bits), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
-    let decoded = decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    let decoded = decode(protocol, sent.model, &frame).map_err(|problem| refuse(message, &problem.text))?;
     if (decoded.message, decoded.kind) == (layout.message, layout.kind) {
         return Ok(frame);
     }

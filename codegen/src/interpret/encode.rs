@@ -6,7 +6,7 @@ use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol,
 use crate::nearest;
 
 /// Notes that no request may get. It is refused instead.
-const FORBIDDEN: [NoteRule; 3] = [NoteRule::Address, NoteRule::Addressing, NoteRule::ModelDependent];
+const FORBIDDEN: [NoteRule; 2] = [NoteRule::Address, NoteRule::Addressing];
 
 /// Makes the frame that shows `content`, for a device model or for any model.
 ///
@@ -22,7 +22,7 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
     let id = identifier(protocol, content)?;
     let layout = layout(protocol, message, content, id)?;
     let limits = Limits::of(layout, model);
-    let data = payload(protocol, message, layout, content, limits)?;
+    let data = payload(protocol, message, layout, content, (model, limits))?;
     let frame = frame(protocol, id, data);
     let one_that_has_it = model.or_else(|| message.models.first().copied());
     let decoded = decode(protocol, one_that_has_it, &frame).map_err(|problem| refuse(message, &problem.text))?;
@@ -176,7 +176,7 @@ fn payload(
     message: &Message,
     layout: &FrameLayout,
     content: &Content,
-    limits: Limits,
+    limits: (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
     let mut data = [0; 8];
     let is_given = |name: &str| content.signals.iter().any(|(given, _)| given == name);
@@ -218,7 +218,7 @@ fn put_signals(
     message: &Message,
     (layout, length): (&FrameLayout, usize),
     content: &Content,
-    limits: Limits,
+    (model, limits): (Option<ModelId>, Limits),
     data: &mut [u8; 8],
 ) -> Result<(), Refusal> {
     let carried = |name: &str| layout.signals.iter().any(|id| message[*id].name == name);
@@ -229,7 +229,7 @@ fn put_signals(
     for signal in signals.filter(|signal| usize::from(signal.end()) <= length) {
         let given = content.signals.iter().find(|(name, _)| *name == signal.name);
         let (_, input) = given.ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?;
-        let bits = raw_of(protocol, message, signal, input, limits)?;
+        let bits = raw_of(protocol, message, signal.on(model), input, limits)?;
         signal.place.put(data, bits);
     }
     Ok(())
@@ -272,7 +272,9 @@ fn confirm(
     model: Option<ModelId>,
 ) -> Result<(), Refusal> {
     let shown = &protocol[decoded.message];
-    if let Some(model) = model.filter(|model| shown.name != message.name && !message.is_of(*model)) {
+    if let Some(model) =
+        model.filter(|model| (shown.name != message.name || layout.is_to_module()) && !message.is_of(*model))
+    {
         return Err(not_of(protocol, message, model));
     }
     if decoded.message != layout.message || decoded.kind != layout.kind || decoded.access != layout.access {

@@ -38,10 +38,10 @@ impl Joined {
         let signals: Vec<_> = present
             .map(|(id, signal)| {
                 let bits = signal.place.get(&window(&self.data, signal));
-                Reading { signal: id, bits, value: physical(protocol, signal, bits) }
+                Reading { signal: id, bits, value: physical(protocol, signal.on(model), bits) }
             })
             .collect();
-        let note = |reading: &Reading| signal_note(protocol, &content[reading.signal], model, reading);
+        let note = |reading: &Reading| signal_note(protocol, content[reading.signal].on(model), model, reading);
         let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
         notes.extend(self.count_note(long));
         let reserved = self.without(signals.iter().map(|reading| &content[reading.signal]));
@@ -114,7 +114,7 @@ pub fn joined(
         let otherwise = || signal.default_for(model).filter(|_| limits != Limits::Bits).map(Input::Raw);
         let input = input.or_else(otherwise);
         let input = input.ok_or_else(|| refuse(content, &format!("the signal `{}` is missing", signal.name)))?;
-        let bits = raw_of(protocol, content, signal, &input, limits)?;
+        let bits = raw_of(protocol, content, signal.on(model), &input, limits)?;
         let mut bytes = window(&data, signal);
         signal.place.put(&mut bytes, bits);
         data.iter_mut().skip(signal.window.into()).zip(bytes).for_each(|(byte, new)| *byte = new);
@@ -152,7 +152,7 @@ pub fn typed_parts(
     let mut inputs = Vec::new();
     for (name, text) in parted_texts(&long.content, given)? {
         let signal = long.content.signals.iter().find(|signal| signal.name == name);
-        let typed = signal.map(|signal| Words::from(protocol).with(signal, |room| room.typed(&text)));
+        let typed = signal.map(|signal| Words::from(protocol).with(signal.on(model), |room| room.typed(&text)));
         inputs.push((name, typed.unwrap_or(Input::Text(text))));
     }
     if let Some(name) = twice(&inputs) {

@@ -351,14 +351,14 @@ pub fn put_signals(
     }
     for signal in carried.into_iter().filter(|signal| usize::from(signal.end()) <= length) {
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
-            Some((_, text)) => Words::from(protocol).with(signal, |room| room.typed(text)),
+            Some((_, text)) => Words::from(protocol).with(signal.on(model), |room| room.typed(text)),
             None => Input::Raw(
                 signal
                     .default_for(model)
                     .ok_or_else(|| refuse(message, &format!("the signal `{}` is missing", signal.name)))?,
             ),
         };
-        signal.place.put(data, raw_of(protocol, message, signal, &input, limits)?);
+        signal.place.put(data, raw_of(protocol, message, signal.on(model), &input, limits)?);
     }
     Ok(())
 }

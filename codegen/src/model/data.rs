@@ -111,6 +111,12 @@ pub struct TypeOfModel {
     pub range: Option<Range>,
     /// Physical value that the device starts with.
     pub default: Option<Rational>,
+    /// Physical value of one step, if the model has its own.
+    pub scale: Option<Rational>,
+    /// Physical value of raw 0, if the model has its own.
+    pub offset: Option<Rational>,
+    /// Unit of the physical value, if the model has its own.
+    pub unit: Option<Unit>,
     /// What the spec says beside it.
     pub doc: Doc,
 }

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{EnumerationId, Numeral, PartId, Range, Signal, StatusWordId, Table};
+use super::{EnumerationId, Numeral, OfModel, PartId, Range, Signal, StatusWordId, Table};
 use crate::number::Rational;
 
 /// What a signal's bits mean.
@@ -18,6 +18,14 @@ pub enum Encoding {
         scale: Rational,
         /// Physical value of 0.
         offset: Rational,
+    },
+    /// A number whose scale, offset or unit depends on the device model. Without a model it has no
+    /// physical value.
+    ByModel {
+        /// Which integer the bits are.
+        numeral: Numeral,
+        /// The signal on each device model that says what a step is.
+        signals: Vec<OfModel<Signal>>,
     },
     /// IEEE 754 single precision.
     Float,
@@ -76,10 +84,12 @@ impl Linear {
 
 /// Each question is an exhaustive match, so a new encoding must answer it.
 impl Encoding {
-    /// Returns the scale and the offset of numbers that have them.
+    /// Returns the scale and the offset of numbers that have them. A number that depends on the device
+    /// model counts its raw steps.
     pub fn linear(&self) -> Option<Linear> {
         match *self {
             Self::Number { numeral, scale, offset } => Some(Linear { numeral, scale, offset }),
+            Self::ByModel { numeral, .. } => Some(Linear { numeral, scale: Rational::ONE, offset: Rational::ZERO }),
             Self::Float | Self::Named(_) | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => None,
         }
     }
@@ -88,7 +98,12 @@ impl Encoding {
     pub fn enumeration(&self) -> Option<EnumerationId> {
         match self {
             Self::Named(id) => Some(*id),
-            Self::Number { .. } | Self::Float | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => None,
+            Self::Number { .. }
+            | Self::ByModel { .. }
+            | Self::Float
+            | Self::Status(_)
+            | Self::Text(_)
+            | Self::Packed { .. } => None,
         }
     }
 
@@ -96,7 +111,12 @@ impl Encoding {
     pub fn status_word(&self) -> Option<StatusWordId> {
         match self {
             Self::Status(id) => Some(*id),
-            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Text(_) | Self::Packed { .. } => None,
+            Self::Number { .. }
+            | Self::ByModel { .. }
+            | Self::Float
+            | Self::Named(_)
+            | Self::Text(_)
+            | Self::Packed { .. } => None,
         }
     }
 
@@ -104,7 +124,12 @@ impl Encoding {
     pub fn packed(&self) -> Option<(&[Piece], &Table<PartId, Signal>)> {
         match self {
             Self::Packed { pieces, parts } => Some((pieces, parts)),
-            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Text(_) => None,
+            Self::Number { .. }
+            | Self::ByModel { .. }
+            | Self::Float
+            | Self::Named(_)
+            | Self::Status(_)
+            | Self::Text(_) => None,
         }
     }
 
@@ -117,7 +142,25 @@ impl Encoding {
     pub fn is_single(&self) -> bool {
         match self {
             Self::Float => true,
-            Self::Number { .. } | Self::Named(_) | Self::Status(_) | Self::Text(_) | Self::Packed { .. } => false,
+            Self::Number { .. }
+            | Self::ByModel { .. }
+            | Self::Named(_)
+            | Self::Status(_)
+            | Self::Text(_)
+            | Self::Packed { .. } => false,
+        }
+    }
+
+    /// Returns the signal on each device model that says what a step is, if that depends on the model.
+    pub fn by_model(&self) -> &[OfModel<Signal>] {
+        match self {
+            Self::ByModel { signals, .. } => signals,
+            Self::Number { .. }
+            | Self::Float
+            | Self::Named(_)
+            | Self::Status(_)
+            | Self::Text(_)
+            | Self::Packed { .. } => &[],
         }
     }
 
@@ -125,7 +168,12 @@ impl Encoding {
     pub fn text_form(&self) -> Option<TextForm> {
         match self {
             Self::Text(form) => Some(*form),
-            Self::Number { .. } | Self::Float | Self::Named(_) | Self::Status(_) | Self::Packed { .. } => None,
+            Self::Number { .. }
+            | Self::ByModel { .. }
+            | Self::Float
+            | Self::Named(_)
+            | Self::Status(_)
+            | Self::Packed { .. } => None,
         }
     }
 

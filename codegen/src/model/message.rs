@@ -1,5 +1,7 @@
 //! Messages, how they travel, and their frames.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use canspec_runtime::Place;
@@ -156,6 +158,14 @@ impl Message {
     /// Tests whether a frame can lack a signal because it is short.
     pub fn is_optional(&self, signal: &Signal) -> bool {
         signal.end() > self.shortest()
+    }
+
+    /// Returns the message with its signals as a device model has them.
+    pub fn on(&self, model: Option<ModelId>) -> Cow<'_, Self> {
+        if self.signals.iter().all(|signal| signal.encoding.by_model().is_empty()) {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { signals: self.signals.map(|signal| signal.on(model).clone()), ..self.clone() })
     }
 
     /// Tests whether a device model has the message.

@@ -156,6 +156,18 @@ pub struct OfModel<T> {
 }
 
 impl Signal {
+    /// Returns the signal as a device model has it, if its scale depends on the model.
+    pub fn on(&self, model: Option<ModelId>) -> &Self {
+        let own = self.encoding.by_model().iter().find(|own| Some(own.model) == model);
+        own.map_or(self, |own| &own.value)
+    }
+
+    /// Returns what the signal is on each device model if its scale depends on the model, or else the signal.
+    pub fn on_each(&self) -> impl Iterator<Item = &Self> {
+        let own = self.encoding.by_model();
+        own.is_empty().then_some(self).into_iter().chain(own.iter().map(|own| &own.value))
+    }
+
     /// Returns the physical limits that a device model states, or else those of the type.
     pub fn range_for(&self, model: Option<ModelId>) -> Option<Range> {
         own(&self.model_ranges, model).or(self.range)

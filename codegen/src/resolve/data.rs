@@ -8,7 +8,7 @@ use crate::model::{
 };
 use crate::number::Rational;
 use crate::resolve::rules;
-use crate::syntax::ast;
+use crate::syntax::ast::{self, Key};
 use crate::syntax::tree::Path;
 use crate::text::Text;
 use crate::words::ERRATUM_KINDS;
@@ -165,8 +165,17 @@ impl Resolver<'_> {
         self.lookup(&path, "type", name, self.spec.types.keys().map(String::as_str))?;
         self.check_own_keys(&path, field, Role::OfModel);
         let range = field.range.as_ref().and_then(|text| self.range(&path.key("range"), text));
-        let default = field.default.as_ref().and_then(|text| self.number(&path.key("default"), text));
-        Some(TypeOfModel { name: name.to_owned(), range, default, doc: remarks!(field).doc(&path, Some(outer)) })
+        let mut number =
+            |key: Key, text: &Option<String>| text.as_ref().and_then(|text| self.number(&path.key(key), text));
+        Some(TypeOfModel {
+            name: name.to_owned(),
+            range,
+            default: number(Key::Default, &field.default),
+            scale: number(Key::Scale, &field.scale),
+            offset: number(Key::Offset, &field.offset),
+            unit: field.unit.as_ref().and_then(|text| self.unit_of_field(&path.key(Key::Unit), text, field)),
+            doc: remarks!(field).doc(&path, Some(outer)),
+        })
     }
 
     pub fn errata(&mut self) -> Vec<Erratum> {

@@ -26,6 +26,7 @@ impl Resolver<'_> {
             NumberFormat::Bytes => return self.hexadecimal(name, merged, place),
         };
         let number = field.scale.is_some() || field.offset.is_some() || field.unit.is_some() || field.range.is_some();
+        let number = number || self.is_scaled_by_models(merged);
         if !field.values.is_empty() && !number {
             return self.enumeration(merged, &otherwise, place.width(), doc).map(Encoding::Named);
         }

@@ -106,8 +106,10 @@ impl Resolver<'_> {
             return None;
         };
         let printed = self.printed(&path.key(kind.name()), text)?;
-        let means = known.map(|known| self.meanings(&path.key("means"), example.means.as_ref(), known));
         let model = example.model.as_ref().and_then(|name| self.device_model(&path.key("model"), name));
+        let model = model.or_else(|| known?.models.first().copied());
+        let on_model = known.map(|known| known.on(model));
+        let means = on_model.map(|known| self.meanings(&path.key("means"), example.means.as_ref(), &known));
         Some(Example {
             doc: example_remarks(example).doc(path, Some(outer)),
             kind,
@@ -115,7 +117,7 @@ impl Resolver<'_> {
             extended: printed.extended,
             data: printed.data,
             message,
-            model: model.or_else(|| known?.models.first().copied()),
+            model,
             means: means.unwrap_or_default(),
             notes: self.notes(&path.key("notes"), &example.notes),
             fails: example.fails.as_ref().and_then(|word| self.failure(&path.key("fails"), word)),
@@ -175,6 +177,8 @@ impl Resolver<'_> {
             frames.push((printed.id, printed.data.unwrap_or_default()));
         }
         let model = example.model.as_ref().and_then(|name| self.device_model(&path.key("model"), name));
+        let model = model.or_else(|| content.models.first().copied());
+        let content = content.on(model);
         let count = example.count.as_ref().and_then(|text| self.integer(&path.key("count"), text, 1, 256));
         let means = self.meanings(&path.key("means"), example.means.as_ref(), &content);
         let example = LongExample {
@@ -182,7 +186,7 @@ impl Resolver<'_> {
             kind,
             long,
             frames,
-            model: model.or_else(|| content.models.first().copied()),
+            model,
             count,
             means,
             notes: self.notes(&path.key("notes"), &example.notes),

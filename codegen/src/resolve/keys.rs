@@ -99,8 +99,8 @@ impl Role {
             Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
             Key::As => among(QUANTITIES) || among(&[Self::Text, Self::Bytes, Self::PackedDecimal, Self::PackedText]),
             Key::Fill => self == Self::Text,
-            Key::Scale | Key::Offset => among(&[Self::Number, Self::Address]),
-            Key::Unit => among(QUANTITIES),
+            Key::Scale | Key::Offset => among(&[Self::Number, Self::Address, Self::OfModel]),
+            Key::Unit => among(QUANTITIES) || self == Self::OfModel,
             Key::Range => among(QUANTITIES) || among(PACKED_NUMBERS) || among(&[Self::Address, Self::OfModel]),
             Key::Values => {
                 among(IDENTIFIER)
@@ -167,7 +167,9 @@ impl Role {
     fn of_signal(encoding: &Encoding) -> Self {
         match encoding {
             Encoding::Number { numeral: Numeral::Bcd, .. } => Self::Decimal,
-            Encoding::Number { numeral: Numeral::Unsigned | Numeral::Signed, .. } => Self::Number,
+            Encoding::Number { numeral: Numeral::Unsigned | Numeral::Signed, .. } | Encoding::ByModel { .. } => {
+                Self::Number
+            }
             Encoding::Float => Self::Float,
             Encoding::Named(_) => Self::Named,
             Encoding::Status(_) => Self::Status,

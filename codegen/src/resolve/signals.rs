@@ -6,10 +6,27 @@ use super::Resolver;
 use super::arrays::Windowed;
 use super::types::Merged;
 use crate::diagnostic::{At, Diagnostic};
-use crate::model::{DeviceModel, Doc, Misfit, ModelId, OfModel, Signal, TypeOfModel};
+use crate::model::{DeviceModel, Doc, Misfit, ModelId, OfModel, Range, Signal, TypeOfModel};
 use crate::resolve::rules;
 use crate::syntax::ast::Key;
 use crate::syntax::tree::Path;
+
+/// What a device model can change of a type.
+const OF_MODELS: [Key; 5] = [Key::Range, Key::Default, Key::Scale, Key::Offset, Key::Unit];
+
+impl TypeOfModel {
+    /// Tests whether the device model changes a key.
+    fn changes(&self, key: Key) -> bool {
+        match key {
+            Key::Range => self.range.is_some(),
+            Key::Default => self.default.is_some(),
+            Key::Scale => self.scale.is_some(),
+            Key::Offset => self.offset.is_some(),
+            Key::Unit => self.unit.is_some(),
+            _ => false,
+        }
+    }
+}
 
 impl Resolver<'_> {
     /// Reads `bytes` or `bits`. `word` is the word around the field.
@@ -93,45 +110,54 @@ impl Resolver<'_> {
             element: None,
         };
         let is_judged = field.values.is_empty() || !self.diagnostics.has_errors_in(&values);
-        if let Some(text) = field.default.as_ref().filter(|_| is_judged) {
+        let default = field.default.as_ref().filter(|_| is_judged);
+        for key in OF_MODELS {
+            self.warn_of_hidden(merged, key);
+        }
+        if self.is_scaled_by_models(merged) {
+            self.scale_by_models(merged, &mut signal, default)?;
+            return Some(signal);
+        }
+        if let Some(text) = default {
             signal.default = self.default(&default_path, &signal, text);
         }
-        self.add_what_models_change(merged, &mut signal);
+        self.limit_by_models(merged, &mut signal);
         Some(signal)
     }
 
     /// Adds the limits and defaults of device models that replace those of the signal's types.
-    fn add_what_models_change(&mut self, merged: &Merged, signal: &mut Signal) {
-        self.warn_of_hidden(merged, Key::Range, |known| known.range.is_some());
-        self.warn_of_hidden(merged, Key::Default, |known| known.default.is_some());
+    fn limit_by_models(&mut self, merged: &Merged, signal: &mut Signal) {
         for model in self.tables.models.ids() {
-            if let Some(known) = self.changed(merged, model, Key::Range, |known| known.range.is_some()) {
-                let path = known.doc.path.key("range");
-                signal.model_ranges.extend(known.range.map(|value| OfModel { model, value, path }));
+            if let Some((path, value)) = self.range_of_model(merged, model) {
+                signal.model_ranges.push(OfModel { model, value, path });
             }
-            if let Some(known) = self.changed(merged, model, Key::Default, |known| known.default.is_some()) {
-                let path = known.doc.path.key("default");
-                let text = known.default.map(|value| value.to_string()).unwrap_or_default();
+            if let Some((path, text)) = self.default_of_model(merged, model) {
                 let raw = self.default(&path, signal, &text);
                 signal.model_defaults.extend(raw.map(|value| OfModel { model, value, path }));
             }
         }
     }
 
+    /// Returns the limits that a device model has of its own, and their place.
+    pub fn range_of_model(&self, merged: &Merged, model: ModelId) -> Option<(Path, Range)> {
+        let known = self.changed(merged, model, Key::Range)?;
+        Some((known.doc.path.key(Key::Range), known.range?))
+    }
+
+    /// Returns the default that a device model has of its own, and its place.
+    pub fn default_of_model(&self, merged: &Merged, model: ModelId) -> Option<(Path, String)> {
+        let known = self.changed(merged, model, Key::Default)?;
+        Some((known.doc.path.key(Key::Default), known.default?.to_string()))
+    }
+
     /// Finds what a device model changes of the type from which a field would take a key.
-    fn changed(
-        &self,
-        merged: &Merged,
-        model: ModelId,
-        key: Key,
-        has: impl Fn(&TypeOfModel) -> bool,
-    ) -> Option<TypeOfModel> {
+    pub fn changed(&self, merged: &Merged, model: ModelId, key: Key) -> Option<TypeOfModel> {
         let writes = |source: &Path| self.diagnostics.has(&source.key(key));
         if writes(&merged.sources[0]) {
             return None;
         }
         for (name, source) in merged.types.iter().zip(&merged.sources[1..]) {
-            let known = self.tables.models[model].types.iter().find(|known| known.name == *name && has(known));
+            let known = self.tables.models[model].types.iter().find(|known| known.name == *name && known.changes(key));
             if known.is_some() || writes(source) {
                 return known.cloned();
             }
@@ -140,9 +166,9 @@ impl Resolver<'_> {
     }
 
     /// Warns of a key of the field that hides what device models change in its types.
-    fn warn_of_hidden(&mut self, merged: &Merged, key: Key, has: impl Fn(&TypeOfModel) -> bool + Copy) {
+    fn warn_of_hidden(&mut self, merged: &Merged, key: Key) {
         for name in &merged.types {
-            let models = self.hidden(merged, name, key, has);
+            let models = self.hidden(merged, name, key);
             if !models.is_empty() {
                 let at = merged.path(self.diagnostics, key).at_value();
                 let warning = hidden_by(at, key, name, &models);
@@ -152,20 +178,15 @@ impl Resolver<'_> {
     }
 
     /// Finds the device models that change a key of a type, but not the field.
-    fn hidden(
-        &self,
-        merged: &Merged,
-        name: &str,
-        key: Key,
-        has: impl Fn(&TypeOfModel) -> bool + Copy,
-    ) -> Vec<&DeviceModel> {
+    fn hidden(&self, merged: &Merged, name: &str, key: Key) -> Vec<&DeviceModel> {
         let models = self.tables.models.entries();
-        let changing = models.filter(|(_, model)| model.types.iter().any(|known| known.name == name && has(known)));
-        let hidden = changing.filter(|(id, _)| self.changed(merged, *id, key, has).is_none());
+        let changing =
+            models.filter(|(_, model)| model.types.iter().any(|known| known.name == name && known.changes(key)));
+        let hidden = changing.filter(|(id, _)| self.changed(merged, *id, key).is_none());
         hidden.map(|(_, model)| model).collect()
     }
 
-    fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {
+    pub fn default(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<i128> {
         match self.words().with(signal, |room| room.parse(text, false)) {
             Ok(bits) => Some(signal.raw_of(bits)),
             Err(Misfit { why, help }) => {

@@ -306,8 +306,8 @@ pub struct DeviceModel {
     /// `{rated_current: 20 A}`; none if absent.
     #[serde(default)]
     pub facts: Map<String>,
-    /// The `range` and `default` of this model for entries of `types`, without units:
-    /// `{volts: {range: 50..750, default: 100}}`; none if absent.
+    /// What this model changes of entries of `types`: `range` and `default` without units, and
+    /// `scale`, `offset` and `unit`. An example is `{amperes: {scale: 1/20, range: 0..60}}`; none if absent.
     #[serde(default)]
     pub types: Map<Field>,
     /// What else a reader must know, in one sentence: `answers to broadcasts from software 1.20 on`.

@@ -346,9 +346,9 @@ fn named_values_without_one_that_is_absent_are_needed() {
 #[test]
 fn a_reply_of_a_module_is_the_printed_frame_and_says_that_all_is_well() {
     let mxr = protocol("specs/mxr.yaml");
-    let reply = |kind| Sent { kind, access: None, message: "output_voltage", to: None, source: Some(1) };
+    let reply = |kind| Sent { kind, access: None, model: None, message: "output_voltage", to: None, source: Some(1) };
     let signals = [("value".to_owned(), "700 V".to_owned())];
-    let made = sent(&mxr, None, reply(Some(Kind::Reply)), &signals).expect("a reply of module 1");
+    let made = sent(&mxr, reply(Some(Kind::Reply)), &signals).expect("a reply of module 1");
     assert_eq!(made.iter().map(printed).collect::<Vec<_>>().join(" "), "060F8008#41F00001442F0000");
     let is_of_module = |kind| reply(kind).is_of_module(&mxr).ok();
     assert_eq!(

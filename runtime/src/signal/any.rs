@@ -79,6 +79,7 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
         let bits = self.bits(*data);
         let meaning = match (self.special(bits), self.scale) {
             (Some(name), _) => Meaning::Name(name),
+            (None, _) if self.is_by_model => Meaning::None,
             (None, Some(_)) if R::IS_NUMBER => Meaning::Number(self.physical(value).number(self.scale)),
             (None, _) => value.meaning(),
         };
@@ -100,12 +101,12 @@ pub trait WriteSignal: AnySignal {
 
 impl<R: Raw, F: Physical<R>> WriteSignal for Signal<R, F> {
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
-        if R::IS_NUMBER {
+        if R::IS_NUMBER && !self.is_by_model {
             if let Meaning::Number(number) = meaning {
                 return F::write(self, number, payload);
             }
         }
-        let raw = self.special_value(meaning).or_else(|| R::from_meaning(meaning));
+        let raw = self.special_value(meaning).or_else(|| self.plain_value(meaning));
         raw.ok_or_else(|| self.meaningless(payload)).and_then(|raw| self.put(raw, payload))
     }
 }
@@ -116,6 +117,11 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         let Meaning::Name(wanted) = meaning else { return None };
         let special = self.specials.iter().find(|(_, name)| *name == wanted);
         special.map(|(raw, _)| R::from_bits(*raw as u64))
+    }
+
+    /// Returns the raw value of a meaning that depends on no device model.
+    fn plain_value(&self, meaning: Meaning<'_>) -> Option<R> {
+        if self.is_by_model { None } else { R::from_meaning(meaning) }
     }
 
     /// Writes a number as its own raw value, or as the nearest one.

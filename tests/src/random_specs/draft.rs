@@ -41,8 +41,8 @@ pub struct Whole {
 /// A type, and what device models can say of it.
 pub struct Limited {
     pub name: String,
-    /// Ranges, and in each a default.
-    pub ranges: Vec<(String, String)>,
+    /// What each of them can say.
+    pub changes: Vec<Map>,
 }
 
 impl Draft {

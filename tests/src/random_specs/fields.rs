@@ -413,6 +413,9 @@ impl Draft {
 
     /// Makes a number of a type that device models can limit.
     fn limited(&mut self, field: &mut Map, bits: u8) {
+        if bits <= SCALED && self.chance(30) {
+            return self.scaled_by_models(field, bits);
+        }
         let mut keys = Map::default();
         let (grid, first, last) = self.quantity(&mut keys, bits);
         if !keys.has("range") {
@@ -421,10 +424,40 @@ impl Draft {
         keys.0.remove("default");
         let quarter = (last - first) / 4;
         let narrowed = [(first, last), (first + quarter, last), (first, last - quarter), (first, first)];
-        let ranges = narrowed.map(|(first, last)| (grid.range(first, last), grid.physical(last)));
+        let limits = |(first, last)| [("range", grid.range(first, last)), ("default", grid.physical(last))];
+        let changes = narrowed.into_iter().flat_map(|ends| {
+            let [range, default] = limits(ends);
+            [Map::of([range.clone()]), Map::of([range, default])]
+        });
+        let changes = changes.collect();
         let name = self.add_type(keys);
-        self.limited.push(Limited { name: name.clone(), ranges: ranges.to_vec() });
+        self.limited.push(Limited { name: name.clone(), changes });
         field.put("type", name);
+    }
+
+    /// Makes a number of a type that device models can scale.
+    fn scaled_by_models(&mut self, field: &mut Map, bits: u8) {
+        let mut keys = Map::of([("as", "unsigned")]);
+        self.remark(&mut keys);
+        let changes = (0..4).map(|_| self.scale_of_model(bits)).collect();
+        let name = self.add_type(keys);
+        self.limited.push(Limited { name: name.clone(), changes });
+        field.put("type", name);
+    }
+
+    /// Returns what a device model says of a number without a sign.
+    fn scale_of_model(&mut self, bits: u8) -> Map {
+        let (scale, offset) = (self.one(&SCALES), self.one(&OFFSETS));
+        let [scale, offset] = [scale, offset].map(|text| Rational::parse(text).expect("it is a number"));
+        let (lowest, highest) = Numeral::Unsigned.limits(bits);
+        let grid = Grid { numeral: Numeral::Unsigned, scale, offset, lowest, highest };
+        let mut change = Map::of([("scale", scale.fraction()), ("offset", offset.fraction())]);
+        self.unit(&mut change);
+        if self.random.bool() {
+            change.put("range", grid.range(lowest, highest / 2));
+            change.put("default", grid.physical(lowest));
+        }
+        change
     }
 
     /// Returns a packed value that fills `count` bytes.

@@ -89,6 +89,10 @@ pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evide
                 continue;
             };
             let signal = &protocol.messages[decoded.message].signals[meaning.signal];
+            // Each device model has a scale of its own, so its examples say nothing of the others.
+            if !signal.encoding.by_model().is_empty() {
+                continue;
+            }
             let Reading { bits, value, .. } = reading;
             let read = shown(protocol, signal, value, *bits);
             fields.entry((decoded.message, meaning.signal)).or_default().push(Evidence {

@@ -49,7 +49,7 @@ pub fn report(protocol: &Protocol, example: &Example, decoded: &Decoded, place: 
 }
 
 fn limit<'a>(protocol: &'a Protocol, example: &Example, message: MessageId, reading: &Reading) -> Option<Limit<'a>> {
-    let signal = &protocol[message][reading.signal];
+    let signal = protocol[message][reading.signal].on(example.model);
     let range = signal.range_for(example.model)?;
     let of_model = signal.model_ranges.iter().find(|own| Some(own.model) == example.model);
     let number = match reading.value {

@@ -75,7 +75,7 @@ impl Checker<'_> {
         let content = &self.long.content;
         for meaning in &self.example.means {
             meaning.said.as_ref().map_err(|misfit| Box::new(no_value(meaning, misfit)))?;
-            let signal = &content[meaning.signal];
+            let signal = content[meaning.signal].on(self.example.model);
             let reading = assembled.decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
             let Some(reading) = reading else {
                 return Err(wrong(meaning.path.at_value(), format!("the frames have no `{}`", signal.name)));

@@ -11,7 +11,8 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     losses.extend(models(protocol));
     losses.extend(about(protocol, |signal| written(protocol, signal, &signal.name).loss));
     losses.extend(about(protocol, |signal| {
-        (!signal.model_ranges.is_empty()).then_some("has limits that depend on the device model; the widest are given")
+        (!signal.model_ranges.is_empty() && signal.encoding.by_model().is_empty())
+            .then_some("has limits that depend on the device model; the widest are given")
     }));
     losses.extend(about(protocol, |signal| {
         let named = signal.encoding.enumeration().map_or(&signal.specials, |known| &protocol[known].values);

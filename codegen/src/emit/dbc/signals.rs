@@ -35,6 +35,10 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
                 ..plain(signal, name)
             }])
         }
+        Encoding::ByModel { numeral, .. } => {
+            let raw = Signal { signed: numeral.is_signed(), ..plain(signal, name) };
+            Written { signals: vec![raw], loss: Some("has a scale that depends on the device model; it is given raw") }
+        }
         Encoding::Float => whole(vec![Signal { float: true, range, ..plain(signal, name) }]),
         Encoding::Named(id) => {
             let values = named(&protocol[*id].values);

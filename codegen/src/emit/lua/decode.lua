@@ -117,6 +117,15 @@ function values.number(signal, raw)
   return (double(raw) * signal.numerator + signal.offset) / signal.denominator
 end
 
+-- Has a value only on a device model.
+function values.by_model(signal, raw)
+  local names = {}
+  for index, name in ipairs(protocol.models) do
+    if signal.on[index] then table.insert(names, name) end
+  end
+  return nil, "model_dependent", signal.name .. " has a scale only on " .. table.concat(names, ", ")
+end
+
 function values.float(signal, raw)
   local exponent, fraction = bits(raw, 23, 8), bits(raw, 0, 23)
   local sign = raw < 2 ^ 31 and 1 or -1
@@ -210,9 +219,15 @@ local function range_note(signal, model, value)
   return "out_of_range", signal.name .. " " .. plain(value) .. unit .. " is outside " .. limits
 end
 
+-- Returns a signal as the chosen device model has it.
+local function on_model(signal, model)
+  return signal.on and signal.on[model] or signal
+end
+
 -- Returns what a frame says about a signal: raw, value, name of a special value, rule and text of a
 -- note.
-local function reading(frame, signal)
+local function reading(frame, known)
+  local signal = on_model(known, frame.model)
   local raw = get(frame, signal.place)
   if signal.signed then raw = signed(raw, signal.place.width) end
   local special = signal.specials and signal.specials[key(raw)]
@@ -220,6 +235,8 @@ local function reading(frame, signal)
   local value, rule, text = values[signal.kind](signal, raw, frame)
   local is_number = signal.shown == "integer" or signal.shown == "double"
   if is_number and value then rule, text = range_note(signal, frame.model, value) end
+  -- Values of all device models stand in one field.
+  if signal ~= known and is_number then value = double(value) end
   return { signal = signal, raw = raw, value = value, rule = rule, text = text }
 end
 
@@ -331,6 +348,7 @@ local kinds_of_frames, refusals = {}, {}
 for _, message in ipairs(protocol.messages) do
   for _, signal in ipairs(message.signals) do
     prepare(signal.place)
+    for _, own in pairs(signal.on or {}) do prepare(own.place) end
     for _, piece in ipairs(signal.pieces or {}) do
       if piece.place then prepare(piece.place) end
     end

@@ -56,6 +56,9 @@ local function define_signal(signal, prefix)
   if signal.specials or signal.numeral or (signal.shown ~= "integer" and signal.shown ~= "bits") then
     signal.raw_field = number_field(name .. ".raw", "raw", width, signal.signed, base.DEC_HEX)
   end
+  for _, own in pairs(signal.on or {}) do
+    own.field, own.name_field, own.raw_field = signal.field, signal.name_field, signal.raw_field
+  end
 end
 
 local known = {}

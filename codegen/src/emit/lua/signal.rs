@@ -4,7 +4,9 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::table::Value;
-use crate::model::{Encoding, NamedValue, Numeral, PartId, Piece, Protocol, Range, Signal, StatusBit, Table, TextForm};
+use crate::model::{
+    Encoding, NamedValue, Numeral, OfModel, PartId, Piece, Protocol, Range, Signal, StatusBit, Table, TextForm,
+};
 use crate::number::Rational;
 
 /// How a value is shown. Numbers are what has limits.
@@ -60,6 +62,10 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
         }
         Encoding::Number { numeral, scale, offset } => {
             scaled(written(made("number", DOUBLE), *numeral), *scale, *offset)
+        }
+        Encoding::ByModel { numeral, signals } => {
+            let on = |own: &OfModel<Signal>| (Value::id(own.model), self::signal(protocol, &own.value));
+            written(made("by_model", DOUBLE), *numeral).with("on", Value::map(signals.iter().map(on)))
         }
         Encoding::Float => made("float", DOUBLE),
         Encoding::Named(id) => {

@@ -1,12 +1,13 @@
 //! One message: its structs, signals, exchanges and requests.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::derives::Derives;
 use super::exchange::exchange;
 use super::plan::message::{Length, Message, Request, Struct, Within};
 use super::plan::signal::{Member, Signal, Special};
+use super::scales;
 
 /// Emits every struct of a message.
 pub fn message(message: &Message, derives: Derives) -> TokenStream {
@@ -40,6 +41,8 @@ fn member(Signal { coding, member, .. }: &Signal, count: usize, derives: Derives
 fn constants(message: &Message, own: &Struct) -> TokenStream {
     let Struct { name, is_home, reserved, requests, within, .. } = own;
     let signals = message.signals.iter().filter(|_| *is_home).map(signal);
+    let owner = if *is_home { quote!(Self) } else { message.home.to_token_stream() };
+    let by_model = own.signals.iter().filter_map(|id| scales::methods(&message.signals[*id], &owner));
     let reserved = reserved.iter().map(|(comment, bits)| quote!(#comment pub const RESERVED: Data = #bits;));
     let exchanges = message.exchanges.iter().filter(|_| *is_home).map(exchange);
     let requests = requests.iter().map(request);
@@ -48,7 +51,7 @@ fn constants(message: &Message, own: &Struct) -> TokenStream {
         quote!(impl Within<#name> { #(#requests)* })
     });
     let within = within.as_ref().map(self::within);
-    quote!(impl #name { #(#signals)* #(#reserved)* #(#exchanges)* #within #(#requests)* } #of_model)
+    quote!(impl #name { #(#signals)* #(#reserved)* #(#exchanges)* #within #(#requests)* #(#by_model)* } #of_model)
 }
 
 fn signal(signal: &Signal) -> TokenStream {
@@ -77,11 +80,14 @@ fn signal(signal: &Signal) -> TokenStream {
     let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
     let absent = has_absent.then(|| quote!(.absent()));
     let values = values.iter().map(|special| special_value(special, signal));
+    let depends = signal.is_by_model.then(|| quote!(.by_model()));
+    let on_model = scales::on_model(signal);
     quote! {
         #comment
         pub const #constant: Signal<#raw #(, #physical)*> = Signal::new(#name, #place)
-            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent;
+            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent #depends;
         #(#values)*
+        #on_model
     }
 }
 

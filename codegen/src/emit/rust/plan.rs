@@ -13,6 +13,7 @@ pub mod naming;
 pub mod place;
 pub mod recognition;
 pub mod rows;
+pub mod scales;
 pub mod selector;
 pub mod set;
 pub mod signal;

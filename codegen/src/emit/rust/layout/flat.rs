@@ -8,6 +8,7 @@ use syn::{Expr, FieldValue, Member, Pat, Path, RangeLimits, Stmt};
 pub fn flat(expr: &Expr) -> Option<String> {
     Some(match expr {
         Expr::Array(array) => format!("[{}]", all(&array.elems)?),
+        Expr::Assign(assign) => format!("{} = {}", flat(&assign.left)?, flat(&assign.right)?),
         Expr::Binary(binary) => format!("{} {} {}", flat(&binary.left)?, tokens(&binary.op), flat(&binary.right)?),
         Expr::Call(call) => format!("{}({})", flat(&call.func)?, all(&call.args)?),
         Expr::Cast(cast) => format!("{} as {}", flat(&cast.expr)?, tokens(&cast.ty)),

@@ -53,6 +53,7 @@ impl Coding {
                 step: step(signal, scaled, Linear { numeral: *numeral, scale: *scale, offset: *offset }),
                 ..Self::raw(raw_type(signal))
             },
+            Encoding::ByModel { .. } => Self { limits, ..Self::raw(raw_type(signal)) },
             Encoding::Float => Self { is_float: true, limits, ..Self::raw(raw_type(signal)) },
             Encoding::Named(known) => Self::named(&words.enumerations[*known], &protocol[*known].doc),
             Encoding::Status(known) => Self::named(&words.statuses[*known], &protocol[*known].doc),
@@ -133,7 +134,8 @@ pub fn raw_number(signal: &Signal, raw: i128) -> TokenStream {
     }
 }
 
-fn fraction(number: Rational) -> [TokenStream; 2] {
+/// Writes the numerator and the denominator of a number.
+pub fn fraction(number: Rational) -> [TokenStream; 2] {
     [number.numerator(), number.denominator()].map(decimal)
 }
 

@@ -61,6 +61,10 @@ fn are_raw(signal: &Signal, precision: Precision) -> bool {
             signal.encoding.is_unscaled() && (is_free || numeral.is_raw() && signal.has_whole_limits())
         }
         Encoding::Float => is_free || precision == Precision::Single,
-        Encoding::Named(_) | Encoding::Status(_) | Encoding::Text(_) | Encoding::Packed { .. } => true,
+        Encoding::ByModel { .. }
+        | Encoding::Named(_)
+        | Encoding::Status(_)
+        | Encoding::Text(_)
+        | Encoding::Packed { .. } => true,
     }
 }

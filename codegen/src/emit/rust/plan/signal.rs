@@ -9,6 +9,7 @@ use super::literal::decimal;
 use super::models::Models;
 use super::naming::{Pool, member};
 use super::place::Written;
+use super::scales::Scales;
 use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
@@ -39,6 +40,10 @@ pub struct Signal {
     pub specials: Vec<(TokenStream, String)>,
     /// Whether the last of them says that there is no value.
     pub has_absent: bool,
+    /// Whether its scale depends on the device model.
+    pub is_by_model: bool,
+    /// The methods for device models, if its scale depends on the model.
+    pub scales: Option<Scales>,
     /// The constants of the others. Those of an array are with its first element.
     pub values: Vec<Special>,
     /// The member of structs.
@@ -122,7 +127,8 @@ impl Context<'_> {
             });
             let names = Names { constant, field, values: values.collect() };
             let coding = Coding::new(self.protocol, &self.types.words(id, signal), known, self.scaled);
-            self.signal(message, known, names, coding)
+            let scales = Scales::new(self.protocol, (self.models, self.scaled), message, known, members);
+            self.signal(message, known, (names, scales), coding)
         });
         signals.collect()
     }
@@ -136,7 +142,7 @@ impl Context<'_> {
         &self,
         message: &Message,
         signal: &model::Signal,
-        Names { constant, field, values }: Names,
+        (Names { constant, field, values }, scales): (Names, Option<Scales>),
         coding: Coding,
     ) -> Signal {
         let range = signal.hull(self.protocol.models_of(message));
@@ -155,6 +161,8 @@ impl Context<'_> {
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),
             specials: signal.specials.iter().map(|known| (as_signed(known.raw), known.name.clone())).collect(),
             has_absent: signal.has_absent,
+            is_by_model: !signal.encoding.by_model().is_empty(),
+            scales,
             values: named_values(signal).iter().zip(values).map(special).collect(),
             member: self.member(message, signal, field, &coding, range),
             constant,

@@ -16,6 +16,10 @@ pub struct Unit {
 impl Unit {
     /// Returns the unit of a signal's values.
     pub fn new(signal: &Signal, scaled: Scaled) -> Self {
+        if !signal.encoding.by_model().is_empty() {
+            let phrase = " in steps that depend on the device model".to_owned();
+            return Self { phrase, ending: Some("raw".to_owned()) };
+        }
         match signal.encoding.linear() {
             Some(linear) if scaled == Scaled::Steps && !signal.encoding.is_unscaled() => Self::of_steps(signal, linear),
             _ => Self {

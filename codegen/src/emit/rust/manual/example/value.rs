@@ -15,7 +15,7 @@ pub fn literal(manual: &Manual, planned: &plan::signal::Signal, signal: &Signal,
         return Some("None".to_owned());
     }
     match signal.encoding {
-        Encoding::Number { .. } => Some(squeezed(&planned.coding.value_of(signal, raw))),
+        Encoding::Number { .. } | Encoding::ByModel { .. } => Some(squeezed(&planned.coding.value_of(signal, raw))),
         Encoding::Float => Some(format!("{:?}", f32::from_bits(u32::try_from(bits).ok()?))),
         Encoding::Named(id) => {
             let place = manual.protocol[id].values.iter().position(|value| value.raw == raw)?;

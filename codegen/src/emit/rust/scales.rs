@@ -1,0 +1,59 @@
+//! Methods that read and set a number whose scale depends on the device model.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::plan::scales::{Row, Scales};
+use super::plan::signal::Signal;
+
+/// Emits the method that returns the signal of a device model. It stands beside the signal's constant.
+pub fn on_model(signal: &Signal) -> Option<TokenStream> {
+    let Signal { constant, coding, name, scales, .. } = signal;
+    let Scales { on, kind, rows, has_others, .. } = scales.as_ref()?;
+    let raw = &coding.raw;
+    let arms = rows.iter().map(|Row { model, unit, scale, offset, limits }| {
+        let unit = unit.iter().map(|unit| quote!(.unit(#unit)));
+        let scale = scale.iter().map(|[numerator, denominator]| quote!(.scale(#numerator, #denominator)));
+        let offset = offset.iter().map(|[above, below]| quote!(.offset(#above, #below)));
+        let limits = limits.iter().map(|[minimum, maximum]| quote!(.limits(#minimum, #maximum)));
+        quote!(Model::#model => Some(Self::#constant.on_model() #(#unit)* #(#scale)* #(#offset)* #(#limits)*),)
+    });
+    let others = has_others.then(|| quote!(_ => None,));
+    let comment = format!(" Returns the signal `{name}` of a device model; `None` of a model without a scale.");
+    Some(quote! {
+        #[doc = #comment]
+        #[must_use]
+        pub const fn #on(model: Model) -> Option<Signal<#raw, #kind>> {
+            match model { #(#arms)* #others }
+        }
+    })
+}
+
+/// Emits the methods of a struct that read and set the value. `owner` has the method for the device model.
+pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
+    let Signal { name, member, scales, .. } = signal;
+    let Scales { on, get, set, message, kind, .. } = scales.as_ref()?;
+    let value = member.value();
+    let raw = if member.is_optional { quote!(self.#value?) } else { quote!(self.#value) };
+    let given = if member.is_optional { quote!(Some(raw)) } else { quote!(raw) };
+    let reads = format!(" Returns the number that `{name}` is on a device model; `None` if it is none.");
+    let sets = format!(" Sets `{name}` to a number of a device model.");
+    Some(quote! {
+        #[doc = #reads]
+        #[must_use]
+        pub fn #get(&self, model: Model) -> Option<#kind> {
+            #owner::#on(model)?.physical_of(#raw)
+        }
+
+        #[doc = #sets]
+        ///
+        /// # Errors
+        /// Refuses a model without a scale, and a value outside its limits.
+        pub fn #set(&mut self, model: Model, value: #kind) -> Result<(), Error> {
+            let signal = #owner::#on(model).ok_or(Error::Meaning { message: #message, signal: #name })?;
+            let raw = signal.raw_of(value, #message)?;
+            self.#value = #given;
+            Ok(())
+        }
+    })
+}
