@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
 use canspec_codegen::model::{
-    DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, Protocol, SelectorId, Side, Signal,
-    StatusBit,
+    DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, ModelId, Protocol, SelectorId, Side,
+    Signal, StatusBit,
 };
 use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
@@ -174,8 +174,7 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
     cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_owned()));
     cells.push(words(message.doc.section.as_ref()));
-    let models = message.models.iter().map(|model| protocol.models[*model].name.as_str()).collect::<Vec<_>>();
-    let models = if models.is_empty() { String::new() } else { format!(" (only {})", models.join(", ")) };
+    let models = only(protocol, &message.models).map_or(String::new(), |only| format!(" ({only})"));
     let parts = protocol.long_message(message).map_or(String::new(), |(_, long)| parts(protocol, long));
     let title = format!("{}{models}{parts}", title(&message.doc).unwrap_or_default());
     let title = Some(title.trim_start()).filter(|title| !title.is_empty());
@@ -242,17 +241,25 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
             .then(|| "limits by model".to_owned()),
     );
     match signal.encoding.status_word() {
-        Some(word) => items.extend(protocol.status_words[word].bits.iter().map(status_bit)),
+        Some(word) => items.extend(protocol.status_words[word].bits.iter().map(|bit| status_bit(protocol, bit))),
         None => items.extend(description(protocol, signal)),
     }
+    items.extend(only(protocol, &signal.models));
     items.extend(signal.specials.iter().map(|special| format!("{} = {}", special.raw, special.name)));
     items
 }
 
 /// Returns number, name and severity of a status bit.
-fn status_bit(bit: &StatusBit) -> String {
+fn status_bit(protocol: &Protocol, bit: &StatusBit) -> String {
     let severity = Severity::of(bit).map_or(String::new(), |severity| format!(" ({})", severity.word()));
-    format!("bit {} {}{severity}", bit.bit, bit.name)
+    let only = only(protocol, &bit.models).map_or(String::new(), |only| format!(" ({only})"));
+    format!("bit {} {}{severity}{only}", bit.bit, bit.name)
+}
+
+/// Names the only device models that have something.
+fn only(protocol: &Protocol, models: &[ModelId]) -> Option<String> {
+    let names: Vec<_> = models.iter().map(|model| protocol.models[*model].name.as_str()).collect();
+    (!names.is_empty()).then(|| format!("only {}", names.join(", ")))
 }
 
 /// Returns a text of the spec, or nothing.

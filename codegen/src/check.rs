@@ -9,6 +9,7 @@ mod grid;
 mod model_range;
 mod no_example;
 mod no_limit;
+mod no_model;
 mod no_unit;
 mod nobody_replies;
 mod outside_frame;
@@ -39,7 +40,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 26] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 27] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -48,6 +49,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 26] = [
     (&read_only_range::READ_ONLY_RANGE, Some(read_only_range::check)),
     (&no_limit::NO_LIMIT, Some(no_limit::check)),
     (&no_unit::NO_UNIT, Some(no_unit::check)),
+    (&no_model::NO_MODEL, Some(no_model::check)),
     (&rules::MODEL_RANGE, Some(model_range::check)),
     (&special_value::SPECIAL_VALUE, Some(special_value::check)),
     (&default_value::DEFAULT_VALUE, Some(default_value::check)),

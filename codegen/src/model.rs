@@ -11,6 +11,7 @@ mod encoding;
 mod example;
 mod id;
 mod identifier;
+mod lacking;
 mod long;
 mod message;
 mod note;
@@ -31,6 +32,7 @@ pub use id::{
     MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
+pub use lacking::Lacking;
 pub use long::{LongMessage, Parts};
 pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};

@@ -66,6 +66,8 @@ pub struct Signal<R: 'static, F: 'static = R> {
     model_limits: &'static [(u8, Option<(F, F)>)],
     specials: &'static [(i64, &'static str)],
     has_absent: bool,
+    /// Bits that device models do not have: number of the model, bits, and what they are there.
+    lacking: &'static [(u8, u64, u64)],
     /// Whether a value has a meaning only on a device model.
     is_by_model: bool,
     raw: PhantomData<R>,
@@ -83,6 +85,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             model_limits: &[],
             specials: &[],
             has_absent: false,
+            lacking: &[],
             is_by_model: false,
             raw: PhantomData,
         }
@@ -133,6 +136,13 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         Self { has_absent: true, ..self }
     }
 
+    /// Adds the bits that device models do not have: number of the model, bits, and what they are
+    /// there. Requests to such a model do not change them.
+    #[must_use]
+    pub const fn lacking(self, lacking: &'static [(u8, u64, u64)]) -> Self {
+        Self { lacking, ..self }
+    }
+
     /// Says that the scale depends on the device model. Without a model, the raw value has no meaning.
     #[must_use]
     pub const fn by_model(self) -> Self {
@@ -180,7 +190,8 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if !raw.is_whole() {
             return Err(self.meaningless(payload));
         }
-        if payload.keeps_limits() && self.special(raw.to_bits()).is_none() {
+        if payload.keeps_limits() && self.check_model(raw.to_bits(), payload)? && self.special(raw.to_bits()).is_none()
+        {
             self.check(self.physical(raw), payload)?;
         }
         if self.store(raw.to_bits(), payload) { Ok(()) } else { Err(self.too_wide(self.physical(raw), payload)) }
@@ -201,6 +212,17 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             payload.replace(data);
         }
         is_kept
+    }
+
+    /// Tests bits against what the device model has. It returns whether limits apply to them.
+    #[inline(always)]
+    fn check_model(&self, bits: u64, payload: &Payload) -> Result<bool, Error> {
+        let known = self.lacking.iter().find(|(model, ..)| Some(*model) == payload.model());
+        match known {
+            None => Ok(true),
+            Some((_, mask, blank)) if (bits ^ blank) & mask == 0 => Ok(false),
+            Some(_) => Err(self.meaningless(payload)),
+        }
     }
 
     /// Returns the value that limits apply to.
@@ -349,10 +371,11 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     #[inline(always)]
     pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
         let raw = physical.raw(self.exact_scale());
-        if payload.keeps_limits() {
+        let bits = raw.and_then(R::bits_of);
+        if payload.keeps_limits() && self.check_model(bits.unwrap_or_default(), payload)? {
             self.check_rounded(physical, raw, payload)?;
         }
-        match raw.and_then(R::bits_of) {
+        match bits {
             Some(bits) if self.store(bits, payload) => Ok(()),
             _ if physical.is_nan() => Err(self.not_finite(payload)),
             _ => Err(self.too_wide(physical, payload)),

@@ -150,6 +150,7 @@ fn samples(key: Key) -> Vec<&'static str> {
         Key::Outside => &["refused"],
         Key::Reply => &["{priority: 5}"],
         Key::In => &["[request]", "[reply]"],
+        Key::Models => &["[M1]"],
         Key::Examples => &["[{bytes: 01, means: 1}]", "[{bytes: 4131, means: A49}]", "[{bytes: 01, means: bright}]"],
         Key::Title => &["A new title"],
         Key::Note => &["a new note"],

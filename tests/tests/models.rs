@@ -3,7 +3,8 @@
 use canspec_protocols::{infy, megmeet};
 use canspec_runtime::Frame;
 use canspec_tests::{
-    features_model_layouts as layouts, features_model_limits as limits, features_scales_by_model as scales,
+    features_model_layouts as layouts, features_model_limits as limits, features_revisions as revisions,
+    features_scales_by_model as scales,
 };
 
 /// The limits that the INFY document prints for its models in 3.3: voltage and current.
@@ -139,4 +140,18 @@ fn without_a_model_such_a_number_has_no_meaning() {
     let mut shown = Vec::new();
     received.expect("it is a request").visit(|reading| shown.push(reading.to_string()));
     assert_eq!(shown, ["current ?", "temperature ?"]);
+}
+
+#[test]
+fn a_model_refuses_fields_and_bits_that_it_does_not_have() {
+    use revisions::{Model, SetLimits, SetLimitsAlarms as Alarms, Target};
+    let takes = |heating_w, alarms, model| SetLimits { current_a: 50, heating_w, alarms }.within(model).is_ok();
+    assert!(takes(0, Alarms::HOT, Model::V1_2) && takes(100, Alarms::COLD, Model::V1_3));
+    assert!(!takes(100, Alarms::HOT, Model::V1_2) && !takes(0, Alarms::COLD, Model::V1_2));
+    assert!(!takes(0, Alarms::HOT, Model::V1_3), "its least power is 10 W");
+    let set = SetLimits { current_a: 50, heating_w: 100, alarms: Alarms::COLD };
+    let frame = set.set(Target::Battery).map(|request| request.frame().to_string());
+    assert_eq!(frame.as_deref(), Ok("004#32640200"), "without a model everything counts");
+    let error = set.within(Model::V1_2).expect_err("a field too much");
+    assert_eq!(error.to_string(), "`heating` of `set_limits` has no such value");
 }

@@ -81,7 +81,7 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
     Value::record()
         .with("name", Value::text(&message.name))
         .maybe("models", models)
-        .with("signals", Value::list(&message.signals, |known| signal(protocol, known)))
+        .with("signals", Value::list(&message.signals, |known| signal(protocol, message, known)))
         .with("layouts", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
         .maybe("refusals", refusals)
 }

@@ -385,8 +385,7 @@ impl<'a> Decoder<'a> {
         let reserved = self.reserved(frame);
         let mut notes = self.error_notes(frame, &selectors);
         notes.extend(self.address_notes(message, frame, &addressing));
-        let note =
-            |reading: &Reading| signal_note(self.protocol, message[reading.signal].on(self.model), self.model, reading);
+        let note = |reading: &Reading| signal_note(self.protocol, message, self.model, reading);
         notes.extend(signals.iter().filter_map(note));
         notes.extend(self.part_note(message).filter(|_| !signals.is_empty()));
         notes.extend(self.reserved_note(frame, reserved));
@@ -476,7 +475,14 @@ impl<'a> Decoder<'a> {
     }
 }
 
-pub fn signal_note(protocol: &Protocol, signal: &Signal, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
+pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
+    let signal = message[reading.signal].on(model);
+    if let Some(text) = model.and_then(|model| protocol.lack(message, signal, model, reading.bits)) {
+        return Some(Note { rule: NoteRule::ModelDependent, text });
+    }
+    if model.is_some_and(|model| !signal.is_of(model)) {
+        return None;
+    }
     let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
     if let Some((rule, text)) = oddity {
         return Some(Note { rule, text });

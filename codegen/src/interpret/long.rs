@@ -41,7 +41,7 @@ impl Joined {
                 Reading { signal: id, bits, value: physical(protocol, signal.on(model), bits) }
             })
             .collect();
-        let note = |reading: &Reading| signal_note(protocol, content[reading.signal].on(model), model, reading);
+        let note = |reading: &Reading| signal_note(protocol, content, model, reading);
         let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
         notes.extend(self.count_note(long));
         let reserved = self.without(signals.iter().map(|reading| &content[reading.signal]));

@@ -350,6 +350,12 @@ pub fn put_signals(
         return Err(refuse(message, &format!("the signal `{name}` is given twice")));
     }
     for signal in carried.into_iter().filter(|signal| usize::from(signal.end()) <= length) {
+        let is_given = given.iter().any(|(name, _)| *name == signal.name);
+        let lacking = model.and_then(|model| protocol.lacking(message, signal, model)).filter(|_| !is_given);
+        if let Some(lacking) = lacking.filter(|lacking| !signal.is_of(lacking.model)) {
+            signal.place.put(data, lacking.blank);
+            continue;
+        }
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
             Some((_, text)) => Words::from(protocol).with(signal.on(model), |room| room.typed(text)),
             None => Input::Raw(

@@ -25,9 +25,20 @@ impl Limits {
         if frame.is_to_module() { Self::Range(model) } else { Self::Bits }
     }
 
+    /// Returns the device model whose limits they are.
+    fn model(self) -> Option<ModelId> {
+        match self {
+            Self::Bits => None,
+            Self::Range(model) => model,
+        }
+    }
+
     /// Returns the limits of a signal.
     fn allowed(self, protocol: &Protocol, message: &Message, signal: &Signal) -> Allowed {
         let Self::Range(model) = self else { return Allowed::Everything };
+        if model.is_some_and(|model| !signal.is_of(model)) {
+            return Allowed::Everything;
+        }
         let range = match model {
             Some(_) => signal.range_for(model),
             None => signal.hull(protocol.models_of(message)),
@@ -53,5 +64,9 @@ pub fn raw_of(
 ) -> Result<u64, Refusal> {
     let allowed = limits.allowed(protocol, message, signal);
     let raw = Words::from(protocol).with(signal, |room| room.raw(input, &allowed));
+    let raw = raw.and_then(|bits| match limits.model().and_then(|model| protocol.lack(message, signal, model, bits)) {
+        Some(why) => Err(why),
+        None => Ok(bits),
+    });
     raw.map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
 }

@@ -62,6 +62,13 @@ pub struct StatusWord {
     pub bits: Vec<StatusBit>,
 }
 
+impl StatusBit {
+    /// Tests whether a device model has the bit.
+    pub fn is_of(&self, model: ModelId) -> bool {
+        self.models.is_empty() || self.models.contains(&model)
+    }
+}
+
 impl StatusWord {
     /// Returns the bits that have a name.
     pub fn known(&self) -> u64 {
@@ -89,6 +96,8 @@ pub struct StatusBit {
     pub effect: Option<Text>,
     /// What the device's LED shows while the bit is set.
     pub led: Option<Text>,
+    /// The only device models that have it; empty if every model has it.
+    pub models: Vec<ModelId>,
 }
 
 /// The severity of a status bit.
@@ -139,6 +148,8 @@ pub struct Signal {
     pub model_defaults: Vec<OfModel<i128>>,
     /// The only kinds of frames that have it; empty if the access decides.
     pub kinds: Vec<Kind>,
+    /// The only device models that have it; empty if every model has it.
+    pub models: Vec<ModelId>,
     /// The array of the message that it is an element of.
     pub element: Option<Element>,
 }
@@ -156,6 +167,11 @@ pub struct OfModel<T> {
 }
 
 impl Signal {
+    /// Tests whether a device model has the signal.
+    pub fn is_of(&self, model: ModelId) -> bool {
+        self.models.is_empty() || self.models.contains(&model)
+    }
+
     /// Returns the signal as a device model has it, if its scale depends on the model.
     pub fn on(&self, model: Option<ModelId>) -> &Self {
         let own = self.encoding.by_model().iter().find(|own| Some(own.model) == model);

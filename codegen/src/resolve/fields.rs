@@ -286,6 +286,7 @@ impl Resolver<'_> {
         let at = merged.path(self.diagnostics, Key::Format);
         let (pieces, place) = self.format(&at, &format, &parts)?;
         let kinds: Vec<Kind> = self.kinds(&merged.path(self.diagnostics, Key::In), &merged.field.kinds);
+        let models = self.models_named(&merged.path(self.diagnostics, Key::Models), &merged.field.models);
         let (range_path, default_path) = (doc.path.key("range"), doc.path.key("default"));
         Some(Signal {
             name: name.to_owned(),
@@ -304,6 +305,7 @@ impl Resolver<'_> {
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
             kinds,
+            models,
             element: None,
         })
     }

@@ -118,6 +118,7 @@ impl Role {
             Key::Outside | Key::Examples => self == Self::Address,
             Key::Reply => signal || among(&[Self::Word, Self::Packed]),
             Key::In => signal || among(&[Self::Constant, Self::Packed]),
+            Key::Models => signal || self == Self::Packed,
         }
     }
 
@@ -208,6 +209,7 @@ fn is_of_values(key: Key) -> bool {
         | Key::Outside
         | Key::Reply
         | Key::In
+        | Key::Models
         | Key::Examples
         | Key::Title
         | Key::Note

@@ -124,7 +124,7 @@ impl Resolver<'_> {
         let contents = self.contents(path, name, message, &doc);
         let lengths = self.lengths(&path.key("length"), &message.length.0, surroundings.length);
         let exchanges = self.exchanges(path, message, surroundings);
-        let models = self.message_models(&path.key("models"), &message.models);
+        let models = self.models_named(&path.key("models"), &message.models);
         let (leaves, long) = match &message.parts {
             Some(parts) => self.long_message(id, path, (parts, contents), (name, &doc, &models)),
             None => (contents, None),
@@ -224,8 +224,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Finds the device models that have a message.
-    fn message_models(&mut self, path: &Path, names: &[String]) -> Vec<ModelId> {
+    /// Finds the device models that have a message, a field or a status bit.
+    pub fn models_named(&mut self, path: &Path, names: &[String]) -> Vec<ModelId> {
         let mut models = Vec::new();
         for (index, name) in names.iter().enumerate() {
             let at = path.index(index);

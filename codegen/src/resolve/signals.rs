@@ -90,6 +90,7 @@ impl Resolver<'_> {
             (merged.path(self.diagnostics, Key::Range), merged.path(self.diagnostics, Key::Default));
         let range = field.range.as_ref().and_then(|text| self.range_of(&range_path, text, unit));
         let kinds = self.kinds(&merged.path(self.diagnostics, Key::In), &field.kinds);
+        let models = self.models_named(&merged.path(self.diagnostics, Key::Models), &field.models);
         let mut signal = Signal {
             name: name.to_owned(),
             doc,
@@ -107,6 +108,7 @@ impl Resolver<'_> {
             model_ranges: Vec::new(),
             model_defaults: Vec::new(),
             kinds,
+            models,
             element: None,
         };
         let is_judged = field.values.is_empty() || !self.diagnostics.has_errors_in(&values);

@@ -123,6 +123,7 @@ impl Resolver<'_> {
         outer: &Doc,
     ) -> Option<StatusBit> {
         self.check_name(path, name);
+        self.check_not_empty(path, &["models"]);
         let severity = bit.severity.as_ref().and_then(|text| {
             self.lookup(&path.key("severity"), "severity", text, SEVERITIES.iter().map(|(name, _)| *name))
         });
@@ -135,6 +136,7 @@ impl Resolver<'_> {
             clear_when: text(bit.clear_when.as_ref()),
             effect: text(bit.effect.as_ref()),
             led: text(bit.led.as_ref()),
+            models: self.models_named(&path.key("models"), &bit.models),
         })
     }
 

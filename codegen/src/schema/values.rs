@@ -96,6 +96,7 @@ fn of_field(key: Key) -> Demand {
         | Key::Status
         | Key::Format
         | Key::Default
+        | Key::Models
         | Key::Examples
         | Key::Title
         | Key::Note

@@ -168,6 +168,10 @@ pub struct StatusBit {
     pub effect: Option<String>,
     /// What the device's LED shows while the bit is set, as a text: `red`; not stated if absent.
     pub led: Option<String>,
+    /// List of the only device models that have the bit: `[SM_750]`; if absent, every model that has
+    /// the word.
+    #[serde(default)]
+    pub models: Vec<String>,
     /// What it is, in a few words without a full stop: `Fan fault`.
     pub title: Option<String>,
     /// What else a reader must know, in one sentence: `valid on three-phase modules only`.

@@ -4,6 +4,7 @@ mod arrays;
 mod examples;
 mod reading;
 mod requests;
+mod revisions;
 mod scales;
 mod writing;
 

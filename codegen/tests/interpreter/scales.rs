@@ -46,7 +46,8 @@ fn a_physical_value_needs_a_model() {
     let rectifier = feature("scales_by_model");
     let asked = |name: Option<&str>, value| {
         let model = name.map(|name| model(&rectifier, name));
-        requested(&rectifier, model, "set_output", "rectifier", &[("current", value), ("temperature", "0°C")]).map_err(|refusal| refusal.0)
+        requested(&rectifier, model, "set_output", "rectifier", &[("current", value), ("temperature", "0°C")])
+            .map_err(|refusal| refusal.0)
     };
     let refusal = "set_output.current: its scale depends on the device model; choose R4830, R4850_X20 or R4850_X30";
     for value in ["22A", "22", "0.5"] {

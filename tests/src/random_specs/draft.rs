@@ -150,8 +150,10 @@ impl Draft {
         if moved.is_empty() {
             return own;
         }
-        let is_whole =
-            all && ["in", "reply", "bytes", "bits", "repeat", "fields", "const"].iter().all(|key| !moved.has(key));
+        let is_whole = all
+            && ["in", "models", "reply", "bytes", "bits", "repeat", "fields", "const"]
+                .iter()
+                .all(|key| !moved.has(key));
         let name = self.add_types(moved);
         if is_whole {
             self.whole.push(Whole { name: name.clone(), bits });

@@ -74,7 +74,8 @@ impl Draft {
         let printed = written(frame).replacen('#', self.one(&["#", "#", ": ", " "]), 1);
         let mut map = Map::of([(decoded.kind.name(), printed)]);
         if !decoded.signals.is_empty() {
-            let means = decoded.signals.iter().map(|reading| means(protocol, &message[reading.signal], reading));
+            let means =
+                decoded.signals.iter().map(|reading| means(protocol, message[reading.signal].on(model), reading));
             let means: Vec<_> = means.collect::<Option<Vec<_>>>()?;
             let said = means.into_iter().zip(&decoded.signals);
             let means: Vec<_> = said.map(|(text, reading)| self.rounded(text, &reading.value)).collect();
@@ -249,6 +250,7 @@ fn written(frame: &Frame) -> String {
 /// Writes what an example says that a signal means; nothing if it has no value.
 fn means(protocol: &Protocol, signal: &Signal, reading: &Reading) -> Option<Value> {
     let text = match &reading.value {
+        Meaning::None if !signal.encoding.by_model().is_empty() => signal.raw_of(reading.bits).to_string(),
         Meaning::None => {
             signal.encoding.enumeration()?;
             reading.bits.to_string()

@@ -177,16 +177,25 @@ impl Draft {
         }
     }
 
-    /// Adds `in` and `reply`.
+    /// Adds `in`, `models` and `reply`.
     fn restrict(&mut self, field: &mut Map, site: &Site, has_reply: &mut bool) {
         if !site.is_member && self.chance(8) {
             let kinds = self.some(site.kinds);
             field.put("in", list(kinds));
         }
+        self.only_on_some(field, 8);
         if let Some(spare) = site.spare.filter(|_| !*has_reply && self.chance(12)) {
             *has_reply = true;
             let value = self.random.u8(..4);
             field.put("reply", Map::of([(spare, self.number(value))]));
+        }
+    }
+
+    /// Lists the only device models that have a field or a status bit.
+    fn only_on_some(&mut self, item: &mut Map, percent: u8) {
+        if !self.models.is_empty() && self.chance(percent) {
+            let models = self.models.clone();
+            item.put("models", list(self.some(&models)));
         }
     }
 
@@ -302,6 +311,7 @@ impl Draft {
         if self.chance(40) {
             known.put("severity", self.one(&["state", "alarm", "fault"]));
         }
+        self.only_on_some(&mut known, 10);
         for key in ["set_when", "clear_when", "effect", "led"] {
             if self.chance(15) {
                 let text = self.text();

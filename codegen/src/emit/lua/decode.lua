@@ -224,17 +224,30 @@ local function on_model(signal, model)
   return signal.on and signal.on[model] or signal
 end
 
+-- Says that a device model does not have what bits show. It also returns whether the model lacks the signal.
+local function lack(signal, model, raw)
+  local known = signal.lacking and signal.lacking[model]
+  if not known then return nil end
+  local bits = type(raw) == "number" and UInt64(raw) or raw
+  if bits:bxor(known.blank):band(known.mask) == UInt64(0) then return nil, known.whole end
+  return protocol.models[model] .. " has no such `" .. signal.name .. "`", known.whole
+end
+
 -- Returns what a frame says about a signal: raw, value, name of a special value, rule and text of a
 -- note.
 local function reading(frame, known)
   local signal = on_model(known, frame.model)
   local raw = get(frame, signal.place)
+  local lacked, is_whole = lack(signal, frame.model, raw)
   if signal.signed then raw = signed(raw, signal.place.width) end
   local special = signal.specials and signal.specials[key(raw)]
-  if special then return { signal = signal, raw = raw, name = special } end
+  if special then
+    return { signal = signal, raw = raw, name = special, rule = lacked and "model_dependent", text = lacked }
+  end
   local value, rule, text = values[signal.kind](signal, raw, frame)
   local is_number = signal.shown == "integer" or signal.shown == "double"
   if is_number and value then rule, text = range_note(signal, frame.model, value) end
+  if lacked then rule, text = "model_dependent", lacked elseif is_whole then rule, text = nil, nil end
   -- Values of all device models stand in one field.
   if signal ~= known and is_number then value = double(value) end
   return { signal = signal, raw = raw, value = value, rule = rule, text = text }

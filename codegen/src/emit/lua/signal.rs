@@ -5,7 +5,8 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::table::Value;
 use crate::model::{
-    Encoding, NamedValue, Numeral, OfModel, PartId, Piece, Protocol, Range, Signal, StatusBit, Table, TextForm,
+    Encoding, Lacking, Message, NamedValue, Numeral, OfModel, PartId, Piece, Protocol, Range, Signal, StatusBit, Table,
+    TextForm,
 };
 use crate::number::Rational;
 
@@ -43,18 +44,21 @@ pub fn names(values: &[NamedValue], width: u8) -> Value {
     Value::map(values.iter().map(|value| (wide(value.raw, width), Value::text(&value.name))))
 }
 
-pub fn signal(protocol: &Protocol, signal: &Signal) -> Value {
+pub fn signal(protocol: &Protocol, message: &Message, signal: &Signal) -> Value {
     let record = Value::record()
         .with("name", Value::text(&signal.name))
         .maybe("title", signal.doc.title.as_ref().map(Value::words))
         .with("place", place(signal.place))
         .maybe("unit", signal.unit.map(|unit| Value::text(unit.symbol)));
-    limits(meaning(protocol, record, signal), signal)
+    let record = limits(meaning(protocol, message, record, signal), signal);
+    let rows = protocol.models.ids().filter_map(|model| protocol.lacking(message, signal, model));
+    let rows: Vec<_> = rows.map(|known| (Value::id(known.model), lacking(signal, known))).collect();
+    record.maybe("lacking", (!rows.is_empty()).then(|| Value::map(rows.into_iter())))
 }
 
 /// Adds the meaning of the bits: the function that turns them into a value, and how the value is
 /// shown.
-fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
+fn meaning(protocol: &Protocol, message: &Message, record: Value, signal: &Signal) -> Value {
     let made = |by, shown| record.with("kind", Value::text(by)).with("shown", Value::text(shown));
     match &signal.encoding {
         Encoding::Number { numeral, .. } if signal.encoding.is_unscaled() => {
@@ -64,7 +68,7 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
             scaled(written(made("number", DOUBLE), *numeral), *scale, *offset)
         }
         Encoding::ByModel { numeral, signals } => {
-            let on = |own: &OfModel<Signal>| (Value::id(own.model), self::signal(protocol, &own.value));
+            let on = |own: &OfModel<Signal>| (Value::id(own.model), self::signal(protocol, message, &own.value));
             written(made("by_model", DOUBLE), *numeral).with("on", Value::map(signals.iter().map(on)))
         }
         Encoding::Float => made("float", DOUBLE),
@@ -82,6 +86,14 @@ fn meaning(protocol: &Protocol, record: Value, signal: &Signal) -> Value {
             made("packed", TEXT).with("pieces", Value::list(pieces, |known| piece(known, parts)))
         }
     }
+}
+
+/// Returns the bits that a device model does not have, and what they are there.
+fn lacking(signal: &Signal, known: Lacking) -> Value {
+    Value::record()
+        .with("mask", Value::unsigned_of_64_bits(known.mask))
+        .with("blank", Value::unsigned_of_64_bits(known.blank))
+        .maybe("whole", (!signal.is_of(known.model)).then(|| Value::flag(true)))
 }
 
 /// Adds which integer the bits are.

@@ -67,6 +67,7 @@ fn signal(signal: &Signal) -> TokenStream {
         model_limits,
         specials,
         has_absent,
+        lacking,
         values,
         ..
     } = signal;
@@ -80,12 +81,14 @@ fn signal(signal: &Signal) -> TokenStream {
     let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
     let absent = has_absent.then(|| quote!(.absent()));
     let values = values.iter().map(|special| special_value(special, signal));
+    let lacking = lacking.iter().map(|(model, [bits, blank])| quote!((Model::#model as u8, #bits, #blank)));
+    let lacking = (!signal.lacking.is_empty()).then(|| quote!(.lacking(&[#(#lacking),*])));
     let depends = signal.is_by_model.then(|| quote!(.by_model()));
     let on_model = scales::on_model(signal);
     quote! {
         #comment
         pub const #constant: Signal<#raw #(, #physical)*> = Signal::new(#name, #place)
-            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent #depends;
+            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent #lacking #depends;
         #(#values)*
         #on_model
     }

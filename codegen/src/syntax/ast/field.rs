@@ -201,6 +201,9 @@ keys! {
     /// The only kinds of frames that have the field, out of `request`, `reply` and `report`:
     /// `[request]`. If absent, the access says it.
     In "in": kinds: Vec<String>, inherited;
+    /// List of the only device models that have the field: `[SM_750]`; if absent, every model that has
+    /// the message.
+    Models "models": models: Vec<String>, inherited;
     /// Bytes and what they mean: `[{bytes: 43FA0000, means: 500}]`; none if absent. Only an entry
     /// of `types` has them.
     Examples "examples": examples: Vec<ValueExample>, own;

@@ -135,7 +135,10 @@ fn type_name(signal: &Signal) -> Option<&str> {
 
 /// Tests whether a frame is a request with values that depend on the device model.
 pub fn depends_on_model(protocol: &Protocol, frame: &FrameLayout) -> bool {
-    let has_own_limits = |(_, signal): (SignalId, &Signal)| !signal.model_ranges.is_empty();
-    let depends = !protocol[frame.message].models.is_empty() || protocol.signals_of(frame).any(has_own_limits);
+    let message = &protocol[frame.message];
+    let lacks =
+        |signal: &Signal| protocol.models_of(message).any(|model| protocol.lacking(message, signal, model).is_some());
+    let depends_itself = |(_, signal): (SignalId, &Signal)| !signal.model_ranges.is_empty() || lacks(signal);
+    let depends = !message.models.is_empty() || protocol.signals_of(frame).any(depends_itself);
     frame.is_to_module() && frame.set.is_none() && depends && !frame.signals.is_empty()
 }

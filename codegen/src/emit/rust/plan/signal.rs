@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::doc::{self, Comment};
 use super::encoding::Coding;
-use super::literal::decimal;
+use super::literal::{decimal, hexadecimal};
 use super::models::Models;
 use super::naming::{Pool, member};
 use super::place::Written;
@@ -13,7 +13,7 @@ use super::scales::Scales;
 use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
-use crate::model::{self, Array, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
+use crate::model::{self, Array, Lacking, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
 use crate::syntax::tree::Path;
 
 /// A signal.
@@ -40,6 +40,8 @@ pub struct Signal {
     pub specials: Vec<(TokenStream, String)>,
     /// Whether the last of them says that there is no value.
     pub has_absent: bool,
+    /// The bits that device models do not have: variant of the model, bits, and what they are there.
+    pub lacking: Vec<(Ident, [TokenStream; 2])>,
     /// Whether its scale depends on the device model.
     pub is_by_model: bool,
     /// The methods for device models, if its scale depends on the model.
@@ -161,6 +163,7 @@ impl Context<'_> {
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),
             specials: signal.specials.iter().map(|known| (as_signed(known.raw), known.name.clone())).collect(),
             has_absent: signal.has_absent,
+            lacking: self.lacking(message, signal),
             is_by_model: !signal.encoding.by_model().is_empty(),
             scales,
             values: named_values(signal).iter().zip(values).map(special).collect(),
@@ -168,6 +171,15 @@ impl Context<'_> {
             constant,
             coding,
         }
+    }
+
+    /// Plans the bits that the models of a message do not have.
+    fn lacking(&self, message: &Message, signal: &model::Signal) -> Vec<(Ident, [TokenStream; 2])> {
+        let Self { protocol, models, .. } = *self;
+        let bits = |bits: u64| hexadecimal(bits, signal.place.width());
+        let row = |known: Lacking| (models.variant(known.model).clone(), [known.mask, known.blank].map(bits));
+        let lacking = protocol.models_of(message).filter_map(|model| protocol.lacking(message, signal, model));
+        lacking.map(row).collect()
     }
 
     fn member(
@@ -194,7 +206,8 @@ impl Context<'_> {
         let (title, unit) = (doc::title(doc, message.field_name(signal)), Unit::new(signal, self.scaled).phrase);
         let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
         let (place, optional) = (Some(places(message, signal)), optional(message, signal));
-        let facts = [place, optional, coding.step.clone(), range, specials(signal)];
+        let only = only_on(self.protocol, signal);
+        let facts = [place, optional, coding.step.clone(), range, specials(signal), only];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
         let models = models(self.protocol, signal);
         format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
@@ -256,6 +269,12 @@ fn optional(message: &Message, signal: &model::Signal) -> Option<String> {
 fn least(message: &Message, signal: &model::Signal) -> String {
     let lengths = message.lengths.iter().filter(|length| **length >= signal.end());
     lengths.map(u8::to_string).collect::<Vec<_>>().join(" or ")
+}
+
+/// Names the only device models that have a signal.
+fn only_on(protocol: &Protocol, signal: &model::Signal) -> Option<String> {
+    let names: Vec<_> = signal.models.iter().map(|model| format!("`{}`", protocol[*model].name)).collect();
+    (!names.is_empty()).then(|| format!("only on {}", names.join(" and ")))
 }
 
 /// Says that limits depend on the device model, and which models have none.

@@ -115,7 +115,7 @@ impl StatusBit {
     fn new(protocol: &Protocol, word: &model::StatusWord, bit: &model::StatusBit) -> Self {
         Self {
             constant: screaming(&bit.name),
-            comment: Comment::item(protocol, &bit.doc, &bit_sentence(bit), Some(&word.doc)),
+            comment: Comment::item(protocol, &bit.doc, &bit_sentence(protocol, bit), Some(&word.doc)),
             mask: hexadecimal(1_u64 << bit.bit, word.width.next_power_of_two().max(8)),
             constructor: ident(bit.severity.map_or("new", severity_name)),
             number: Literal::u8_unsuffixed(bit.bit),
@@ -125,14 +125,16 @@ impl StatusBit {
     }
 }
 
-fn bit_sentence(bit: &model::StatusBit) -> String {
+fn bit_sentence(protocol: &Protocol, bit: &model::StatusBit) -> String {
+    let names: Vec<_> = bit.models.iter().map(|model| format!("`{}`", protocol[*model].name)).collect();
+    let only = if names.is_empty() { String::new() } else { format!(", only on {}", names.join(" and ")) };
     let severity = bit.severity.map_or_else(String::new, |severity| format!(", {}", severity_name(severity)));
     let title = doc::title(&bit.doc, &bit.name);
     let remarks =
         [("Set when", &bit.set_when), ("Cleared when", &bit.clear_when), ("Effect:", &bit.effect), ("LED:", &bit.led)];
     let remarks =
         remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", remark.as_ref()?.in_rust_doc())));
-    let sentences = std::iter::once(format!("{title}: bit {}{severity}", bit.bit)).chain(remarks);
+    let sentences = std::iter::once(format!("{title}: bit {}{severity}{only}", bit.bit)).chain(remarks);
     sentences.map(|text| doc::sentence_of(&text)).collect::<Vec<_>>().join(" ")
 }
 

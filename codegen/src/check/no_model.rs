@@ -1,0 +1,37 @@
+#![doc = include_str!("../rules/no_model.md")]
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Doc, ModelId, Protocol};
+use crate::rule::rules;
+
+rules! {
+    NO_MODEL "no_model" Check ERROR;
+}
+
+pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
+    for message in &protocol.messages {
+        for signal in &message.signals {
+            let name = format!("{}.{}", message.name, signal.name);
+            if is_nowhere(&signal.models, |model| message.is_of(model)) {
+                diagnostics.push_first(nowhere(&signal.doc, &name));
+            }
+            let word = signal.encoding.status_word().map(|word| &protocol[word]);
+            for bit in word.into_iter().flat_map(|word| &word.bits) {
+                if is_nowhere(&bit.models, |model| message.is_of(model) && signal.is_of(model)) {
+                    diagnostics.push_first(nowhere(&bit.doc, &format!("{name}.{}", bit.name)));
+                }
+            }
+        }
+    }
+}
+
+/// Tests whether none of the models in a list has what is around.
+fn is_nowhere(models: &[ModelId], is_around: impl Fn(ModelId) -> bool) -> bool {
+    !models.is_empty() && !models.iter().any(|model| is_around(*model))
+}
+
+fn nowhere(doc: &Doc, name: &str) -> Diagnostic {
+    let text = format!("no device model has `{name}`: none of these models has what is around it");
+    let help = "correct the list, or that of the message or the field";
+    Diagnostic::error(&NO_MODEL, doc.path.key("models").at_key(), text).help(help)
+}
