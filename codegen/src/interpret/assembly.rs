@@ -42,6 +42,8 @@ struct Transfer<M> {
     peers: Peers,
     /// Each part that came: how many come before it, its data, and its frame.
     parts: Vec<(usize, Vec<u8>, M)>,
+    /// Whether a frame said that no other follows.
+    is_ended: bool,
     /// The last frame.
     frame: Frame,
     decoded: Decoded,
@@ -116,7 +118,7 @@ impl<M: Clone> Assembly<M> {
             other => {
                 ended.extend(other.map(|open| self.end(protocol, model, open, None)));
                 let (frame, decoded) = (frame.clone(), decoded.clone());
-                self.transfers.push(Transfer { long: id, peers, parts: Vec::new(), frame, decoded });
+                self.transfers.push(Transfer { long: id, peers, parts: Vec::new(), is_ended: false, frame, decoded });
                 self.transfers.len() - 1
             }
         };
@@ -126,6 +128,7 @@ impl<M: Clone> Assembly<M> {
         (transfer.frame, transfer.decoded) = (frame.clone(), decoded.clone());
         let is_end = expected.unwrap_or(long.parts_of(long.longest())) <= part.index + 1;
         transfer.parts.push((part.index, part.data, mark));
+        transfer.is_ended = part.is_last;
         if is_end {
             ended.push(self.end(protocol, model, open, expected));
         }
@@ -195,7 +198,8 @@ impl<M: Clone> Transfer<M> {
     ) -> Assembled<M> {
         let incomplete = self.missing(long, model, expected);
         let (size, parts) = (usize::from(long.parts.size), self.parts.last().map_or(0, |(index, _, _)| index + 1));
-        let mut joined = Joined { data: vec![0; parts * size], came: vec![false; parts * size], count };
+        let (data, came) = (vec![0; parts * size], vec![false; parts * size]);
+        let mut joined = Joined { data, came, count, is_ended: self.is_ended };
         for (index, data, _) in &self.parts {
             let bytes = index * size..(index + 1) * size;
             joined.data[bytes.clone()].copy_from_slice(data);
@@ -234,6 +238,9 @@ impl Part {
         frame: &Frame,
         decoded: &Decoded,
     ) -> Option<Self> {
+        if decoded.is_error_reply() {
+            return None;
+        }
         let bits = |signal| decoded.signals.iter().find(|reading| reading.signal == signal).map(|reading| reading.bits);
         let (number, data) = (bits(long.parts.number)?, bits(long.parts.data)?);
         let index = number.checked_sub(long.first(model)?.into())?;

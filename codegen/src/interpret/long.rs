@@ -20,6 +20,8 @@ pub struct Joined {
     pub came: Vec<bool>,
     /// How many elements the array of varying length has, if that is known.
     pub count: Option<usize>,
+    /// Whether a frame said that it is the last one.
+    pub is_ended: bool,
 }
 
 /// What the joined parts say.
@@ -61,7 +63,7 @@ impl Joined {
 
     /// Notes that some of the elements may be none.
     fn count_note(&self, long: &LongMessage) -> Option<Note> {
-        let array = long.varying().filter(|_| self.count.is_none())?;
+        let array = long.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
         let text = format!("nothing says how many of the elements of `{}` are real", array.name);
         Some(Note { rule: NoteRule::Count, text })
     }

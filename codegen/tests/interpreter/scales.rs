@@ -84,7 +84,7 @@ fn a_module_sends_by_the_scale_of_its_model() {
         let model = Some(model(&rectifier, name));
         let kind = Some(canspec_codegen::model::Kind::Reply);
         let reply = Sent { kind, access: None, model, message: "set_output", to: None, source: None };
-        sent(&rectifier, reply, &values).map(|frame| printed(&frame)).map_err(|refusal| refusal.0)
+        sent(&rectifier, reply, &values).map(|frames| frames.iter().map(printed).collect()).map_err(|refusal| refusal.0)
     };
     // 22 x 20 and 25 x 2; 22 x 30 and (25 + 40) x 2.
     assert_eq!(reply("R4850_X20").as_deref(), Ok("005#01B83200"));
