@@ -392,30 +392,53 @@ pub enum Model {
     /// `R4830S1`. Section 0.3, 7.3, 10.2.
     ///
     /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-    /// because each source had these models.
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
     R4830s1,
     /// `R4830G2`. Section 0.3, 10.2.
     ///
     /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-    /// because each source had these models.
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
+    ///
+    /// Erratum N14: printed is "no scale for the R4830G2 and the R4850N2", used is "a raw number on these
+    /// models", because that of another model may be wrong.
     R4830g2,
     /// `R4850G2`. Section 0.3, 7.3, 10.2.
     ///
     /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-    /// because each source had these models.
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
     ///
-    /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "a raw
-    /// number; its range is 0 to 1250 for the models of P, and 0 to 1800 for the R4850G2, which is 60 A x
-    /// 30", because the scale depends on the model, and on the R4850G2 on the source too.
+    /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
+    /// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+    /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
+    /// disagree on the R4850G2, so each has a model.
     R4850g2,
+    /// `R4850G2_20`: R4850G2 as in C, where 20 stands for 1 A. Section 0.3, 7.3, 10.2.
+    ///
+    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
+    ///
+    /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
+    /// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+    /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
+    /// disagree on the R4850G2, so each has a model.
+    ///
+    /// Erratum N12: printed is "20 as the raw number for 1 A in C, and no range", used is "a model
+    /// `R4850G2_20` with the voltages of X, and without a limit of its current", because C has the same
+    /// model as X; the 60 A of X go with its 30 for 1 A.
+    ///
+    /// Erratum N15: printed is "20 in C without saying for what, and 37.70 A as the greatest current of
+    /// another run", used is "20 for setting and for 01 76 on the `R4850G2_20`", because X has one number
+    /// for both; but 37.70 A is 1131 / 30, so C perhaps divides by 30, and P05 has 1130.
+    R4850g2_20,
     /// `R4850G6`. Section 0.3, 7.3, 10.2.
     ///
     /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-    /// because each source had these models.
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
     ///
     /// Erratum Z17: printed is "63.3 A as the full current of the R4850G6 in P, 53.5 A in E", used is "63.3
     /// A as a fact of the model", because P compared it with the measured current, and its examples of 10.3
@@ -424,25 +447,32 @@ pub enum Model {
     /// `R4850N2`. Section 0.3, 10.2.
     ///
     /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-    /// because each source had these models.
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
+    ///
+    /// Erratum N14: printed is "no scale for the R4830G2 and the R4850N2", used is "a raw number on these
+    /// models", because that of another model may be wrong.
     R4850n2,
     /// `R4875G1`. Section 0.3, 10.2.
     ///
     /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-    /// because each source had these models.
+    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+    /// other models", because each source had these models.
     ///
-    /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "a raw
-    /// number; its range is 0 to 1250 for the models of P, and 0 to 1800 for the R4850G2, which is 60 A x
-    /// 30", because the scale depends on the model, and on the R4850G2 on the source too.
+    /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
+    /// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+    /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
+    /// disagree on the R4850G2, so each has a model.
+    ///
+    /// Erratum N13: printed is "15 as the raw number for 1 A in K, for setting alone", used is "15 for
+    /// setting and for 01 76", because X has one number for both.
     R4875g1,
 }
 
 impl Model {
     /// Every device model.
-    pub const ALL: [Self; 6] =
-        [Self::R4830s1, Self::R4830g2, Self::R4850g2, Self::R4850g6, Self::R4850n2, Self::R4875g1];
+    pub const ALL: [Self; 7] =
+        [Self::R4830s1, Self::R4830g2, Self::R4850g2, Self::R4850g2_20, Self::R4850g6, Self::R4850n2, Self::R4875g1];
 
     /// Returns the vendor's name.
     #[must_use]
@@ -451,6 +481,7 @@ impl Model {
             Self::R4830s1 => "R4830S1",
             Self::R4830g2 => "R4830G2",
             Self::R4850g2 => "R4850G2",
+            Self::R4850g2_20 => "R4850G2_20",
             Self::R4850g6 => "R4850G6",
             Self::R4850n2 => "R4850N2",
             Self::R4875g1 => "R4875G1",
@@ -476,6 +507,7 @@ const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
     (Model::R4830s1 as u8, Some((41.0, 58.600_585_937_5))),
     (Model::R4830g2 as u8, None),
     (Model::R4850g2 as u8, Some((41.5, 58.5))),
+    (Model::R4850g2_20 as u8, Some((41.5, 58.5))),
     (Model::R4850g6 as u8, Some((41.0, 58.600_585_937_5))),
     (Model::R4850n2 as u8, None),
     (Model::R4875g1 as u8, None),
@@ -486,6 +518,7 @@ const DEFAULT_OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
     (Model::R4830s1 as u8, Some((48.0, 58.400_390_625))),
     (Model::R4830g2 as u8, None),
     (Model::R4850g2 as u8, Some((48.0, 58.5))),
+    (Model::R4850g2_20 as u8, Some((48.0, 58.5))),
     (Model::R4850g6 as u8, Some((48.0, 58.400_390_625))),
     (Model::R4850n2 as u8, None),
     (Model::R4875g1 as u8, None),
@@ -496,6 +529,7 @@ const OVERVOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
     (Model::R4830s1 as u8, None),
     (Model::R4830g2 as u8, None),
     (Model::R4850g2 as u8, Some((56.5, 60.5))),
+    (Model::R4850g2_20 as u8, Some((56.5, 60.5))),
     (Model::R4850g6 as u8, None),
     (Model::R4850n2 as u8, None),
     (Model::R4875g1 as u8, None),
@@ -506,6 +540,7 @@ const CURRENT_LIMIT_LIMITS: &[(u8, Option<(i32, i32)>)] = &[
     (Model::R4830s1 as u8, Some((0, 1250))),
     (Model::R4830g2 as u8, None),
     (Model::R4850g2 as u8, Some((0, 1800))),
+    (Model::R4850g2_20 as u8, None),
     (Model::R4850g6 as u8, Some((0, 1250))),
     (Model::R4850n2 as u8, None),
     (Model::R4875g1 as u8, None),
@@ -516,6 +551,7 @@ const FAN_DUTY_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
     (Model::R4830s1 as u8, Some((30.0, 100.0))),
     (Model::R4830g2 as u8, Some((0.003_906_25, 100.0))),
     (Model::R4850g2 as u8, Some((0.003_906_25, 100.0))),
+    (Model::R4850g2_20 as u8, Some((0.003_906_25, 100.0))),
     (Model::R4850g6 as u8, Some((0.003_906_25, 100.0))),
     (Model::R4850n2 as u8, Some((0.003_906_25, 100.0))),
     (Model::R4875g1 as u8, Some((0.003_906_25, 100.0))),
@@ -1507,18 +1543,38 @@ impl Layout for OutputVoltage {
 /// - [`get`](GET_ACCESS): the psu answers (`point_to_point`).
 /// - [`read_all`](READ_ALL_MEASURED_DATA_ACCESS) in the set `measured_data`: the psu answers
 ///   (`point_to_point`), each psu answers (`broadcast`).
-/// - Reply `1081407F#017600000000046A`: `value` 1130.
+/// - Reply of `R4850G2` `1081407F#017600000000046A`: `value` 113/3 A.
 ///
 /// The set limit, the limit of the input current, and perhaps voltage and temperature decide it.
+///
+/// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
+/// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+/// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
+/// disagree on the R4850G2, so each has a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaximumOutputCurrent {
-    /// Output current as a raw number, whose scale depends on the model: bytes 4..7.
-    pub value: i32,
+    /// Output current or its share of the full current in steps that depend on the device model: bytes
+    /// 4..7.
+    pub value_raw: i32,
 }
 
 impl MaximumOutputCurrent {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
-    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7));
+    pub const VALUE: Signal<i32> = Signal::new("value", Place::bytes(4, 7)).by_model();
+
+    /// Returns the signal `value` of a device model; `None` of a model without a scale.
+    #[must_use]
+    pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
+        match model {
+            Model::R4830s1 => Some(Self::VALUE.on_model().unit("%").scale(2, 25)),
+            Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30)),
+            Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
+            Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25)),
+            Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
+            _ => None,
+        }
+    }
+
     /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `get`, for filters and blank frames of it.
@@ -1535,12 +1591,30 @@ impl MaximumOutputCurrent {
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
+
+    /// Returns the number that `value` is on a device model; `None` if it is none.
+    #[must_use]
+    pub fn value(&self, model: Model) -> Option<f64> {
+        Self::value_on(model)?.physical_of(self.value_raw)
+    }
+
+    /// Sets `value` to a number of a device model.
+    ///
+    /// # Errors
+    /// Refuses a model without a scale, and a value outside its limits.
+    pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
+        let signal =
+            Self::value_on(model).ok_or(Error::Meaning { message: "maximum_output_current", signal: "value" })?;
+        let raw = signal.raw_of(value, "maximum_output_current")?;
+        self.value_raw = raw;
+        Ok(())
+    }
 }
 
 impl Layout for MaximumOutputCurrent {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
-    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+    const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
 }
 
 /// Input voltage: `register` 0x178. Section 4.3.
@@ -2158,8 +2232,8 @@ impl Layout for ELabel {
 /// 1024", because P has 1024 both ways, and X divides by 1024 when it reads.
 ///
 /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-/// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-/// because each source had these models.
+/// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+/// other models", because each source had these models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputVoltageSetting {
     /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
@@ -2224,8 +2298,8 @@ impl Layout for OutputVoltageSetting {
 /// 1024", because P has 1024 both ways, and X divides by 1024 when it reads.
 ///
 /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-/// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2, none for other models",
-/// because each source had these models.
+/// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
+/// other models", because each source had these models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultOutputVoltage {
     /// Default output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
@@ -2288,8 +2362,8 @@ impl Layout for DefaultOutputVoltage {
 /// 1024", because P has 1024 both ways, and X divides by 1024 when it reads.
 ///
 /// Erratum N3: printed is "no range of 01 02 in P and 56.5 to 60.5 V in X, none of 01 09 at all", used
-/// is "that of X for R4850G2, none for the rest", because X takes it from the data sheet of that model,
-/// and has not tried it.
+/// is "that of X for R4850G2 and `R4850G2_20`, none for the rest", because X takes it from the data
+/// sheet of that model, and has not tried it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OvervoltageProtection {
     /// Overvoltage protection within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
@@ -2346,32 +2420,48 @@ impl Layout for OvervoltageProtection {
 
 /// Limit of the output current: `register` 0x103. Section 7.1, 10, 11.
 /// - [`set`](SET_ACCESS): the psu answers (`point_to_point`).
-/// - Request of `R4830S1` `108180FE#010300000000024B`: `value` 587.
+/// - Request of `R4830S1` `108180FE#010300000000024B`: `value` 46.96 %.
 ///
 /// Used on-line; a PSU loses it without power and after a time-out.
 ///
 /// Erratum Z15: printed is "load and current as the raw number divided by 1250 in P, by 1024 in O",
-/// used is "1250 for the load; a raw number for currents", because O is an older revision of P, and P
-/// compared its numbers with measured currents.
+/// used is "1250 for the load, and for currents on the models of P", because O is an older revision of
+/// P, and P compared its numbers with measured currents.
 ///
-/// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "a raw
-/// number; its range is 0 to 1250 for the models of P, and 0 to 1800 for the R4850G2, which is 60 A x
-/// 30", because the scale depends on the model, and on the R4850G2 on the source too.
+/// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
+/// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+/// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
+/// disagree on the R4850G2, so each has a model.
 ///
 /// Erratum Z17: printed is "63.3 A as the full current of the R4850G6 in P, 53.5 A in E", used is "63.3
 /// A as a fact of the model", because P compared it with the measured current, and its examples of 10.3
 /// have it; no frame depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CurrentLimit {
-    /// Limit of the output current as a raw number, whose scale depends on the model: bytes 4..7,
-    /// `0..=1800`. The limits depend on the device model. These have none: `R4830G2`, `R4850N2`, `R4875G1`.
-    pub value: i32,
+    /// Limit of the output current or of its share of the full current in steps that depend on the device
+    /// model: bytes 4..7, `0..=1800`. The limits depend on the device model. These have none: `R4830G2`,
+    /// `R4850G2_20`, `R4850N2`, `R4875G1`.
+    pub value_raw: i32,
 }
 
 impl CurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> =
-        Signal::new("value", Place::bytes(4, 7)).limits(0, 1800).model_limits(CURRENT_LIMIT_LIMITS);
+        Signal::new("value", Place::bytes(4, 7)).limits(0, 1800).model_limits(CURRENT_LIMIT_LIMITS).by_model();
+
+    /// Returns the signal `value` of a device model; `None` of a model without a scale.
+    #[must_use]
+    pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
+        match model {
+            Model::R4830s1 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
+            Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0)),
+            Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
+            Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
+            Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
+            _ => None,
+        }
+    }
+
     /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
@@ -2393,6 +2483,23 @@ impl CurrentLimit {
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
+
+    /// Returns the number that `value` is on a device model; `None` if it is none.
+    #[must_use]
+    pub fn value(&self, model: Model) -> Option<f64> {
+        Self::value_on(model)?.physical_of(self.value_raw)
+    }
+
+    /// Sets `value` to a number of a device model.
+    ///
+    /// # Errors
+    /// Refuses a model without a scale, and a value outside its limits.
+    pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
+        let signal = Self::value_on(model).ok_or(Error::Meaning { message: "current_limit", signal: "value" })?;
+        let raw = signal.raw_of(value, "current_limit")?;
+        self.value_raw = raw;
+        Ok(())
+    }
 }
 
 impl Within<CurrentLimit> {
@@ -2407,38 +2514,54 @@ impl Within<CurrentLimit> {
 
 impl Layout for CurrentLimit {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
-    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+    const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
 }
 
 /// Limit of the output current off-line: `register` 0x104. Section 7.1, 10, 11.
 /// - [`set`](SET_ACCESS): the psu answers (`point_to_point`).
-/// - Request of `R4830S1` `108180FE#01040000000000A1`: `value` 161.
+/// - Request of `R4830S1` `108180FE#01040000000000A1`: `value` 12.88 %.
 ///
 /// Kept without power; used after power-up and after a time-out.
 ///
 /// Erratum Z15: printed is "load and current as the raw number divided by 1250 in P, by 1024 in O",
-/// used is "1250 for the load; a raw number for currents", because O is an older revision of P, and P
-/// compared its numbers with measured currents.
+/// used is "1250 for the load, and for currents on the models of P", because O is an older revision of
+/// P, and P compared its numbers with measured currents.
 ///
-/// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "a raw
-/// number; its range is 0 to 1250 for the models of P, and 0 to 1800 for the R4850G2, which is 60 A x
-/// 30", because the scale depends on the model, and on the R4850G2 on the source too.
+/// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
+/// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+/// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
+/// disagree on the R4850G2, so each has a model.
 ///
 /// Erratum Z17: printed is "63.3 A as the full current of the R4850G6 in P, 53.5 A in E", used is "63.3
 /// A as a fact of the model", because P compared it with the measured current, and its examples of 10.3
 /// have it; no frame depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DefaultCurrentLimit {
-    /// Limit of the output current as a raw number, whose scale depends on the model: bytes 4..7,
-    /// `0..=1800`. The limits depend on the device model. These have none: `R4830G2`, `R4850N2`, `R4875G1`.
-    pub value: i32,
+    /// Limit of the output current or of its share of the full current in steps that depend on the device
+    /// model: bytes 4..7, `0..=1800`. The limits depend on the device model. These have none: `R4830G2`,
+    /// `R4850G2_20`, `R4850N2`, `R4875G1`.
+    pub value_raw: i32,
 }
 
 impl DefaultCurrentLimit {
     /// The signal `value`, to read or write it alone, or to ask for its limits.
     pub const VALUE: Signal<i32> =
-        Signal::new("value", Place::bytes(4, 7)).limits(0, 1800).model_limits(CURRENT_LIMIT_LIMITS);
+        Signal::new("value", Place::bytes(4, 7)).limits(0, 1800).model_limits(CURRENT_LIMIT_LIMITS).by_model();
+
+    /// Returns the signal `value` of a device model; `None` of a model without a scale.
+    #[must_use]
+    pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
+        match model {
+            Model::R4830s1 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
+            Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0)),
+            Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
+            Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
+            Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
+            _ => None,
+        }
+    }
+
     /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
@@ -2460,6 +2583,24 @@ impl DefaultCurrentLimit {
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
+
+    /// Returns the number that `value` is on a device model; `None` if it is none.
+    #[must_use]
+    pub fn value(&self, model: Model) -> Option<f64> {
+        Self::value_on(model)?.physical_of(self.value_raw)
+    }
+
+    /// Sets `value` to a number of a device model.
+    ///
+    /// # Errors
+    /// Refuses a model without a scale, and a value outside its limits.
+    pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
+        let signal =
+            Self::value_on(model).ok_or(Error::Meaning { message: "default_current_limit", signal: "value" })?;
+        let raw = signal.raw_of(value, "default_current_limit")?;
+        self.value_raw = raw;
+        Ok(())
+    }
 }
 
 impl Within<DefaultCurrentLimit> {
@@ -2474,8 +2615,8 @@ impl Within<DefaultCurrentLimit> {
 
 impl Layout for DefaultCurrentLimit {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
-    const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
+    const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
 }
 
 /// Limit of the input current: `register` 0x109. Section 7.1, 7.4, 11.3.
@@ -2486,8 +2627,8 @@ impl Layout for DefaultCurrentLimit {
 /// in the mode `maximum`.
 ///
 /// Erratum N3: printed is "no range of 01 02 in P and 56.5 to 60.5 V in X, none of 01 09 at all", used
-/// is "that of X for R4850G2, none for the rest", because X takes it from the data sheet of that model,
-/// and has not tried it.
+/// is "that of X for R4850G2 and `R4850G2_20`, none for the rest", because X takes it from the data
+/// sheet of that model, and has not tried it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputCurrentLimit {
     /// Whether the limit holds: byte 3.
