@@ -36,7 +36,7 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
             }])
         }
         Encoding::ByModel { numeral, .. } => {
-            let raw = Signal { signed: numeral.is_signed(), ..plain(signal, name) };
+            let raw = Signal { signed: numeral.is_signed(), range: signal.held(), ..plain(signal, name) };
             Written { signals: vec![raw], loss: Some("has a scale that depends on the device model; it is given raw") }
         }
         Encoding::Float => whole(vec![Signal { float: true, range, ..plain(signal, name) }]),
