@@ -269,7 +269,7 @@ fn check_units<'a>(
         let is_meant = |signal: &&Signal| signal.name == *name || message.field_name(signal) == name;
         let Some(signal) = message.signals.iter().find(is_meant) else { continue };
         let wanted = match signal.on(model).unit {
-            Some(unit) if unit.symbol == stated => continue,
+            Some(unit) if *unit.symbol == **stated => continue,
             Some(unit) => format!("the unit is {}", unit.symbol),
             None => "there is no unit".to_owned(),
         };

@@ -172,7 +172,7 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     let accesses = accesses.map(|exchange| protocol[exchange.access].name.as_str());
     let mut cells: Vec<String> = selectors.iter().map(shown).collect();
     cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
-    cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_owned()));
+    cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_string()));
     cells.push(words(message.doc.section.as_ref()));
     let models = only(protocol, &message.models).map_or(String::new(), |only| format!(" ({only})"));
     let parts = protocol.long_message(message).map_or(String::new(), |(_, long)| parts(protocol, long));
@@ -210,7 +210,7 @@ fn value(message: &Message) -> Option<&Signal> {
 fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: &Signal) -> Row {
     let mut cells = vec![String::new(); selectors + 1];
     cells.push(format!("  {}", field_name(message, signal)));
-    cells.push(signal.unit.map_or(String::new(), |unit| unit.symbol.to_owned()));
+    cells.push(signal.unit.map_or(String::new(), |unit| unit.symbol.to_string()));
     cells.push(words(signal.doc.section.as_ref().filter(|_| signal.doc.section != message.doc.section)));
     let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
     Row { cells, last: titled(title(doc), meaning(protocol, signal)), separator: ", " }

@@ -253,6 +253,6 @@ fn array(text: &mut String, protocol: &Protocol, elements: &[Option<Read>]) {
 /// Adds the unit of a number.
 fn unit(text: &mut String, (signal, reading): Read) {
     if let (Value::Integer(_) | Value::Number(_), Some(unit)) = (&reading.value, signal.unit) {
-        text.extend([" ", unit.symbol]);
+        text.extend([" ", &unit.symbol]);
     }
 }

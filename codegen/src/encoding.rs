@@ -106,13 +106,13 @@ pub trait Room {
 #[derive(Clone, Copy)]
 pub struct Words<'a> {
     pub enumerations: &'a Table<EnumerationId, Enumeration>,
-    pub status_words: &'a Table<StatusWordId, StatusWord>,
+    pub statuses: &'a Table<StatusWordId, StatusWord>,
     pub models: &'a Table<ModelId, DeviceModel>,
 }
 
 impl<'a> From<&'a Protocol> for Words<'a> {
     fn from(protocol: &'a Protocol) -> Self {
-        Self { enumerations: &protocol.enumerations, status_words: &protocol.status_words, models: &protocol.models }
+        Self { enumerations: &protocol.enumerations, statuses: &protocol.status_words, models: &protocol.models }
     }
 }
 
@@ -126,7 +126,7 @@ impl Words<'_> {
             Encoding::ByModel { signals: own, .. } => ask(&by_model::ByModel { signal, own, models: self.models }),
             Encoding::Float => ask(&float::Float { signal }),
             Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
-            Encoding::Status(id) => ask(&status::Status { signal, word: &self.status_words[*id] }),
+            Encoding::Status(id) => ask(&status::Status { signal, word: &self.statuses[*id] }),
             Encoding::Text(form) => ask(&text::Text { signal, form: *form }),
             Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),
         }

@@ -20,6 +20,7 @@ mod place;
 mod recognition;
 mod set;
 mod signal;
+mod unit;
 
 pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
@@ -41,7 +42,8 @@ pub use numeral::Numeral;
 pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
-pub use signal::{Enumeration, NamedValue, OfModel, Quantity, Range, Severity, Signal, StatusBit, StatusWord, Unit};
+pub use signal::{Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
+pub use unit::{Quantity, Symbol, Unit};
 
 use serde::{Deserialize, Serialize};
 

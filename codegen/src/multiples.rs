@@ -48,7 +48,7 @@ pub(crate) fn of_steps(unit: Unit, step: Rational) -> Option<(String, String)> {
         prefix => prefix,
     };
     let is_prefixed =
-        matches!(unit.symbol, "V" | "A" | "W" | "VA" | "var" | "Ah" | "Wh" | "Ω" | "Pa" | "Hz" | "s" | "m");
+        matches!(&*unit.symbol, "V" | "A" | "W" | "VA" | "var" | "Ah" | "Wh" | "Ω" | "Pa" | "Hz" | "s" | "m");
     is_prefixed.then(|| (format!("{prefix}{}", unit.symbol), format!("{ending}{}", unit.suffix)))
 }
 
@@ -60,10 +60,10 @@ pub fn factor(symbol: &str, unit: Unit) -> Option<Rational> {
 
 /// Returns how many `unit` one `symbol` of the language is, with or without a prefix.
 pub fn exact_factor(symbol: &str, unit: Unit) -> Option<Rational> {
-    if Unit::find(symbol) == Some(unit) {
+    if *unit.symbol == *symbol {
         return Some(Rational::ONE);
     }
-    if let (Some(one), Some(other)) = (seconds(symbol), seconds(unit.symbol)) {
+    if let (Some(one), Some(other)) = (seconds(symbol), seconds(&unit.symbol)) {
         return one.over(other);
     }
     prefixed(symbol).filter(|(known, _)| *known == unit).map(|(_, factor)| factor)

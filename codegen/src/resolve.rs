@@ -26,6 +26,7 @@ mod signals;
 mod status;
 mod texts;
 mod types;
+mod units;
 
 use std::collections::{HashMap, HashSet};
 
@@ -83,6 +84,8 @@ struct Tables {
     models: Table<ModelId, model::DeviceModel>,
     long_messages: Table<LongMessageId, model::LongMessage>,
     long_examples: Vec<model::LongExample>,
+    /// The units that the spec declares, and whether something has them.
+    units: Vec<(model::Unit, bool)>,
     /// Number of fields in the current message so far.
     fields: usize,
     /// Whether all ones mean that there is no value, unless a field says otherwise.
@@ -95,6 +98,7 @@ impl Resolver<'_> {
         let name = self.protocol_name();
         let bit_rates = self.bit_rates(&Path::default().key("bit_rates"), &self.spec.bit_rates.clone());
         let sides = self.sides();
+        self.tables.units = self.units();
         let timing = self.timing();
         self.tables.models = self.models();
         let procedures = self.procedures();
@@ -112,6 +116,7 @@ impl Resolver<'_> {
         let value_examples = self.value_examples();
         let (sequences, types, document) = (self.sequences(), self.type_docs(), self.document());
         self.check_types_used();
+        self.check_units_used();
         self.check_allowances();
         Some(Protocol {
             name,
@@ -149,7 +154,7 @@ impl Resolver<'_> {
     fn words(&self) -> Words<'_> {
         Words {
             enumerations: &self.tables.enumerations,
-            status_words: &self.tables.status_words,
+            statuses: &self.tables.status_words,
             models: &self.tables.models,
         }
     }

@@ -217,12 +217,17 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests bits against what the device model has. It returns whether limits apply to them.
     #[inline(always)]
     fn check_model(&self, bits: u64, payload: &Payload) -> Result<bool, Error> {
-        let known = self.lacking.iter().find(|(model, ..)| Some(*model) == payload.model());
-        match known {
+        match self.lacking_on(payload) {
             None => Ok(true),
             Some((_, mask, blank)) if (bits ^ blank) & mask == 0 => Ok(false),
             Some(_) => Err(self.meaningless(payload)),
         }
+    }
+
+    /// Returns the bits that the device model does not have, if there are any.
+    #[inline(always)]
+    fn lacking_on(&self, payload: &Payload) -> Option<&(u8, u64, u64)> {
+        self.lacking.iter().find(|(model, ..)| Some(*model) == payload.model())
     }
 
     /// Returns the value that limits apply to.
@@ -292,7 +297,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests the value that the caller gave against the limits, if `payload` keeps to them.
     pub(crate) fn check_asked(&self, asked: F, payload: &Payload) -> Result<(), Error> {
-        if payload.keeps_limits() { self.check(asked, payload) } else { Ok(()) }
+        if payload.keeps_limits() && self.lacking_on(payload).is_none() { self.check(asked, payload) } else { Ok(()) }
     }
 
     /// Says that a value does not fit, with the limits of what the bits hold.
@@ -348,7 +353,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     ///
     /// # Errors
     ///
-    /// The same as [`encode`](Self::encode) into a request of `message`.
+    /// The same as those of [`encode`](Self::encode) into a request of `message`.
     pub fn raw_of(&self, physical: F, message: &'static str) -> Result<R, Error> {
         let mut payload = Payload::within_limits(message, [0; 8]);
         self.encode(physical, &mut payload)?;

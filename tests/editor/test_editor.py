@@ -185,9 +185,10 @@ class Mistakes(unittest.TestCase):
         self.assert_marked(SIGNAL, "      current: {bytes: ¦true¦}", message)
 
     def test_another_word_than_those_of_the_list_is_marked(self):
-        message = "Value is not accepted. Valid values: " + ", ".join(f'"{unit}"' for unit in UNITS) + "."
-        for unit in ["volt", "[V]", "5"]:
-            self.assert_marked(SIGNAL, f"      current: {{bytes: 2, unit: ¦{unit}¦}}", message)
+        formats = "unsigned signed bcd float text bytes".split()
+        message = "Value is not accepted. Valid values: " + ", ".join(f'"{known}"' for known in formats) + "."
+        for known in ["integer", "[signed]", "5"]:
+            self.assert_marked(SIGNAL, f"      current: {{bytes: 2, as: ¦{known}¦}}", message)
 
     def test_a_text_that_is_no_number_or_place_is_marked_with_what_to_write(self):
         number = "Write a number: `12`, `-40`, `0x1F`, `41.5` or `1/1024`."

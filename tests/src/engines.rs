@@ -149,7 +149,7 @@ fn read(protocol: &Protocol, signal: &Signal, reading: &interpret::Reading) -> (
         Value::Name(text) | Value::Text(text) => text.clone(),
         Value::Status { .. } => "status".to_owned(),
     };
-    (signal.name.clone(), signal.unit.map(|unit| unit.symbol.to_owned()), bits, meaning)
+    (signal.name.clone(), signal.unit.map(|unit| unit.symbol.to_string()), bits, meaning)
 }
 
 /// Writes a value through a signal of the generated code.

@@ -14,7 +14,7 @@ mod names;
 pub mod run;
 mod yaml;
 
-use canspec_codegen::model::Protocol;
+use canspec_codegen::model::{Protocol, Symbol};
 use canspec_codegen::source::Source;
 use canspec_codegen::{Outcome, compile};
 use serde_yaml::Value;
@@ -86,6 +86,7 @@ impl Draft {
         let errata = self.all_errata();
         let timing = self.timing();
         self.name_models();
+        let units = self.own_units();
         let bus = self.bus();
         let traffic = self.traffic(&bus);
         self.exampled_types();
@@ -93,6 +94,7 @@ impl Draft {
         let models = self.device_models();
         let allow = self.allow(&traffic.messages);
         let maps = [
+            ("units", units),
             ("identifier", bus.identifier),
             ("header", bus.header),
             ("types", std::mem::take(&mut self.types)),
@@ -121,6 +123,19 @@ impl Draft {
             }
         }
         document
+    }
+
+    /// Declares units, each with a short name.
+    fn own_units(&mut self) -> Map {
+        let (mut units, mut scope) = (Map::default(), Scope::default());
+        for symbol in ["l/min", "kg", "N·m", "$&<|>"] {
+            let name = self.names.name(&mut scope);
+            if self.chance(20) && name.len() <= Symbol::LONGEST {
+                units.put(name, symbol);
+                self.units.push(symbol.to_owned());
+            }
+        }
+        units
     }
 
     fn all_errata(&mut self) -> Map {

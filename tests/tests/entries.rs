@@ -48,7 +48,7 @@ impl Visitor for Listed {
             }
             for (listed, signal) in entry.signals.iter().zip(&message.signals) {
                 assert_eq!(listed.name(), signal.name, "{name}");
-                assert_eq!(listed.unit(), signal.unit.map(|unit| unit.symbol), "{name}");
+                assert_eq!(listed.unit(), signal.unit.as_ref().map(|unit| &*unit.symbol), "{name}");
                 assert_eq!(listed.place().mask(), signal.place.mask(), "{name}");
                 let range = signal.hull(protocol.models_of(message));
                 let range = range.map(|range| [range.minimum, range.maximum].map(Rational::to_f64));

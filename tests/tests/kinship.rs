@@ -146,7 +146,7 @@ impl Words<'_> {
         let kinds = kinds.collect::<Vec<_>>().join(" and ");
         let order = format!("{:?}", signal.place.order()).to_lowercase();
         let place = format!("{order} endian {} bits from {} up", bits.width(), bits.shift());
-        let unit = signal.unit.map_or(NOTHING, |unit| unit.symbol);
+        let unit = signal.unit.as_ref().map_or(NOTHING, |unit| &*unit.symbol);
         let says = format!("{kinds}: {place}, {}, {unit}", self.encoding(signal));
         let name = format!("{message}.{}", signal.name);
         let bits = self.bits(signal).iter().map(|bit| status_bit(message, &name, bit));

@@ -62,7 +62,6 @@ fn the_validator_refuses_wrong_keys_kinds_words_and_forms_at_their_places() -> R
         ("missing_key", &["", "/timing/pause"]),
         ("wrong_kind", &["/types/heater", "/messages/temperature/access"]),
         ("name", &["/access/read/in/0"]),
-        ("unit", &["/messages/temperature/value"]),
         ("number", &["/identifier/command/bits", "/messages/temperature/value"]),
         ("range", &["/messages/temperature/fields/inside/range"]),
     ] {

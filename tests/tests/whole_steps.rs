@@ -19,7 +19,8 @@ impl Visitor for Verdicts {
         let protocol = protocol(path);
         let mut random = fastrand::Rng::with_seed(0x57E9);
         for (message, signal, known) in signals::<P>(&protocol) {
-            for model in models(&protocol).filter(|_| signal.encoding.linear().is_some()) {
+            let has_it = |model: &Option<ModelId>| model.is_none_or(|model| signal.is_of(model));
+            for model in models(&protocol).filter(has_it).filter(|_| signal.encoding.linear().is_some()) {
                 let range = limits(&protocol, message, signal, model);
                 for raw in raw_values(signal, range, &mut random) {
                     self.compare(signal, known, (model, range), raw);

@@ -78,8 +78,8 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
         Value::Name(text) | Value::Text(text) => text.clone(),
         Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).collect::<Vec<_>>().join(" "),
     };
-    let unit = signal.unit.map_or("", |unit| unit.symbol);
-    [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit.to_owned()]
+    let unit = signal.unit.map_or_else(String::new, |unit| unit.symbol.to_string());
+    [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit]
 }
 
 fn notes(outcome: &Outcome<'_>, notes: &[Note]) -> String {

@@ -179,7 +179,7 @@ fn physical(out: &mut impl Write, (_, reading): Read) -> io::Result<()> {
 fn end(out: &mut impl Write, signal: &Signal) -> io::Result<()> {
     if let Some(unit) = signal.unit {
         out.write_all(b",\"unit\":")?;
-        name(out, unit.symbol)?;
+        name(out, &unit.symbol)?;
     }
     out.write_all(b"}")
 }

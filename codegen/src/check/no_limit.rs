@@ -23,7 +23,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 
 /// Tests whether nothing limits what can do harm.
 fn is_unlimited(signal: &Signal) -> bool {
-    signal.unit.is_some_and(|unit| HARMFUL.contains(&unit.symbol)) && signal.ranges().next().is_none()
+    signal.unit.is_some_and(|unit| HARMFUL.contains(&&*unit.symbol)) && signal.ranges().next().is_none()
 }
 
 fn is_set(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {

@@ -14,7 +14,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         for signal in message.signals.iter().flat_map(Signal::on_each).filter(|signal| is_nameless(signal)) {
             let what = if has_scale(signal) { "a scale" } else { "an offset" };
             let text = format!("`{}.{}` has {what}, but neither a unit nor a title", message.name, signal.name);
-            let help = "write its `unit`; if the language does not have that unit, say it in the `title`";
+            let help = "write its `unit`; if the language does not have that unit, declare it in `units`, or say it in the `title`";
             diagnostics.push_first(Diagnostic::warning(&NO_UNIT, signal.doc.path.at_key(), text).help(help));
         }
     }

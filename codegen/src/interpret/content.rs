@@ -70,7 +70,7 @@ impl Input {
     /// Takes over a value. Without a physical value it takes the bits.
     pub fn of(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Self {
         match value {
-            Value::None => Self::Raw(bits.into()),
+            Value::None => Self::Raw(signal.raw_of(bits)),
             Value::Integer(value) => Self::Integer(*value),
             Value::Number(value) => Self::Number(*value),
             Value::Name(text) | Value::Text(text) => Self::Text(text.clone()),

@@ -30,9 +30,10 @@ impl Target {
             return Ok(Self { name: text.to_owned(), number: None });
         };
         let is_meant = |mode: &&Mode| mode.name == name || protocol.target_name(mode) == name;
-        let chosen = protocol.modes.iter().filter(is_meant).filter_map(|mode| Some(&protocol[mode.target?]));
-        let named = protocol.address_types.iter().filter(|known| known.name == name);
-        Ok(Self { name: name.to_owned(), number: Some(address(chosen.chain(named), number, &format!("{name}:3"))?) })
+        let targets: Vec<_> = protocol.modes.iter().filter(is_meant).filter_map(|mode| mode.target).collect();
+        let is_chosen = |(id, known): &(_, &AddressType)| targets.contains(id) || known.name == name;
+        let chosen = protocol.address_types.entries().filter(is_chosen).map(|(_, known)| known);
+        Ok(Self { name: name.to_owned(), number: Some(address(chosen, number, &format!("{name}:3"))?) })
     }
 }
 

@@ -1,11 +1,10 @@
 //! Signals and what their bits mean.
 
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
 use canspec_runtime::Place;
 
-use crate::model::{Doc, Element, Encoding, Kind, ModelId, place};
+use crate::model::{Doc, Element, Encoding, Kind, ModelId, Unit, place};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 use crate::text::Text;
@@ -328,70 +327,6 @@ impl Range {
     fn hull(self, other: Self) -> Self {
         Self { minimum: self.minimum.min(other.minimum), maximum: self.maximum.max(other.maximum) }
     }
-}
-
-/// A unit of the spec language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Unit {
-    /// The symbol in specs, logs and documentation.
-    pub symbol: &'static str,
-    /// The ending of a Rust field name.
-    pub suffix: &'static str,
-}
-
-impl Unit {
-    /// Every unit of the language.
-    pub const ALL: [Self; 19] = [
-        Self { symbol: "V", suffix: "v" },
-        Self { symbol: "A", suffix: "a" },
-        Self { symbol: "W", suffix: "w" },
-        Self { symbol: "VA", suffix: "va" },
-        Self { symbol: "var", suffix: "var" },
-        Self { symbol: "Ah", suffix: "ah" },
-        Self { symbol: "Wh", suffix: "wh" },
-        Self { symbol: "Ω", suffix: "ohm" },
-        Self { symbol: "Hz", suffix: "hz" },
-        Self { symbol: "°C", suffix: "c" },
-        Self { symbol: "K", suffix: "k" },
-        Self { symbol: "Pa", suffix: "pa" },
-        Self { symbol: "%", suffix: "percent" },
-        Self { symbol: "s", suffix: "s" },
-        Self { symbol: "ms", suffix: "ms" },
-        Self { symbol: "min", suffix: "min" },
-        Self { symbol: "h", suffix: "h" },
-        Self { symbol: "rpm", suffix: "rpm" },
-        Self { symbol: "m", suffix: "m" },
-    ];
-
-    /// Finds a unit by its symbol.
-    pub fn find(symbol: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|unit| unit.symbol == symbol)
-    }
-}
-
-/// It is stored as its symbol.
-impl Serialize for Unit {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.symbol.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Unit {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let symbol = String::deserialize(deserializer)?;
-        Self::find(&symbol).ok_or_else(|| D::Error::custom(format!("`{symbol}` is no unit")))
-    }
-}
-
-/// A number with a unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub struct Quantity {
-    /// The number.
-    pub value: Rational,
-    /// Its unit, if it has one.
-    pub unit: Option<Unit>,
 }
 
 impl Signal {

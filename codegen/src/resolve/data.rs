@@ -81,7 +81,7 @@ impl Resolver<'_> {
     /// Reads a unit of time.
     fn time_unit(&mut self, path: &Path, symbol: &str) -> Option<Unit> {
         let unit = self.unit(path, symbol)?;
-        if matches!(unit.symbol, "s" | "ms" | "min" | "h") {
+        if matches!(&*unit.symbol, "s" | "ms" | "min" | "h") {
             return Some(unit);
         }
         let message = format!("`{symbol}` is not a unit of time");
@@ -92,7 +92,7 @@ impl Resolver<'_> {
     /// Reads the shortest time.
     fn minimum(&mut self, path: &Path, text: &str) -> Option<Quantity> {
         let quantity = self.quantity(path, text)?;
-        self.time_unit(path, quantity.unit.map_or("", |unit| unit.symbol))?;
+        self.time_unit(path, &quantity.unit.map_or_else(String::new, |unit| unit.symbol.to_string()))?;
         Some(quantity)
     }
 

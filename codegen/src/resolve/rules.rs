@@ -9,7 +9,7 @@ rules! {
     NAME "name" Resolve ERROR;
     NUMBER "number" Resolve ERROR;
     RANGE "range" Resolve ERROR;
-    UNIT "unit" Resolve ERROR;
+    UNIT "unit" Resolve EITHER;
     PLACE "place" Resolve ERROR;
     IDENTIFIER_LAYOUT "identifier_layout" Resolve ERROR;
     TYPE "type" Resolve ERROR;

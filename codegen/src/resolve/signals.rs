@@ -17,14 +17,14 @@ const OF_MODELS: [Key; 5] = [Key::Range, Key::Default, Key::Scale, Key::Offset, 
 impl TypeOfModel {
     /// Tests whether the device model changes a key.
     fn changes(&self, key: Key) -> bool {
-        match key {
-            Key::Range => self.range.is_some(),
-            Key::Default => self.default.is_some(),
-            Key::Scale => self.scale.is_some(),
-            Key::Offset => self.offset.is_some(),
-            Key::Unit => self.unit.is_some(),
-            _ => false,
-        }
+        let changed = [
+            (Key::Range, self.range.is_some()),
+            (Key::Default, self.default.is_some()),
+            (Key::Scale, self.scale.is_some()),
+            (Key::Offset, self.offset.is_some()),
+            (Key::Unit, self.unit.is_some()),
+        ];
+        changed.contains(&(key, true))
     }
 }
 

@@ -121,7 +121,7 @@ impl Resolver<'_> {
         let scaled =
             factor.and_then(|factor| Some(Range { minimum: minimum.times(factor)?, maximum: maximum.times(factor)? }));
         if scaled.is_none() {
-            let known = unit.map_or("", |unit| unit.symbol);
+            let known = unit.map_or_else(String::new, |unit| unit.symbol.to_string());
             let message = format!("the limits `{text}` are not in {known}, the unit of the signal");
             self.error_with_help(
                 &rules::RANGE,
@@ -179,13 +179,13 @@ impl Resolver<'_> {
     /// Reads the unit of a field.
     pub fn unit_of_field(&mut self, path: &Path, symbol: &str, field: &Field) -> Option<Unit> {
         self.unit_or(path, symbol, || {
-            let otherwise = || format!("{}. For another leave `unit` out, and say it in `title`", known_units());
+            let otherwise = || format!("{}. Declare another one in `units`", known_units());
             scaled_unit(symbol, field).unwrap_or_else(otherwise)
         })
     }
 
     fn unit_or(&mut self, path: &Path, symbol: &str, help: impl Fn() -> String) -> Option<Unit> {
-        let unit = Unit::find(symbol);
+        let unit = Unit::find(symbol).or_else(|| self.declared_unit(symbol));
         if unit.is_none() {
             let help = match multiples::respelled(symbol) {
                 Some(unit) => format!("did you mean `{}`?", unit.symbol),
@@ -335,7 +335,7 @@ fn respelled(name: &str) -> Option<String> {
 
 /// Names the units of the language.
 fn known_units() -> String {
-    let known: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
+    let known: Vec<_> = Unit::ALL.iter().map(|unit| &*unit.symbol).collect();
     format!("the units are {}", known.join(" "))
 }
 

@@ -1,6 +1,6 @@
 //! Restricts values beyond their kind: to one of a few words, to a number, or to a place.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use crate::model::NoteRule;
 use crate::model::{Failure, Kind, Unit};
@@ -28,6 +28,8 @@ enum Demand {
     Form(Form),
     /// One of a few words.
     Choice(Vec<&'static str>),
+    /// One of a few words, or any other text.
+    Suggestion(Vec<String>),
     /// Whatever its kind allows.
     Anything,
 }
@@ -89,7 +91,7 @@ fn of_field(key: Key) -> Demand {
         Key::In => Demand::Choice(kinds()),
         Key::Absent => Demand::Choice(ABSENT.map(|(word, _)| word).to_vec()),
         Key::Outside => Demand::Choice(OUTSIDE.to_vec()),
-        Key::Unit => Demand::Choice(Unit::ALL.map(|unit| unit.symbol).to_vec()),
+        Key::Unit => Demand::Suggestion(Unit::ALL.map(|unit| unit.symbol.to_string()).to_vec()),
         Key::Type
         | Key::Values
         | Key::Fields
@@ -129,6 +131,10 @@ impl Demand {
             Self::Choice(words) => {
                 value.remove("type");
                 value.insert("enum".to_owned(), words.into());
+            }
+            Self::Suggestion(words) => {
+                let text = value.remove("type").unwrap_or_else(|| "string".into());
+                value.insert("anyOf".to_owned(), json!([{ "enum": words }, { "type": text }]));
             }
             Self::Anything => {}
         }

@@ -37,6 +37,9 @@ pub struct Spec {
     /// Speeds of the bus in whole kbit/s, a list: `[125 kbit/s, 250 kbit/s]`; none if absent.
     #[serde(default)]
     pub bit_rates: Vec<String>,
+    /// Units beside those of the language, by their names in Rust: `{l_per_min: l/min}`; none if absent.
+    #[serde(default)]
+    pub units: Map<String>,
     /// Fields of the identifier by name. Together with `ones` and `zeros` they fill all of its 11
     /// or 29 bits: `{command: {bits: 28..16}, target: {bits: 15..8}, source: {bits: 7..0}}`.
     #[cfg_attr(feature = "schema", schemars(schema_with = "crate::schema::identifier"))]

@@ -82,7 +82,6 @@ header: []
             "mini.yaml:12:5: error[wrong_kind]: expected a map for `match`, found a list",
             "mini.yaml:13:5: error[wrong_kind]: expected a text for `title`, found a map",
             "mini.yaml:15:9: error[wrong_kind]: expected a map for an item of `messages.one.examples`, found the text `text`",
-            "mini.yaml:16:10: error[wrong_kind]: expected a text for `reply`, found a list",
             "mini.yaml:16:29: error[wrong_kind]: expected a list for `notes`, found the text `none`",
             "mini.yaml:17:5: error[wrong_kind]: expected a map for `value`, found a list",
             "mini.yaml:18:16: error[wrong_kind]: expected a text for an item of `bit_rates`, found a list",

@@ -2,17 +2,35 @@
 
 use canspec_codegen::interpret::{Content, Sent, Value, decode, encode, sent};
 
-use super::{feature, frame, model, notes, printed, requested, values};
+use super::{feature, frame, model, notes, printed, requested, values, written};
 
-/// What R4850_X30 makes of a raw number is a third less than what R4850_X20 makes of it.
-const REPLY: &str = "005#02943200";
+/// A reply has no limits.
+const SPEC: &str = r#"
+canspec: 1
+protocol: meter
+title: A meter
+document: {title: Made up, version: "1"}
+length: 1
+identifier: {command: {bits: 10..1}, sender: {bits: 0}}
+types: {current: {unit: A, range: 0..10}}
+addressing: {meter: {request: {sender: 0}, one: {sender: 1}}}
+access: {read: {request: {}, reply: {}, in: [reply], answers: {meter: one}}}
+messages: {current: {section: "1", match: {command: 2}, access: [read], value: {bytes: 0, type: current}}}
+models:
+  FINE:    {section: "1", types: {current: {scale: 1/10}}}
+  SHIFTED: {section: "1", types: {current: {scale: 1/2, offset: -40}}}
+  OTHER:   {section: "1"}
+"#;
+
+/// Each model makes another current of it.
+const FRAME: &str = "004#02943200";
 
 #[test]
 fn without_a_model_only_the_raw_number_is_known() {
     let rectifier = feature("scales_by_model");
-    let found = values(&rectifier, REPLY);
+    let found = values(&rectifier, FRAME);
     assert_eq!(found, [("current".to_owned(), Value::None), ("temperature".to_owned(), Value::None)]);
-    assert_eq!(notes(&rectifier, REPLY), ["model_dependent", "model_dependent"]);
+    assert_eq!(notes(&rectifier, FRAME), ["model_dependent", "model_dependent"]);
 }
 
 #[test]
@@ -21,7 +39,7 @@ fn a_model_says_what_a_step_is() {
     // 660 / 20, 660 / 30, 660 / 1250; 50 / 2, and 50 / 2 - 40.
     let expected = [("R4830", 0.528, 25.0), ("R4850_X20", 33.0, 25.0), ("R4850_X30", 22.0, -15.0)];
     for (name, current, temperature) in expected {
-        let decoded = decode(&rectifier, Some(model(&rectifier, name)), &frame(REPLY)).expect("a reply");
+        let decoded = decode(&rectifier, Some(model(&rectifier, name)), &frame(FRAME)).expect("a request");
         let found: Vec<_> = decoded.signals.iter().map(|reading| reading.value.clone()).collect();
         assert_eq!(found, [Value::Number(current), Value::Number(temperature)], "{name}");
         assert_eq!(decoded.notes, [], "{name}");
@@ -32,7 +50,7 @@ fn a_model_says_what_a_step_is() {
 fn a_frame_comes_back_with_and_without_a_model() {
     let rectifier = feature("scales_by_model");
     let models = ["R4830", "R4850_X20", "R4850_X30"].map(|name| Some(model(&rectifier, name)));
-    for text in [REPLY, "004#01B83200", "004#FFFF3200"] {
+    for text in [FRAME, "004#01B83200", "004#FFFF3200"] {
         for model in models.into_iter().chain([None]) {
             let decoded = decode(&rectifier, model, &frame(text)).expect("a frame of the protocol");
             let encoded = encode(&rectifier, model, &Content::of(&rectifier, &decoded));
@@ -78,15 +96,18 @@ fn raw_numbers_keep_to_the_widest_raw_limits() {
 
 #[test]
 fn a_module_sends_by_the_scale_of_its_model() {
-    let rectifier = feature("scales_by_model");
-    let values = [("current", "22A"), ("temperature", "25°C")].map(|(name, text)| (name.to_owned(), text.to_owned()));
-    let reply = |name: &str| {
-        let model = Some(model(&rectifier, name));
+    let meter = written(SPEC);
+    let reply = |name: &str, value: &str| {
         let kind = Some(canspec_codegen::model::Kind::Reply);
-        let reply = Sent { kind, access: None, model, message: "set_output", to: None, source: None };
-        sent(&rectifier, reply, &values).map(|frames| frames.iter().map(printed).collect()).map_err(|refusal| refusal.0)
+        let reply =
+            Sent { kind, access: None, model: Some(model(&meter, name)), message: "current", to: None, source: None };
+        let values = [("value".to_owned(), value.to_owned())];
+        let frames = sent(&meter, reply, &values);
+        frames.map(|frames| frames.iter().map(printed).collect::<String>()).map_err(|refusal| refusal.0)
     };
-    // 22 x 20 and 25 x 2; 22 x 30 and (25 + 40) x 2.
-    assert_eq!(reply("R4850_X20").as_deref(), Ok("005#01B83200"));
-    assert_eq!(reply("R4850_X30").as_deref(), Ok("005#02948200"));
+    // 12 x 10 = 0x78, and (12 + 40) x 2 = 0x68.
+    assert_eq!(reply("FINE", "12A").as_deref(), Ok("005#78"));
+    assert_eq!(reply("SHIFTED", "12A").as_deref(), Ok("005#68"));
+    let refusal = "current.value: its scale depends on the device model; choose FINE or SHIFTED";
+    assert_eq!(reply("OTHER", "12A"), Err(refusal.to_owned()), "nobody says what its steps are");
 }

@@ -144,7 +144,8 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests a number with a fraction that is rounded to `raw`.
     fn check_fraction(&self, value: f64, raw: R, payload: &Payload) -> Result<(), Error> {
         let sent = self.physical(raw).number(self.scale).to_f64();
-        if sent.partial_cmp(&value) == Some(Ordering::Equal) || !payload.keeps_limits() {
+        let is_exact = sent.partial_cmp(&value) == Some(Ordering::Equal);
+        if is_exact || !payload.keeps_limits() || !self.check_model(raw.to_bits(), payload)? {
             return Ok(());
         }
         let number = Number::Float(value);

@@ -104,9 +104,6 @@ pub const RECTIFIER_MODE: Mode = Mode {
 /// Set.
 pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
 
-/// Read.
-pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
-
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
@@ -154,108 +151,27 @@ const CURRENT_LIMITS: &[(u8, Option<(u16, u16)>)] = &[
     (Model::R4850X30 as u8, Some((0, 1605))),
 ];
 
-/// Set current: `command` 0x002. Section 10.
+/// Set output: `command` 0x002. Section 10.
 /// - [`set`](SET_ACCESS): nobody answers (`rectifier`).
-/// - Request of `R4850_X20` `004#000001B8`: `value` 22 A.
+/// - Request of `R4850_X20` `004#01B83200`: `current` 22 A, `temperature` 25 °C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SetCurrent {
-    /// Limit of the output current in steps that depend on the device model: bytes 2..3, `0..=1605`, raw
-    /// 65535 is `unlimited`. The limits depend on the device model.
-    pub value_raw: u16,
-}
-
-impl SetCurrent {
-    /// The signal `value`, to read or write it alone, or to ask for its limits.
-    pub const VALUE: Signal<u16> = Signal::new("value", Place::bytes(2, 3))
-        .limits(0, 1605)
-        .model_limits(CURRENT_LIMITS)
-        .specials(&[(65_535, "unlimited")])
-        .by_model();
-    /// The value of `value` that stands for `unlimited`.
-    pub const VALUE_UNLIMITED: u16 = 65_535;
-
-    /// Returns the signal `value` of a device model; `None` of a model without a scale.
-    #[must_use]
-    pub const fn value_on(model: Model) -> Option<Signal<u16, f64>> {
-        match model {
-            Model::R4830 => Some(Self::VALUE.on_model().scale(1, 1250).limits(0.0, 1.0)),
-            Model::R4850X20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20).limits(0.0, 50.0)),
-            Model::R4850X30 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 53.5)),
-        }
-    }
-
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
-    /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("set_current", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
-
-    /// Returns the values for a device model if it takes them.
-    ///
-    /// # Errors
-    /// Refuses a model that does not have the message, and values outside its limits.
-    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
-        Self::SET.within(model, &self)?;
-        Ok(Within { values: self, model })
-    }
-
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET.request_to(route, self)
-    }
-
-    /// Returns the value on a device model: Limit of the output current. It is `None` if there is none.
-    #[must_use]
-    pub fn value(&self, model: Model) -> Option<f64> {
-        Self::value_on(model)?.physical_of(self.value_raw)
-    }
-
-    /// Sets the value on a device model: Limit of the output current.
-    ///
-    /// # Errors
-    /// Refuses a model without a scale, and a value outside its limits.
-    pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal = Self::value_on(model).ok_or(Error::Meaning { message: "set_current", signal: "value" })?;
-        let raw = signal.raw_of(value, "set_current")?;
-        self . value_raw = raw;
-        Ok(())
-    }
-}
-
-impl Within<SetCurrent> {
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        SetCurrent::SET.request_within(self.model, route, &self.values)
-    }
-}
-
-impl Layout for SetCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
-    const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
-}
-
-/// State: `command` 0x003. Section 11.
-/// - [`read`](READ_ACCESS): the module answers (`rectifier`).
-/// - Reply of `R4850_X30` `007#02943200`: `current` 22 A, `temperature` -15 °C.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct State {
-    /// Current in steps that depend on the device model: bytes 0..1, `0..=1605`. The limits depend on the
-    /// device model.
+pub struct SetOutput {
+    /// Limit of the current in steps that depend on the device model: bytes 0..1, `0..=1605`, raw 65535 is
+    /// `unlimited`. The limits depend on the device model.
     pub current_raw: u16,
     /// Temperature in steps that depend on the device model: byte 2.
     pub temperature_raw: u8,
 }
 
-impl State {
+impl SetOutput {
     /// The signal `current`, to read or write it alone, or to ask for its limits.
-    pub const CURRENT: Signal<u16> =
-        Signal::new("current", Place::bytes(0, 1)).limits(0, 1605).model_limits(CURRENT_LIMITS).by_model();
+    pub const CURRENT: Signal<u16> = Signal::new("current", Place::bytes(0, 1))
+        .limits(0, 1605)
+        .model_limits(CURRENT_LIMITS)
+        .specials(&[(65_535, "unlimited")])
+        .by_model();
+    /// The value of `current` that stands for `unlimited`.
+    pub const CURRENT_UNLIMITED: u16 = 65_535;
 
     /// Returns the signal `current` of a device model; `None` of a model without a scale.
     #[must_use]
@@ -282,53 +198,71 @@ impl State {
 
     /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
-    /// The access `read`, for filters and blank frames of it.
-    pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x003)).length(4);
+    /// The access `set`, for filters and blank frames of it.
+    pub const SET: Exchange = SET_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
 
-    /// Builds the request [`read`](READ_ACCESS).
+    /// Returns the values for a device model if it takes them.
     ///
     /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
+    /// Refuses a model that does not have the message, and values outside its limits.
+    pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
+        Self::SET.within(model, &self)?;
+        Ok(Within { values: self, model })
     }
 
-    /// Returns the value on a device model: current. It is `None` if there is none.
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        Self::SET.request_to(route, self)
+    }
+
+    /// Returns the number that `current` is on a device model; `None` if it is none.
     #[must_use]
     pub fn current(&self, model: Model) -> Option<f64> {
         Self::current_on(model)?.physical_of(self.current_raw)
     }
 
-    /// Sets the value on a device model: current.
+    /// Sets `current` to a number of a device model.
     ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_current(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal = Self::current_on(model).ok_or(Error::Meaning { message: "state", signal: "current" })?;
-        let raw = signal.raw_of(value, "state")?;
-        self . current_raw = raw;
+        let signal = Self::current_on(model).ok_or(Error::Meaning { message: "set_output", signal: "current" })?;
+        self.current_raw = signal.raw_of(value, "set_output")?;
         Ok(())
     }
 
-    /// Returns the value on a device model: temperature. It is `None` if there is none.
+    /// Returns the number that `temperature` is on a device model; `None` if it is none.
     #[must_use]
     pub fn temperature(&self, model: Model) -> Option<f64> {
         Self::temperature_on(model)?.physical_of(self.temperature_raw)
     }
 
-    /// Sets the value on a device model: temperature.
+    /// Sets `temperature` to a number of a device model.
     ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_temperature(&mut self, model: Model, value: f64) -> Result<(), Error> {
-        let signal = Self::temperature_on(model).ok_or(Error::Meaning { message: "state", signal: "temperature" })?;
-        let raw = signal.raw_of(value, "state")?;
-        self . temperature_raw = raw;
+        let signal =
+            Self::temperature_on(model).ok_or(Error::Meaning { message: "set_output", signal: "temperature" })?;
+        self.temperature_raw = signal.raw_of(value, "set_output")?;
         Ok(())
     }
 }
 
-impl Layout for State {
+impl Within<SetOutput> {
+    /// Builds the request [`set`](SET_ACCESS) with these values.
+    ///
+    /// # Errors
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
+        SetOutput::SET.request_within(self.model, route, &self.values)
+    }
+}
+
+impl Layout for SetOutput {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT, &Self::TEMPERATURE];
     const DECODE: Decode<Self> =
         |data| Self { current_raw: Self::CURRENT.get(data), temperature_raw: Self::TEMPERATURE.get(data) };
@@ -341,12 +275,8 @@ impl Layout for State {
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
-    /// Set current.
-    SetCurrent(SetCurrent),
-    /// The request of `state` by `read`.
-    ReadState,
-    /// State.
-    State(State),
+    /// Set output.
+    SetOutput(SetOutput),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -389,45 +319,21 @@ impl Protocol for Message {
     fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
         let id = frame.raw_id();
         let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x002 => Recognised::request(&SetCurrent::SET, Self::SetCurrent(Layout::decode(data))),
-            0x003 => Recognised::request(&State::READ, Self::ReadState),
-            _ => return None,
-        };
-        Some(recognised)
-    }
-
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
-    #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x003)
-            .then(|| Recognised::reply(&State::READ, Self::State(Layout::decode(data))))
+        (Identifier::COMMAND.of(id) == 0x002)
+            .then(|| Recognised::request(&SetOutput::SET, Self::SetOutput(Layout::decode(data))))
     }
 
     fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
-            0x002 | 0x003 => &[4],
-            _ => &[],
-        }
-    }
-
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x003 { &[4] } else { &[] }
+        if Identifier::COMMAND.of(id) == 0x002 { &[4] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
-            Self::SetCurrent(message) => task.run(message),
-            Self::State(message) => task.run(message),
-            Self::ReadState => task.run(&()),
+            Self::SetOutput(message) => task.run(message),
         }
     }
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::of::<SetCurrent>("set current", &[("command", 0x002)], &[&SetCurrent::SET]),
-    Entry::of::<State>("state", &[("command", 0x003)], &[&State::READ]),
-];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<SetOutput>("set output", &[("command", 0x002)], &[&SetOutput::SET])];

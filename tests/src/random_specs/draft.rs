@@ -25,6 +25,8 @@ pub struct Draft {
     pub whole: Vec<Whole>,
     /// Types that device models can limit.
     pub limited: Vec<Limited>,
+    /// Units that the spec declares.
+    pub units: Vec<String>,
     /// Names of device models.
     pub models: Vec<String>,
     /// Names of times.
@@ -58,6 +60,7 @@ impl Draft {
             letters: Scope::default(),
             whole: Vec::new(),
             limited: Vec::new(),
+            units: Vec::new(),
             models: Vec::new(),
             times: Vec::new(),
         }

@@ -336,7 +336,8 @@ impl Draft {
 
     fn unit(&mut self, field: &mut Map) {
         if self.chance(60) {
-            let symbols: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
+            let symbols: Vec<_> =
+                Unit::ALL.iter().map(|unit| unit.symbol.to_string()).chain(self.units.clone()).collect();
             field.put("unit", self.one(&symbols));
         }
     }

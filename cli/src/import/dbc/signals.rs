@@ -171,7 +171,7 @@ fn unit(signal: &Signal, meaning: &mut Translated) {
     let Some(symbol) = unit_of(signal) else { return };
     // `C` may also be coulomb.
     meaning.unit = Unit::find(symbol).or_else(|| respelled(symbol).filter(|_| symbol != "C"));
-    meaning.keys.extend(meaning.unit.map(|unit| ("unit", quoted(unit.symbol))));
+    meaning.keys.extend(meaning.unit.map(|unit| ("unit", quoted(&unit.symbol))));
     if let Some((unit, factor)) = prefixed(symbol).filter(|_| meaning.unit.is_none()) {
         meaning.decide.push(format!("a unit of {symbol}, or `unit: {}` and a scale times {factor}", unit.symbol));
     }

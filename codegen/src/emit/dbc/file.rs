@@ -40,7 +40,7 @@ pub struct Signal {
     pub factor: Rational,
     pub offset: Rational,
     pub range: Option<Range>,
-    pub unit: &'static str,
+    pub unit: String,
     pub named: Vec<(i128, String)>,
     pub comment: String,
     /// Raw value that is sent by default.
@@ -172,7 +172,7 @@ impl Signal {
             factor: Rational::ONE,
             offset: Rational::ZERO,
             range: Some(Range { minimum: Rational::ZERO, maximum: Rational::integer(place.max().into()) }),
-            unit: "",
+            unit: String::new(),
             named: Vec::new(),
             comment: String::new(),
             start: None,

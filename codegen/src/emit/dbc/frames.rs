@@ -211,7 +211,7 @@ fn common<T: PartialEq>(group: &[&Sent], of: impl Fn(&Sent) -> T) -> Option<T> {
 fn cycle(protocol: &Protocol, sent: &Sent) -> Option<u32> {
     let access = &protocol[sent.layout.access];
     let timing = &protocol[sent.message.every.or(access.every).filter(|_| sent.layout.kind == Kind::Report)?];
-    let milliseconds = match timing.unit.symbol {
+    let milliseconds = match &*timing.unit.symbol {
         "ms" => 1.0,
         "s" => 1e3,
         "min" => 6e4,

@@ -23,7 +23,7 @@ pub fn written(protocol: &Protocol, signal: &Meaning, name: &str) -> Written {
     let range = signal.range.or_else(|| signal.held());
     match &signal.encoding {
         Encoding::Number { numeral: Numeral::Bcd, .. } => {
-            let number = Signal { unit: "", ..plain(signal, name) };
+            let number = Signal { unit: String::new(), ..plain(signal, name) };
             Written { signals: vec![number], loss: Some("is in decimal digits; its bits are given as a number") }
         }
         Encoding::Number { numeral: numeral @ (Numeral::Unsigned | Numeral::Signed), scale, offset } => {
@@ -68,7 +68,7 @@ pub fn signals(protocol: &Protocol, signal: &Meaning, name: &str) -> Vec<Signal>
 
 fn plain(signal: &Meaning, name: &str) -> Signal {
     Signal {
-        unit: signal.unit.map_or("", unit),
+        unit: signal.unit.map_or_else(String::new, unit),
         comment: remarks(&signal.doc),
         named: named(&signal.specials),
         start: signal.default,

@@ -6,11 +6,11 @@ use crate::model::{Doc, Protocol, Sides, Unit};
 use crate::text::Text;
 
 /// Returns the symbol of a unit, in ASCII.
-pub fn unit(unit: Unit) -> &'static str {
-    match unit.symbol {
-        "°C" => "degC",
-        "Ω" => "Ohm",
-        symbol => symbol,
+pub fn unit(unit: Unit) -> String {
+    match &*unit.symbol {
+        "°C" => "degC".to_owned(),
+        "Ω" => "Ohm".to_owned(),
+        symbol => Text::new(symbol).in_dbc(),
     }
 }
 

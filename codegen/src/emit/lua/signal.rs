@@ -49,7 +49,7 @@ pub fn signal(protocol: &Protocol, message: &Message, signal: &Signal) -> Value 
         .with("name", Value::text(&signal.name))
         .maybe("title", signal.doc.title.as_ref().map(Value::words))
         .with("place", place(signal.place))
-        .maybe("unit", signal.unit.map(|unit| Value::text(unit.symbol)));
+        .maybe("unit", signal.unit.map(|unit| Value::text(&unit.symbol)));
     let record = limits(meaning(protocol, message, record, signal), signal);
     let rows = protocol.models.ids().filter_map(|model| protocol.lacking(message, signal, model));
     let rows: Vec<_> = rows.map(|known| (Value::id(known.model), lacking(signal, known))).collect();

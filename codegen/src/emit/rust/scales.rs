@@ -35,7 +35,8 @@ pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
     let Scales { on, get, set, message, kind, .. } = scales.as_ref()?;
     let value = member.value();
     let raw = if member.is_optional { quote!(self.#value?) } else { quote!(self.#value) };
-    let given = if member.is_optional { quote!(Some(raw)) } else { quote!(raw) };
+    let given = quote!(signal.raw_of(value, #message)?);
+    let given = if member.is_optional { quote!(Some(#given)) } else { given };
     let reads = format!(" Returns the number that `{name}` is on a device model; `None` if it is none.");
     let sets = format!(" Sets `{name}` to a number of a device model.");
     Some(quote! {
@@ -51,7 +52,6 @@ pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
         /// Refuses a model without a scale, and a value outside its limits.
         pub fn #set(&mut self, model: Model, value: #kind) -> Result<(), Error> {
             let signal = #owner::#on(model).ok_or(Error::Meaning { message: #message, signal: #name })?;
-            let raw = signal.raw_of(value, #message)?;
             self.#value = #given;
             Ok(())
         }

@@ -151,7 +151,7 @@ keys! {
     /// Physical value of raw 0 in the field's unit, exact: `-40` or `0xFD`; 0 if absent.
     Offset "offset": offset: Option<String>, inherited;
     /// Unit of the physical value; none if absent. It is one of `V`, `A`, `W`, `VA`, `var`, `Ah`,
-    /// `Wh`, `Ω`, `Hz`, `°C`, `K`, `Pa`, `%`, `s`, `ms`, `min`, `h`, `rpm` and `m`.
+    /// `Wh`, `Ω`, `Hz`, `°C`, `K`, `Pa`, `%`, `s`, `ms`, `min`, `h`, `rpm` and `m`. The protocol's `units` are others.
     Unit "unit": unit: Option<String>, inherited;
     /// Lowest and highest physical value in the field's unit, both allowed: `41.5..58.5`. The unit
     /// may follow, also with a prefix: `0.2..0.75 kV`. If absent, all that the bits hold is allowed. An

@@ -34,7 +34,7 @@ pub struct Row {
     /// Variant of the model.
     pub model: Ident,
     /// Unit of the value.
-    pub unit: Option<&'static str>,
+    pub unit: Option<String>,
     /// Numerator and denominator of the step, unless it is 1.
     pub scale: Option<[TokenStream; 2]>,
     /// Numerator and denominator of the value of raw 0, unless it is 0.
@@ -75,7 +75,7 @@ impl Row {
         let offset = linear.map(|linear| linear.offset).filter(|offset| *offset != Rational::ZERO);
         Self {
             model: models.variant(own.model).clone(),
-            unit: signal.unit.map(|unit| unit.symbol),
+            unit: signal.unit.map(|unit| unit.symbol.to_string()),
             scale: scale.map(fraction),
             offset: offset.map(fraction),
             limits: signal.range.map(|range| Limits::Physical(precision).ends(signal, range)),

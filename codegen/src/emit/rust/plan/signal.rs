@@ -27,7 +27,7 @@ pub struct Signal {
     /// Where it stands.
     pub place: Written,
     /// Its unit.
-    pub unit: Option<&'static str>,
+    pub unit: Option<String>,
     /// What its encoding is in Rust.
     pub coding: Coding,
     /// Type in which limits are compared, if it is not that of the raw value.
@@ -157,7 +157,7 @@ impl Context<'_> {
             )),
             name: signal.name.clone(),
             place: Written::new(signal.place),
-            unit: signal.unit.map(|unit| unit.symbol),
+            unit: signal.unit.map(|unit| unit.symbol.to_string()),
             physical: coding.physical(),
             limits: range.map(|range| coding.limits.ends(signal, range)),
             model_limits: self.models.limits_of(self.protocol, signal).cloned(),

@@ -24,7 +24,7 @@ impl Unit {
             Some(linear) if scaled == Scaled::Steps && !signal.encoding.is_unscaled() => Self::of_steps(signal, linear),
             _ => Self {
                 phrase: signal.unit.map_or_else(String::new, |unit| format!(" in {}", unit.symbol)),
-                ending: signal.unit.map(|unit| unit.suffix.to_owned()),
+                ending: signal.unit.map(|unit| unit.suffix.to_string()),
             },
         }
     }
