@@ -41,6 +41,8 @@ pub struct IdFilter {
 impl IdFilter {
     /// Accepts every identifier.
     pub const ANY: Self = Self { mask: 0, value: 0 };
+    /// Accepts no identifier: none has more than 29 bits.
+    pub(crate) const NONE: Self = Self { mask: u32::MAX, value: u32::MAX };
 
     /// Requires a value in a field.
     #[must_use]
@@ -54,6 +56,12 @@ impl IdFilter {
     #[inline(always)]
     pub const fn address(self, bits: Bits, kind: &AddressType, number: i32) -> Self {
         self.id(bits, kind.raw(number))
+    }
+
+    /// Tests an identifier of the right width.
+    #[inline(always)]
+    pub(crate) const fn matches(self, id: u32) -> bool {
+        (id ^ self.value) & self.mask == 0
     }
 
     /// Requires an address in a field, if the document names it.
@@ -151,10 +159,11 @@ impl Filter {
         self.id_bits(other.mask, other.value)
     }
 
-    /// Tests whether an identifier of the right width shows this and `other`. If both require a bit, `other` counts.
+    /// Returns what identifiers must show, and that is also `other`. If both require a bit, `other` counts.
     #[inline(always)]
-    pub(crate) const fn matches_id_narrowed(&self, other: IdFilter, id: u32) -> bool {
-        (id ^ self.id_value) & self.id_mask & !other.mask == 0 && (id ^ other.value) & other.mask == 0
+    pub(crate) const fn id_narrowed(&self, other: IdFilter) -> IdFilter {
+        let value = (self.id_value & self.id_mask & !other.mask) | (other.value & other.mask);
+        IdFilter { mask: self.id_mask | other.mask, value }
     }
 
     /// Also requires what `other` requires. If both require a bit, `other` counts.

@@ -21,6 +21,10 @@ pub trait Protocol: Copy + Debug + 'static {
     const LENGTH: Option<u8> = None;
     /// Whether the controller sends reports.
     const CONTROLLER_REPORTS: bool = false;
+    /// Whether frames have selectors in their data.
+    const DATA_SELECTORS: bool = false;
+    /// Whether requests can be refused by other messages than their replies.
+    const REFUSALS: bool = false;
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 

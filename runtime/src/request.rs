@@ -8,7 +8,7 @@ use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::IdFilter;
 use crate::plumbing::Continuation;
 use crate::protocol::{is_to_controller, own_id};
-use crate::{Bits, Data, Error, Filter, Frame, Layout, Payload, Protocol, Reply};
+use crate::{Bits, Data, Error, Filter, Frame, Layout, Payload, Protocol, Reply, Selector};
 
 /// A target that a request of a protocol can address. Generated code implements it.
 pub trait Destination: Copy {
@@ -311,7 +311,13 @@ impl Exchange {
         message.encode(&mut payload)?;
         let length = payload.length().unwrap_or(self.length);
         let frame = Frame::new_raw(filter.sent_id(), filter.is_extended(), *payload.data(), length);
-        Ok(Request { frame, exchange: self, who, replies: target.replies(who, sender), carried: PhantomData })
+        let replies = target.replies(who, sender);
+        let shown = |filter: Option<&Filter>| match (filter, replies) {
+            (Some(filter), Some(who)) => filter.id_narrowed(who),
+            _ => IdFilter::NONE,
+        };
+        let (reply, refusal) = (shown(self.reply.as_ref()), shown(self.refusal));
+        Ok(Request { frame, exchange: self, who, reply, refusal, carried: PhantomData })
     }
 
     #[cold]
@@ -363,7 +369,10 @@ pub struct Request<P, R> {
     frame: Frame,
     exchange: &'static Exchange,
     who: Who,
-    replies: Option<IdFilter>,
+    /// What identifiers of replies show.
+    reply: IdFilter,
+    /// What identifiers of refusals show.
+    refusal: IdFilter,
     carried: PhantomData<fn() -> (P, R)>,
 }
 
@@ -390,12 +399,12 @@ impl<P, R> Request<P, R> {
     /// message's reply.
     #[inline]
     pub fn refusal(&self) -> Option<Filter> {
-        self.exchange.refusal.zip(self.replies).map(|(refusal, who)| refusal.narrowed(who))
+        self.exchange.refusal.filter(|_| self.refusal != IdFilter::NONE).map(|refusal| refusal.narrowed(self.refusal))
     }
 
     #[inline]
     fn reply_filter(&self) -> Option<Filter> {
-        self.exchange.reply.zip(self.replies).map(|(reply, who)| reply.narrowed(who))
+        self.exchange.reply.filter(|_| self.reply != IdFilter::NONE).map(|reply| reply.narrowed(self.reply))
     }
 
     /// Makes the frame say that more follow. Generated code calls it.
@@ -415,8 +424,10 @@ impl<P: Protocol, R> Request<P, R> {
         R: Layout,
     {
         Some(match self.answer(frame)? {
-            (Answer::Values(reply), frame) => Reply::decode(reply.data_selectors(), self.exchange.length.into(), frame),
-            (Answer::Refusal(refusal), frame) => Reply::refused(refusal.data_selectors(), frame),
+            (Answer::Values(selectors), frame) => {
+                Reply::decode(selectors, P::LENGTH.unwrap_or(self.exchange.length).into(), frame)
+            }
+            (Answer::Refusal(selectors), frame) => Reply::refused(selectors, frame),
         })
     }
 
@@ -425,29 +436,38 @@ impl<P: Protocol, R> Request<P, R> {
         self.answer(frame).is_some()
     }
 
-    /// Copies a frame that answers this request, and says which filter it passes. Most frames on a bus fail at the
-    /// identifier, which is tested first.
+    /// Copies a frame that answers this request, and says how. Most frames on a bus fail at the identifier, which is
+    /// tested first.
     #[inline(always)]
     fn answer(&self, frame: &impl embedded_can::Frame) -> Option<(Answer, Frame)> {
-        let (who, id) = (self.replies?, own_id::<P>(frame)?);
-        let shows = |filter: &&Filter| filter.matches_id_narrowed(who, id);
-        let (reply, refusal) = (self.exchange.reply.as_ref().filter(shows), self.exchange.refusal.filter(shows));
-        if (reply.is_none() && refusal.is_none()) || !is_to_controller::<P>(id) {
+        let id = own_id::<P>(frame)?;
+        let (is_reply, is_refusal) = (self.reply.matches(id), P::REFUSALS && self.refusal.matches(id));
+        if !(is_reply || is_refusal) || !is_to_controller::<P>(id) {
             return None;
         }
         let frame = Frame::copied(id, P::FRAME.is_extended(), None, frame)?;
-        let has_data = |filter: &&Filter| filter.matches_data(&frame.bytes());
-        let refusal = refusal.filter(has_data).map(Answer::Refusal);
-        Some((refusal.or(reply.filter(has_data).map(Answer::Values))?, frame))
+        let selectors = |filter: Option<&Filter>| selectors_of::<P>(filter, &frame);
+        let refusal = is_refusal.then(|| selectors(self.exchange.refusal)).flatten().map(Answer::Refusal);
+        let reply = || is_reply.then(|| selectors(self.exchange.reply.as_ref())).flatten().map(Answer::Values);
+        Some((refusal.or_else(reply)?, frame))
     }
 }
 
-/// How a frame answers a request.
+/// Returns the selectors in the data of a frame whose data shows what a filter requires.
+#[inline(always)]
+fn selectors_of<P: Protocol>(filter: Option<&Filter>, frame: &Frame) -> Option<&'static [Selector]> {
+    if !P::DATA_SELECTORS {
+        return Some(&[]);
+    }
+    filter.filter(|filter| filter.matches_data(&frame.bytes())).map(Filter::data_selectors)
+}
+
+/// How a frame with some selectors in its data answers a request.
 enum Answer {
-    /// As the reply, which the filter describes.
-    Values(&'static Filter),
+    /// As the reply.
+    Values(&'static [Selector]),
     /// As another message, which refuses the request.
-    Refusal(&'static Filter),
+    Refusal(&'static [Selector]),
 }
 
 impl<P, R> fmt::Debug for Request<P, R> {

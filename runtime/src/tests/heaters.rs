@@ -157,6 +157,8 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME.id(ERROR, 0);
+    const DATA_SELECTORS: bool = true;
+    const REFUSALS: bool = true;
     const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];
 
     fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {

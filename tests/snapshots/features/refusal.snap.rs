@@ -214,6 +214,8 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[DEVICE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+    const DATA_SELECTORS: bool = true;
+    const REFUSALS: bool = true;
 
     #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]

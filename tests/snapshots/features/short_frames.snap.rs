@@ -255,6 +255,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[ALL_MODE, SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+    const DATA_SELECTORS: bool = true;
 
     #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]

@@ -1849,6 +1849,7 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, MPPT_MODE, GROUP_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+    const DATA_SELECTORS: bool = true;
 
     #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]

@@ -1594,6 +1594,8 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[RECTIFIER_MODE, ALL_MODE, KEEP_ALIVE_MODE, MEASUREMENT_A_MODE, MEASUREMENT_B_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+    const DATA_SELECTORS: bool = true;
+    const REFUSALS: bool = true;
 
     #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]

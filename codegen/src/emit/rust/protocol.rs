@@ -1,7 +1,7 @@
 //! All messages together: the enum that a received frame decodes to.
 
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::derives::Derives;
 use super::dispatch::{measuring, recognising};
@@ -129,12 +129,7 @@ fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
 fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
     let normal = normal(&plan.base);
     let modes = plan.modes.iter().map(|mode| &mode.constant);
-    let is_from_controller = plan.accesses.iter().any(|access| access.is_from_controller);
-    let controller_reports = is_from_controller.then(|| {
-        quote!(
-            const CONTROLLER_REPORTS: bool = true;
-        )
-    });
+    let truths = truths(plan);
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
     quote! {
         impl Protocol for Message {
@@ -144,11 +139,22 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             #(const LENGTH: Option<u8> = Some(#length);)*
             const MODES: &'static [Mode] = &[#(#modes),*];
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
-            #controller_reports
+            #(const #truths: bool = true;)*
 
             #(#functions)*
         }
     }
+}
+
+/// Names what is true of the protocol, and not of every one.
+fn truths(plan: &Plan) -> impl Iterator<Item = Ident> {
+    let mut exchanges = plan.messages.iter().flat_map(|message| &message.exchanges);
+    let truths = [
+        ("CONTROLLER_REPORTS", plan.accesses.iter().any(|access| access.is_from_controller)),
+        ("DATA_SELECTORS", !plan.in_data.is_empty()),
+        ("REFUSALS", exchanges.any(|exchange| exchange.refusal.is_some())),
+    ];
+    truths.into_iter().filter(|(_, is_true)| *is_true).map(|(name, _)| format_ident!("{name}"))
 }
 
 /// Returns the number of data bytes that every frame has, if all have as many.
