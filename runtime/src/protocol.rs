@@ -23,6 +23,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const CONTROLLER_REPORTS: bool = false;
     /// Whether frames have selectors in their data.
     const DATA_SELECTORS: bool = false;
+    /// Whether foreign identifiers can show what chooses a message. If not, none needs a test of its own.
+    const FOREIGN_LIKE_OWN: bool = false;
     /// Whether requests can be refused by other messages than their replies.
     const REFUSALS: bool = false;
     /// All messages.
@@ -215,5 +217,5 @@ pub fn is_to_controller<P: Protocol>(id: u32) -> bool {
 
 #[inline(always)]
 fn is_own<P: Protocol>(id: u32) -> bool {
-    P::FRAME.matches_id(id) && !P::Identifier::is_foreign(id)
+    P::FRAME.matches_id(id) && !(P::FOREIGN_LIKE_OWN && P::Identifier::is_foreign(id))
 }

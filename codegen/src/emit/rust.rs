@@ -138,6 +138,25 @@ errata:
     }
 
     #[test]
+    fn foreign_identifiers_have_a_test_of_their_own_only_if_they_can_show_what_chooses_a_message() {
+        // The command has the bits 28..16, and the message the command 7.
+        for (foreign, is_like_own) in [
+            ("command: 8", false),
+            ("command: 7..8, source: 0", true),
+            ("source: 0", true),
+            ("command: 8, source: 0", false),
+            ("identifier: 0x75000..0x75FFF", true),
+            ("identifier: 0x80000..0x8FFFF", false),
+            ("identifier: 0x6FFFF..0x70100", true),
+        ] {
+            let spec = format!("{SPEC}foreign: {{neighbour: {{match: {{{foreign}}}, section: \"6\"}}}}\n");
+            let outcome = crate::compile(Source::new("heater.yaml", spec.into()).expect("plain text"));
+            let code = super::rust(&outcome.protocol.expect("a spec without errors"), &super::Options::default());
+            assert_eq!(code.contains("const FOREIGN_LIKE_OWN: bool = true;"), is_like_own, "{foreign}");
+        }
+    }
+
+    #[test]
     fn notes_and_sections_stand_in_the_docs_and_of_the_errata_those_that_are_not_about_the_scan() {
         let outcome = crate::compile(Source::new("heater.yaml", SPEC.into()).expect("plain text"));
         let code = super::rust(&outcome.protocol.expect("a spec without errors"), &super::Options::default());

@@ -5693,6 +5693,7 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+    const FOREIGN_LIKE_OWN: bool = true;
 
     #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]

@@ -81,6 +81,8 @@ pub struct Plan {
     pub replies: Option<Direction>,
     /// How frames are recognised whose identifier does not show the direction, if there are any.
     pub either: Option<Direction>,
+    /// Whether foreign identifiers can show what chooses a message.
+    pub foreign_like_own: bool,
 }
 
 impl Plan {
@@ -120,6 +122,7 @@ impl Plan {
             requests: planner.direction(&course.requests),
             replies: planner.direction(&course.replies),
             either: planner.direction(&course.either),
+            foreign_like_own: identifier::foreign_like_own(protocol),
             accesses: accesses.shared,
             models,
             messages,

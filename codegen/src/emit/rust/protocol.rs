@@ -152,6 +152,7 @@ fn truths(plan: &Plan) -> impl Iterator<Item = Ident> {
     let truths = [
         ("CONTROLLER_REPORTS", plan.accesses.iter().any(|access| access.is_from_controller)),
         ("DATA_SELECTORS", !plan.in_data.is_empty()),
+        ("FOREIGN_LIKE_OWN", plan.foreign_like_own),
         ("REFUSALS", exchanges.any(|exchange| exchange.refusal.is_some())),
     ];
     truths.into_iter().filter(|(_, is_true)| *is_true).map(|(name, _)| format_ident!("{name}"))

@@ -7,7 +7,7 @@ use super::encoding::integer;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming};
 use super::types::Types;
-use crate::model::{self, AddressPattern, Direction, FieldId, FieldTest, Foreign, Numeral, Protocol};
+use crate::model::{self, AddressPattern, Direction, FieldId, FieldTest, Foreign, FrameLayout, Numeral, Protocol};
 
 /// The identifier.
 pub struct Identifier {
@@ -160,6 +160,25 @@ fn foreign(protocol: &Protocol, foreign: &Foreign) -> Vec<Comparison> {
         Comparison { place: field.map(|field| field_place(protocol, field).0), inside: true, ranges }
     });
     tests.collect()
+}
+
+/// Tests whether foreign identifiers can show what chooses a message.
+pub fn foreign_like_own(protocol: &Protocol) -> bool {
+    let frames = || protocol.frames.iter();
+    let is_like = |foreign: &Foreign, frame: &FrameLayout| {
+        frame.identifier().all(|(field, value)| can_show(protocol, foreign, field, value))
+    };
+    protocol.foreign.iter().any(|foreign| frames().any(|frame| is_like(foreign, frame)))
+}
+
+/// Tests whether a field may have a value in a foreign identifier.
+fn can_show(protocol: &Protocol, foreign: &Foreign, field: FieldId, value: u32) -> bool {
+    let known = &protocol[field];
+    foreign.ranges.iter().all(|(place, first, last)| match place {
+        Some(place) => *place != field || (*first..=*last).contains(&value),
+        // The field has one value in a range whose ends only differ below it.
+        None => first >> known.shift != last >> known.shift || known.get(*first) == value,
+    })
 }
 
 fn direction(protocol: &Protocol, direction: &Direction) -> Test {
