@@ -30,6 +30,7 @@ mod entry;
 mod error;
 mod filter;
 mod frame;
+mod incoming;
 mod layout;
 mod number;
 mod packed;

@@ -10,11 +10,11 @@ pub use serde;
 
 pub use crate::address::{Address, Pattern, Who};
 pub use crate::filter::IdFilter;
+pub use crate::incoming::Incoming;
 pub use crate::layout::{Decode, Encode, Signals, Task};
 pub use crate::packed::{Piece, left_aligned, right_aligned};
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
-pub use crate::protocol::Recognised;
 pub use crate::raw::{Integer, Raw};
 pub use crate::scale::{Scale, nearest};
 pub use crate::set::Continuation;
@@ -23,7 +23,7 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, Continuation, Decode, Encode, IdFilter, Legend, Pattern, Piece, Recognised, Task, Who, Word,
+        Address, Continuation, Decode, Encode, IdFilter, Incoming, Legend, Pattern, Piece, Task, Who, Word,
         left_aligned, right_aligned,
     };
     pub use crate::{Destination, Protocol};

@@ -2,10 +2,10 @@
 
 use core::fmt::{self, Debug};
 
-use crate::address::Rank;
 use crate::frame::raw_id;
 use crate::layout::Task;
-use crate::{Entry, Exchange, Filter, Frame, Kind, Mode};
+use crate::plumbing::Incoming;
+use crate::{Entry, Filter, Mode, Received};
 
 /// A protocol, implemented by the enum of its messages.
 pub trait Protocol: Copy + Debug + 'static {
@@ -30,38 +30,51 @@ pub trait Protocol: Copy + Debug + 'static {
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 
-    /// Recognises a frame to a module by its selectors, whatever its length. If layouts differ, the
-    /// number of the device model decides.
-    fn request(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        None
+    /// Recognises a frame to a module by its selectors.
+    ///
+    /// # Errors
+    ///
+    /// Says why it is not recognised.
+    #[inline(always)]
+    fn request(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        frame.unknown()
     }
 
-    /// Recognises a frame to the controller by its selectors, whatever its length. If layouts
-    /// differ, the number of the device model decides.
-    fn reply(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        None
+    /// Recognises a frame to the controller by its selectors.
+    ///
+    /// # Errors
+    ///
+    /// Says why it is not recognised.
+    #[inline(always)]
+    fn reply(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        frame.unknown()
     }
 
     /// Recognises a frame whose identifier does not show whether it goes to a module or to the
     /// controller. Its selectors do.
-    fn either(_: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        None
+    ///
+    /// # Errors
+    ///
+    /// Says why it is not recognised.
+    #[inline(always)]
+    fn either(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        frame.unknown()
     }
 
-    /// Returns the numbers of data bytes of the requests whose selectors an identifier shows.
-    fn request_lengths(_: u32) -> &'static [u8] {
+    /// Returns the numbers of data bytes of the requests whose selectors the identifier shows.
+    fn request_lengths(_: &Incoming) -> &'static [u8] {
         &[]
     }
 
     /// Returns the numbers of data bytes of the replies and reports whose selectors an identifier
     /// shows.
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[]
     }
 
     /// Returns the numbers of data bytes of the frames whose selectors an identifier shows that does
     /// not show the direction.
-    fn either_lengths(_: u32) -> &'static [u8] {
+    fn either_lengths(_: &Incoming) -> &'static [u8] {
         &[]
     }
 
@@ -91,61 +104,6 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
     /// document names all addresses in it.
     fn documented_modes(_: u32) -> impl Iterator<Item = bool> {
         core::iter::empty()
-    }
-}
-
-/// A message from a frame, and the kind of that frame.
-#[derive(Clone, Copy, Debug)]
-pub struct Recognised<M> {
-    pub(crate) exchange: &'static Exchange,
-    pub(crate) kind: Kind,
-    pub(crate) message: M,
-    /// The numbers of data bytes, if there are several.
-    lengths: &'static [u8],
-}
-
-impl<M: Protocol> Recognised<M> {
-    /// Returns the message of a request.
-    #[inline(always)]
-    pub const fn request(exchange: &'static Exchange, message: M) -> Self {
-        Self { exchange, kind: Kind::Request, message, lengths: &[] }
-    }
-
-    /// Returns the message of a reply.
-    #[inline(always)]
-    pub const fn reply(exchange: &'static Exchange, message: M) -> Self {
-        Self { exchange, kind: Kind::Reply, message, lengths: &[] }
-    }
-
-    /// Returns the message of a report.
-    #[inline(always)]
-    pub const fn report(exchange: &'static Exchange, message: M) -> Self {
-        Self { exchange, kind: Kind::Report, message, lengths: &[] }
-    }
-
-    /// Sets the numbers of data bytes that the frame can have.
-    #[must_use]
-    #[inline(always)]
-    pub const fn of_lengths(self, lengths: &'static [u8]) -> Self {
-        Self { lengths, ..self }
-    }
-
-    /// Returns `other` if it fits the frame better: first by length, then by device model, then by
-    /// addresses.
-    #[must_use]
-    pub fn or(self, other: Self, frame: &Frame, model: Option<u8>) -> Self {
-        if other.rank(frame, model) > self.rank(frame, model) { other } else { self }
-    }
-
-    fn rank(&self, frame: &Frame, model: Option<u8>) -> (bool, bool, Option<Rank>) {
-        let addressing = self.exchange.addressing::<M>(self.kind, frame.raw_id());
-        let is_of_model = self.exchange.is_of(model);
-        (self.has_length_of(frame), is_of_model, addressing.map(|addressing| addressing.rank()))
-    }
-
-    #[inline(always)]
-    pub(crate) fn has_length_of(&self, frame: &Frame) -> bool {
-        frame.has_length(self.exchange.data_length().into(), self.lengths)
     }
 }
 
@@ -201,11 +159,12 @@ pub fn direction<P: Protocol>(id: u32) -> Option<Direction> {
     if !is_own::<P>(id) {
         return None;
     }
-    if P::Identifier::is_to_module(id) {
-        let is_open = P::Identifier::is_to_controller(id);
-        Some(if is_open { Direction::Either } else { Direction::Module })
+    // Most frames on a bus go to the controller.
+    if P::Identifier::is_to_controller(id) {
+        let is_open = P::Identifier::is_to_module(id);
+        Some(if is_open { Direction::Either } else { Direction::Controller })
     } else {
-        P::Identifier::is_to_controller(id).then_some(Direction::Controller)
+        P::Identifier::is_to_module(id).then_some(Direction::Module)
     }
 }
 

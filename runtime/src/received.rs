@@ -3,8 +3,9 @@
 use core::mem::discriminant;
 
 use crate::frame::classic;
+use crate::incoming::{Incoming, problem};
 use crate::layout::Signals;
-use crate::protocol::{Direction, Recognised, direction, own_id};
+use crate::protocol::{Direction, direction, own_id};
 use crate::reply::{has_error, selected};
 use crate::{
     Addressing, AnySignal, Data, Error, Exchange, Failure, Frame, IdentifierFields, Kind, Payload, Place, Problem,
@@ -50,24 +51,25 @@ impl<P: Protocol> Received<P> {
 
     #[inline]
     fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        Self::recognised(model, frame).ok_or_else(|| problem::<P>(frame))
+        let Some((direction, incoming)) = Self::incoming(model, frame) else { return refused(frame) };
+        match direction {
+            Direction::Module => P::request(&incoming),
+            Direction::Controller => P::reply(&incoming),
+            Direction::Either => P::either(&incoming),
+        }
     }
 
     #[inline(always)]
-    fn recognised(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<Self> {
+    fn incoming(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<(Direction, Incoming)> {
         let id = own_id::<P>(frame)?;
         let direction = direction::<P>(id)?;
         let frame = Frame::copied(id, P::FRAME.is_extended(), P::LENGTH, frame)?;
-        let recognised = match direction {
-            Direction::Module => P::request(&frame, model),
-            Direction::Controller => P::reply(&frame, model),
-            Direction::Either => P::either(&frame, model),
-        }?;
-        if P::LENGTH.is_none() && !recognised.has_length_of(&frame) {
-            return None;
-        }
-        let Recognised { exchange, kind, message: content, .. } = recognised;
-        Some(Self { content, exchange, frame, id, model, kind, is_other: false })
+        Some((direction, Incoming::new(frame, model)))
+    }
+
+    #[inline(always)]
+    pub(crate) fn new(content: P, exchange: &'static Exchange, kind: Kind, frame: Frame, model: Option<u8>) -> Self {
+        Self { content, exchange, frame, id: frame.raw_id(), model, kind, is_other: false }
     }
 
     /// Returns what a request asks for.
@@ -248,25 +250,13 @@ impl<P: Protocol> Received<P> {
     }
 }
 
+/// Says why a frame is none of the protocol.
+#[cold]
+fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Result<Received<P>, Problem> {
+    Err(problem::<P>(classic(frame)))
+}
+
 fn cleared(mut data: Data, place: Place) -> Data {
     place.put(&mut data, 0);
     data
-}
-
-/// Says why a frame is not recognised, by the same tests.
-#[cold]
-fn problem<P: Protocol>(frame: &impl embedded_can::Frame) -> Problem {
-    let Some(copy) = classic(frame) else { return Problem::Frame };
-    let Some(id) = own_id::<P>(frame) else { return Problem::Identifier };
-    if P::Identifier::is_foreign(id) {
-        return Problem::Foreign;
-    }
-    let lengths = match direction::<P>(id) {
-        None => return Problem::Identifier,
-        Some(Direction::Module) => P::request_lengths(id),
-        Some(Direction::Controller) => P::reply_lengths(id),
-        Some(Direction::Either) => P::either_lengths(id),
-    };
-    let is_right = lengths.iter().any(|length| usize::from(*length) == copy.length());
-    if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
 }

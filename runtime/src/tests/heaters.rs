@@ -1,6 +1,6 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Encode, IdFilter, Pattern, Recognised, Task, Who};
+use crate::plumbing::{Address, Decode, Encode, IdFilter, Incoming, Pattern, Task, Who};
 use crate::{
     AddressType, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout, Mode, Place,
     Problem, Protocol, Received, Request, Route, Selector, Signal,
@@ -161,34 +161,34 @@ impl Protocol for Message {
     const REFUSALS: bool = true;
     const MODES: &'static [Mode] = &[SINGLE, GROUPED, ALL];
 
-    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
-            (0x07, 0x01) => Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))),
-            (0x08, _) => Recognised::request(&Heat::READ, Self::ReadHeat),
-            (0x0A, _) => Recognised::request(&Heat::READ, Self::ReadHeat)
-                .or(Recognised::request(&Heat::SET, Self::Heat(Layout::decode(data))), frame, model)
-                .or(Recognised::request(&Heat::PROBE, Self::ReadHeat), frame, model),
-            _ => return None,
-        })
+    fn request(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        match (frame.id(COMMAND), frame.data(FUNCTION.place)) {
+            (0x07, 0x01) => frame.request(&Heat::SET, Self::Heat(frame.values())),
+            (0x08, _) => frame.request(&Heat::READ, Self::ReadHeat),
+            (0x0A, _) => frame.best([
+                frame.request(&Heat::READ, Self::ReadHeat),
+                frame.request(&Heat::SET, Self::Heat(frame.values())),
+                frame.request(&Heat::PROBE, Self::ReadHeat),
+            ]),
+            _ => frame.unknown(),
+        }
     }
 
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        Some(match (COMMAND.of(frame.raw_id()), FUNCTION.place.get(data)) {
-            (0x07, 0x02) => Recognised::reply(&Heat::SET, Self::Heat(Layout::decode(data))),
-            (0x08, _) => Recognised::reply(&Heat::READ, Self::Heat(Layout::decode(data))),
-            (0x0B, _) => Recognised::report(&Heat::REPORT, Self::Heat(Layout::decode(data))),
-            _ => return None,
-        })
+    fn reply(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        match (frame.id(COMMAND), frame.data(FUNCTION.place)) {
+            (0x07, 0x02) => frame.reply(&Heat::SET, Self::Heat(frame.values())),
+            (0x08, _) => frame.reply(&Heat::READ, Self::Heat(frame.values())),
+            (0x0B, _) => frame.report(&Heat::REPORT, Self::Heat(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if matches!(COMMAND.of(id), 0x07 | 0x08) { &[4] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if matches!(frame.id(COMMAND), 0x07 | 0x08) { &[4] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        Self::request_lengths(id)
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        Self::request_lengths(frame)
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -1,6 +1,6 @@
 //! Values that the compiler cannot foresee.
 
-use canspec_runtime::plumbing::{Raw, Who};
+use canspec_runtime::plumbing::{Incoming, Raw, Who};
 use canspec_runtime::{Bcd, Bytes, Destination, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
@@ -106,6 +106,12 @@ impl<T: Unknown> Unknown for Option<T> {
 impl Unknown for Frame {
     fn unknown() -> Self {
         Self::new_raw(unknown(), unknown(), unknown(), unknown())
+    }
+}
+
+impl Unknown for Incoming {
+    fn unknown() -> Self {
+        Self::new(unknown(), unknown())
     }
 }
 

@@ -274,6 +274,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -281,21 +282,17 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[BATTERY_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x12 => Recognised::report(&Cells::REPORT, Self::Cells(Layout::read(frame))).of_lengths(Cells::LENGTHS),
-            0x13 => Recognised::report(&State::REPORT, Self::State(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x12 => frame.of_lengths(Cells::LENGTHS).report(&Cells::REPORT, Self::Cells(frame.values())),
+            0x13 => frame.report(&State::REPORT, Self::State(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x12 => &[4, 6],
             0x13 => &[8],
             _ => &[],

@@ -203,6 +203,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -212,30 +213,28 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const CONTROLLER_REPORTS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::NUMBER.of(id) == 0x01)
-            .then(|| Recognised::report(&Delivered::CHARGER_CYCLE, Self::Delivered(Layout::decode(data))))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::NUMBER) {
+            0x01 => frame.report(&Delivered::CHARGER_CYCLE, Self::Delivered(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::NUMBER.of(id) == 0x01)
-            .then(|| Recognised::report(&Demanded::VEHICLE_CYCLE, Self::Demanded(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::NUMBER) {
+            0x01 => frame.report(&Demanded::VEHICLE_CYCLE, Self::Demanded(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::NUMBER.of(id) == 0x01 { &[4] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::NUMBER) == 0x01 { &[4] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::NUMBER.of(id) == 0x01 { &[4] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::NUMBER) == 0x01 { &[4] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -200,6 +200,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -208,28 +209,28 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x01).then(|| Recognised::request(&Battery::READ, Self::ReadBattery))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x01 => frame.request(&Battery::READ, Self::ReadBattery),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x01)
-            .then(|| Recognised::reply(&Battery::READ, Self::Battery(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x01 => frame.reply(&Battery::READ, Self::Battery(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x01 { &[8] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x01 { &[8] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x01 { &[8] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x01 { &[8] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -277,6 +277,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -286,32 +287,29 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x04).then(|| Recognised::request(&All::SCAN, Self::ScanAll))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x04 => frame.request(&All::SCAN, Self::ScanAll),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x04, 0x01) => Recognised::reply(&Heat::SCAN_ALL, Self::Heat(Layout::decode(data))),
-            (0x04, 0x02) => Recognised::reply(&Power::SCAN_ALL, Self::Power(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
+            (0x04, 0x01) => frame.reply(&Heat::SCAN_ALL, Self::Heat(frame.values())),
+            (0x04, 0x02) => frame.reply(&Power::SCAN_ALL, Self::Power(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x04 { &[8] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x04 { &[8] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x04 { &[8] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x04 { &[8] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

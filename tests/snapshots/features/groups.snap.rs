@@ -217,6 +217,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -225,14 +226,12 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        Some(Recognised::report(&State::REPORT, Self::State(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        frame.report(&State::REPORT, Self::State(frame.values()))
     }
 
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[4]
     }
 

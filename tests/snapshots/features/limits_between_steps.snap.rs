@@ -227,6 +227,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -235,41 +236,33 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CHARGER_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x003 => Recognised::request(&SetLimit::WRITE, Self::SetLimit(Layout::decode(data))),
-            0x004 => Recognised::request(&SetTotal::WRITE, Self::SetTotal(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x003 => frame.request(&SetLimit::WRITE, Self::SetLimit(frame.values())),
+            0x004 => frame.request(&SetTotal::WRITE, Self::SetTotal(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x003 => Recognised::reply(&SetLimit::WRITE, Self::SetLimit(Layout::decode(data))),
-            0x004 => Recognised::reply(&SetTotal::WRITE, Self::SetTotal(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x003 => frame.reply(&SetLimit::WRITE, Self::SetLimit(frame.values())),
+            0x004 => frame.reply(&SetTotal::WRITE, Self::SetTotal(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x003 | 0x004 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x003 | 0x004 => &[8],
             _ => &[],
         }

@@ -176,6 +176,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -184,17 +185,16 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::FUNCTION.of(id) == 0x1)
-            .then(|| Recognised::report(&Measurement::REPORT, Self::Measurement(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::FUNCTION) {
+            0x1 => frame.report(&Measurement::REPORT, Self::Measurement(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::FUNCTION.of(id) == 0x1 { &[8] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::FUNCTION) == 0x1 { &[8] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

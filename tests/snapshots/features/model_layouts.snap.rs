@@ -220,6 +220,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -228,22 +229,19 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[PUMP_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x001).then(|| {
-            Recognised::report(&SupplyAc::REPORT, Self::SupplyAc(Layout::decode(data))).or(
-                Recognised::report(&SupplyDc::REPORT, Self::SupplyDc(Layout::decode(data))),
-                frame,
-                model,
-            )
-        })
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x001 => frame.best([
+                frame.report(&SupplyAc::REPORT, Self::SupplyAc(frame.values())),
+                frame.report(&SupplyDc::REPORT, Self::SupplyDc(frame.values())),
+            ]),
+            _ => frame.unknown(),
+        }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x001 { &[2] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x001 { &[2] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -292,6 +292,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -299,28 +300,28 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[VEHICLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x12)
-            .then(|| Recognised::request(&Limits::SET, Self::Limits(Layout::read(frame))).of_lengths(Limits::LENGTHS))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x12 => frame.of_lengths(Limits::LENGTHS).request(&Limits::SET, Self::Limits(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x12)
-            .then(|| Recognised::reply(&Limits::SET, Self::Limits(Layout::read(frame))).of_lengths(Limits::LENGTHS))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x12 => frame.of_lengths(Limits::LENGTHS).reply(&Limits::SET, Self::Limits(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x12 { &[5, 6] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x12 { &[5, 6] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x12 { &[5, 6] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x12 { &[5, 6] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -272,6 +272,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -279,32 +280,29 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CHARGER_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x13)
-            .then(|| Recognised::request(&Limit::SET, Self::Limit(Layout::read(frame))).of_lengths(Limit::LENGTHS))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x13 => frame.of_lengths(Limit::LENGTHS).request(&Limit::SET, Self::Limit(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x12 => Recognised::report(&State::REPORT, Self::State(Layout::read(frame))).of_lengths(State::LENGTHS),
-            0x13 => Recognised::reply(&Limit::SET, Self::LimitSetReply),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x12 => frame.of_lengths(State::LENGTHS).report(&State::REPORT, Self::State(frame.values())),
+            0x13 => frame.reply(&Limit::SET, Self::LimitSetReply),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x13 { &[1, 2] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x13 { &[1, 2] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x12 => &[3, 4, 7],
             0x13 => &[1],
             _ => &[],

@@ -207,6 +207,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -217,31 +218,28 @@ impl Protocol for Message {
     const DATA_SELECTORS: bool = true;
     const REFUSALS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        (OPERATION_SELECTOR.place.get(data) == 0x03 && INDEX_SELECTOR.place.get(data) == 0x07)
-            .then(|| Recognised::request(&Speed::WRITE, Self::Speed(Layout::decode(data))))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.data(OPERATION_SELECTOR.place), frame.data(INDEX_SELECTOR.place)) {
+            (0x03, 0x07) => frame.request(&Speed::WRITE, Self::Speed(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        let recognised = match (OPERATION_SELECTOR.place.get(data), INDEX_SELECTOR.place.get(data)) {
-            (0x04, 0x07) => Recognised::reply(&Speed::WRITE, Self::Speed(Layout::decode(data))),
-            (0x80, _) => Recognised::reply(&Refusal::REFUSE, Self::Refusal(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.data(OPERATION_SELECTOR.place), frame.data(INDEX_SELECTOR.place)) {
+            (0x04, 0x07) => frame.reply(&Speed::WRITE, Self::Speed(frame.values())),
+            (0x80, _) => frame.reply(&Refusal::REFUSE, Self::Refusal(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(_: u32) -> &'static [u8] {
+    fn request_lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 

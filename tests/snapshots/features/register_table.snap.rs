@@ -232,6 +232,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -241,46 +242,32 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised =
-            match (Identifier::COMMAND.of(id), FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
-                (0x01, 0x10, 0x0021) => Recognised::request(&VoltageLimit::READ, Self::ReadVoltageLimit),
-                (0x01, 0x03, 0x0021) => {
-                    Recognised::request(&VoltageLimit::WRITE, Self::VoltageLimit(Layout::decode(data)))
-                }
-                _ => return None,
-            };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(FUNCTION_SELECTOR.place), frame.data(REGISTER_SELECTOR.place))
+        {
+            (0x01, 0x10, 0x0021) => frame.request(&VoltageLimit::READ, Self::ReadVoltageLimit),
+            (0x01, 0x03, 0x0021) => frame.request(&VoltageLimit::WRITE, Self::VoltageLimit(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised =
-            match (Identifier::COMMAND.of(id), FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
-                (0x01, 0x41, 0x0021) => {
-                    Recognised::reply(&VoltageLimit::READ, Self::VoltageLimit(Layout::decode(data)))
-                }
-                (0x01, 0x43, 0x0021) => {
-                    Recognised::reply(&VoltageLimit::WRITE, Self::VoltageLimit(Layout::decode(data)))
-                }
-                _ => return None,
-            };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(FUNCTION_SELECTOR.place), frame.data(REGISTER_SELECTOR.place))
+        {
+            (0x01, 0x41, 0x0021) => frame.reply(&VoltageLimit::READ, Self::VoltageLimit(frame.values())),
+            (0x01, 0x43, 0x0021) => frame.reply(&VoltageLimit::WRITE, Self::VoltageLimit(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x01 { &[8] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x01 { &[8] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x01 { &[8] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x01 { &[8] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

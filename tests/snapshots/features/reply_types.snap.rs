@@ -226,6 +226,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -235,35 +236,29 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
-            (0x10, 0x0001) => Recognised::request(&Voltage::READ, Self::ReadVoltage),
-            (0x10, 0x0056) => Recognised::request(&Revision::READ, Self::ReadRevision),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.data(FUNCTION_SELECTOR.place), frame.data(REGISTER_SELECTOR.place)) {
+            (0x10, 0x0001) => frame.request(&Voltage::READ, Self::ReadVoltage),
+            (0x10, 0x0056) => frame.request(&Revision::READ, Self::ReadRevision),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
-            (0x41, 0x0001) => Recognised::reply(&Voltage::READ, Self::Voltage(Layout::decode(data))),
-            (0x42, 0x0056) => Recognised::reply(&Revision::READ, Self::Revision(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.data(FUNCTION_SELECTOR.place), frame.data(REGISTER_SELECTOR.place)) {
+            (0x41, 0x0001) => frame.reply(&Voltage::READ, Self::Voltage(frame.values())),
+            (0x42, 0x0056) => frame.reply(&Revision::READ, Self::Revision(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(_: u32) -> &'static [u8] {
+    fn request_lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 

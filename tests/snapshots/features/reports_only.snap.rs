@@ -115,6 +115,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -123,14 +124,12 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        Some(Recognised::report(&Voltage::REPORT, Self::Voltage(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        frame.report(&Voltage::REPORT, Self::Voltage(frame.values()))
     }
 
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[2]
     }
 

@@ -255,6 +255,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -263,40 +264,33 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[VEHICLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x012 => Recognised::request(&SetCurrent::WRITE, Self::SetCurrent(Layout::decode(data))),
-            0x013 => Recognised::request(&Stop::WRITE, Self::Stop(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x012 => frame.request(&SetCurrent::WRITE, Self::SetCurrent(frame.values())),
+            0x013 => frame.request(&Stop::WRITE, Self::Stop(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x012 => Recognised::reply(&SetCurrent::WRITE, Self::SetCurrentWriteReply),
-            0x013 => Recognised::reply(&Stop::WRITE, Self::StopWriteReply),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x012 => frame.reply(&SetCurrent::WRITE, Self::SetCurrentWriteReply),
+            0x013 => frame.reply(&Stop::WRITE, Self::StopWriteReply),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x012 | 0x013 => &[4],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x012 | 0x013 => &[4],
             _ => &[],
         }

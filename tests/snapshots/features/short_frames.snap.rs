@@ -249,6 +249,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -257,37 +258,33 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::FUNCTION.of(id), SIGN_SELECTOR.place.get(data)) {
-            (0xF, 0x55) => Recognised::request(&KeepAlive::TELL, Self::KeepAlive(Layout::decode(data))),
-            (0x6, _) => Recognised::request(&Drift::ASK, Self::AskDrift),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::FUNCTION), frame.data(SIGN_SELECTOR.place)) {
+            (0xF, 0x55) => frame.request(&KeepAlive::TELL, Self::KeepAlive(frame.values())),
+            (0x6, _) => frame.request(&Drift::ASK, Self::AskDrift),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::FUNCTION.of(id) == 0x5).then(|| Recognised::reply(&Drift::ASK, Self::Drift(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::FUNCTION) {
+            0x5 => frame.reply(&Drift::ASK, Self::Drift(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::FUNCTION.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::FUNCTION) {
             0xF => &[2],
             0x6 => &[6],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::FUNCTION.of(id) == 0x5 { &[6] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::FUNCTION) == 0x5 { &[6] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

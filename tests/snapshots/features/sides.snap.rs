@@ -203,6 +203,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -212,36 +213,32 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const CONTROLLER_REPORTS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::NUMBER.of(id) {
-            0x001 => Recognised::request(&State::READ, Self::ReadState),
-            0x002 => Recognised::report(&Load::TELL, Self::Load(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::NUMBER) {
+            0x001 => frame.request(&State::READ, Self::ReadState),
+            0x002 => frame.report(&Load::TELL, Self::Load(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::NUMBER.of(id) == 0x001).then(|| Recognised::reply(&State::READ, Self::State(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::NUMBER) {
+            0x001 => frame.reply(&State::READ, Self::State(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::NUMBER.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::NUMBER) {
             0x001 | 0x002 => &[4],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::NUMBER.of(id) == 0x001 { &[4] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::NUMBER) == 0x001 { &[4] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -293,6 +293,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -301,28 +302,28 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[BATTERY_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        (Identifier::COMMAND.of(id) == 0x18).then(|| Recognised::request(&Failures::READ, Self::ReadFailures))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x18 => frame.request(&Failures::READ, Self::ReadFailures),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x18)
-            .then(|| Recognised::reply(&Failures::READ, Self::Failures(Layout::decode(data))))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x18 => frame.reply(&Failures::READ, Self::Failures(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x18 { &[8] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x18 { &[8] } else { &[] }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x18 { &[8] } else { &[] }
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x18 { &[8] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

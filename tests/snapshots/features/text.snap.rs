@@ -228,6 +228,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -236,40 +237,33 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x05 => Recognised::request(&Version::READ, Self::ReadVersion),
-            0x06 => Recognised::request(&Label::READ, Self::ReadLabel),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x05 => frame.request(&Version::READ, Self::ReadVersion),
+            0x06 => frame.request(&Label::READ, Self::ReadLabel),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x05 => Recognised::reply(&Version::READ, Self::Version(Layout::decode(data))),
-            0x06 => Recognised::reply(&Label::READ, Self::Label(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x05 => frame.reply(&Version::READ, Self::Version(frame.values())),
+            0x06 => frame.reply(&Label::READ, Self::Label(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x05 | 0x06 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x05 | 0x06 => &[8],
             _ => &[],
         }

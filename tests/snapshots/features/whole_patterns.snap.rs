@@ -232,6 +232,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -241,63 +242,51 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::ID.of(id), FUNCTION_SELECTOR.place.get(data)) {
-            (0x600, 0x03) => Recognised::request(&Cycles::QUERY, Self::QueryCycles),
-            (0x305, _) => Recognised::request(&Wanted::DEMAND, Self::Wanted(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::ID), frame.data(FUNCTION_SELECTOR.place)) {
+            (0x600, 0x03) => frame.request(&Cycles::QUERY, Self::QueryCycles),
+            (0x305, _) => frame.request(&Wanted::DEMAND, Self::Wanted(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::ID.of(id), FUNCTION_SELECTOR.place.get(data)) {
-            (0x600, 0x43) => Recognised::reply(&Cycles::QUERY, Self::Cycles(Layout::decode(data))),
-            (0x351, _) => Recognised::report(&Limits::SUPPLY, Self::Limits(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::ID), frame.data(FUNCTION_SELECTOR.place)) {
+            (0x600, 0x43) => frame.reply(&Cycles::QUERY, Self::Cycles(frame.values())),
+            (0x351, _) => frame.report(&Limits::SUPPLY, Self::Limits(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn either(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::ID.of(id), FUNCTION_SELECTOR.place.get(data)) {
-            (0x600, 0x03) => Recognised::request(&Cycles::QUERY, Self::QueryCycles),
-            (0x600, 0x43) => Recognised::reply(&Cycles::QUERY, Self::Cycles(Layout::decode(data))),
-            (0x305, _) => Recognised::request(&Wanted::DEMAND, Self::Wanted(Layout::decode(data))),
-            (0x351, _) => Recognised::report(&Limits::SUPPLY, Self::Limits(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn either(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::ID), frame.data(FUNCTION_SELECTOR.place)) {
+            (0x600, 0x03) => frame.request(&Cycles::QUERY, Self::QueryCycles),
+            (0x600, 0x43) => frame.reply(&Cycles::QUERY, Self::Cycles(frame.values())),
+            (0x305, _) => frame.request(&Wanted::DEMAND, Self::Wanted(frame.values())),
+            (0x351, _) => frame.report(&Limits::SUPPLY, Self::Limits(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::ID.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::ID) {
             0x305 | 0x600 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::ID.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::ID) {
             0x351 | 0x600 => &[8],
             _ => &[],
         }
     }
 
-    fn either_lengths(id: u32) -> &'static [u8] {
-        match Identifier::ID.of(id) {
+    fn either_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::ID) {
             0x305 | 0x351 | 0x600 => &[8],
             _ => &[],
         }

@@ -1842,6 +1842,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -1851,73 +1852,61 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SUB_COMMAND_SELECTOR.place.get(data)) {
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SUB_COMMAND_SELECTOR.place)) {
             (0x0F, 0x1205) => {
-                Recognised::request(&LimitInputCurrent::SET_UNANSWERED, Self::LimitInputCurrent(Layout::decode(data)))
+                frame.request(&LimitInputCurrent::SET_UNANSWERED, Self::LimitInputCurrent(frame.values()))
             }
-            (0x0F, 0x1111) => {
-                Recognised::request(&SetOperatingMode::SET_UNANSWERED, Self::SetOperatingMode(Layout::decode(data)))
-            }
-            (0x01, _) => Recognised::request(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput),
-            (0x02, _) => Recognised::request(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount),
-            (0x03, _) => Recognised::request(&ModuleOutput::READ, Self::ReadModuleOutput),
-            (0x04, _) => Recognised::request(&ModuleStatus::READ, Self::ReadModuleStatus),
-            (0x06, _) => Recognised::request(&InputVoltage::READ, Self::ReadInputVoltage).or(
-                Recognised::request(&InputVoltageDc::READ, Self::ReadInputVoltageDc),
-                frame,
-                model,
-            ),
-            (0x0C, _) => Recognised::request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
-            (0x13, _) => Recognised::request(&SetWalkIn::SET, Self::SetWalkIn(Layout::decode(data))),
-            (0x14, _) => Recognised::request(&SetLed::SET, Self::SetLed(Layout::decode(data))),
-            (0x1A, _) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            (0x1B, _) => Recognised::request(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(Layout::decode(data))),
-            (0x1C, _) => Recognised::request(&SetModuleOutput::SET, Self::SetModuleOutput(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+            (0x0F, 0x1111) => frame.request(&SetOperatingMode::SET_UNANSWERED, Self::SetOperatingMode(frame.values())),
+            (0x01, _) => frame.request(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput),
+            (0x02, _) => frame.request(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount),
+            (0x03, _) => frame.request(&ModuleOutput::READ, Self::ReadModuleOutput),
+            (0x04, _) => frame.request(&ModuleStatus::READ, Self::ReadModuleStatus),
+            (0x06, _) => frame.best([
+                frame.request(&InputVoltage::READ, Self::ReadInputVoltage),
+                frame.request(&InputVoltageDc::READ, Self::ReadInputVoltageDc),
+            ]),
+            (0x0C, _) => frame.request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
+            (0x13, _) => frame.request(&SetWalkIn::SET, Self::SetWalkIn(frame.values())),
+            (0x14, _) => frame.request(&SetLed::SET, Self::SetLed(frame.values())),
+            (0x1A, _) => frame.request(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            (0x1B, _) => frame.request(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
+            (0x1C, _) => frame.request(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x01 => Recognised::reply(&SystemOutput::READ_TOTAL, Self::SystemOutput(Layout::decode(data))),
-            0x02 => Recognised::reply(&ModuleCount::READ_TOTAL, Self::ModuleCount(Layout::decode(data))),
-            0x03 => Recognised::reply(&ModuleOutput::READ, Self::ModuleOutput(Layout::decode(data))),
-            0x04 => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
-            0x06 => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))).or(
-                Recognised::reply(&InputVoltageDc::READ, Self::InputVoltageDc(Layout::decode(data))),
-                frame,
-                model,
-            ),
-            0x0C => Recognised::reply(&ExternalVoltage::READ, Self::ExternalVoltage(Layout::decode(data))),
-            0x13 => Recognised::reply(&SetWalkIn::SET, Self::SetWalkInReply(Layout::decode(data))),
-            0x14 => Recognised::reply(&SetLed::SET, Self::SetLed(Layout::decode(data))),
-            0x1A => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            0x1B => Recognised::reply(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(Layout::decode(data))),
-            0x1C => Recognised::reply(&SetModuleOutput::SET, Self::SetModuleOutput(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x01 => frame.reply(&SystemOutput::READ_TOTAL, Self::SystemOutput(frame.values())),
+            0x02 => frame.reply(&ModuleCount::READ_TOTAL, Self::ModuleCount(frame.values())),
+            0x03 => frame.reply(&ModuleOutput::READ, Self::ModuleOutput(frame.values())),
+            0x04 => frame.reply(&ModuleStatus::READ, Self::ModuleStatus(frame.values())),
+            0x06 => frame.best([
+                frame.reply(&InputVoltage::READ, Self::InputVoltage(frame.values())),
+                frame.reply(&InputVoltageDc::READ, Self::InputVoltageDc(frame.values())),
+            ]),
+            0x0C => frame.reply(&ExternalVoltage::READ, Self::ExternalVoltage(frame.values())),
+            0x13 => frame.reply(&SetWalkIn::SET, Self::SetWalkInReply(frame.values())),
+            0x14 => frame.reply(&SetLed::SET, Self::SetLed(frame.values())),
+            0x1A => frame.reply(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            0x1B => frame.reply(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
+            0x1C => frame.reply(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x01..=0x04 | 0x06 | 0x0C | 0x0F | 0x13 | 0x14 | 0x1A..=0x1C => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x01..=0x04 | 0x06 | 0x0C | 0x13 | 0x14 | 0x1A..=0x1C => &[8],
             _ => &[],
         }

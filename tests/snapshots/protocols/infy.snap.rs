@@ -2028,6 +2028,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -2036,73 +2037,65 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x01 => Recognised::request(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput),
-            0x02 => Recognised::request(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount),
-            0x03 => Recognised::request(&ModuleOutput::READ, Self::ReadModuleOutput),
-            0x04 => Recognised::request(&ModuleStatus::READ, Self::ReadModuleStatus),
-            0x06 => Recognised::request(&InputVoltage::READ, Self::ReadInputVoltage),
-            0x08 => Recognised::request(&SystemOutputFixed::READ_TOTAL, Self::ReadTotalSystemOutputFixed),
-            0x09 => Recognised::request(&ModuleOutputFixed::READ, Self::ReadModuleOutputFixed),
-            0x0A => Recognised::request(&ModuleLimits::READ, Self::ReadModuleLimits),
-            0x0B => Recognised::request(&Barcode::READ, Self::ReadBarcode),
-            0x0C => Recognised::request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
-            0x13 => Recognised::request(&SetWalkIn::SET, Self::SetWalkIn(Layout::decode(data))),
-            0x14 => Recognised::request(&SetLed::SET, Self::SetLed(Layout::decode(data))),
-            0x16 => Recognised::request(&SetGroup::SET, Self::SetGroup(Layout::decode(data))),
-            0x19 => Recognised::request(&SetSleep::SET, Self::SetSleep(Layout::decode(data))),
-            0x1A => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            0x1B => Recognised::request(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(Layout::decode(data))),
-            0x1C => Recognised::request(&SetModuleOutput::SET, Self::SetModuleOutput(Layout::decode(data))),
-            0x1F => Recognised::request(&SetAddressMode::SET, Self::SetAddressMode(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x01 => frame.request(&SystemOutput::READ_TOTAL, Self::ReadTotalSystemOutput),
+            0x02 => frame.request(&ModuleCount::READ_TOTAL, Self::ReadTotalModuleCount),
+            0x03 => frame.request(&ModuleOutput::READ, Self::ReadModuleOutput),
+            0x04 => frame.request(&ModuleStatus::READ, Self::ReadModuleStatus),
+            0x06 => frame.request(&InputVoltage::READ, Self::ReadInputVoltage),
+            0x08 => frame.request(&SystemOutputFixed::READ_TOTAL, Self::ReadTotalSystemOutputFixed),
+            0x09 => frame.request(&ModuleOutputFixed::READ, Self::ReadModuleOutputFixed),
+            0x0A => frame.request(&ModuleLimits::READ, Self::ReadModuleLimits),
+            0x0B => frame.request(&Barcode::READ, Self::ReadBarcode),
+            0x0C => frame.request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
+            0x13 => frame.request(&SetWalkIn::SET, Self::SetWalkIn(frame.values())),
+            0x14 => frame.request(&SetLed::SET, Self::SetLed(frame.values())),
+            0x16 => frame.request(&SetGroup::SET, Self::SetGroup(frame.values())),
+            0x19 => frame.request(&SetSleep::SET, Self::SetSleep(frame.values())),
+            0x1A => frame.request(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            0x1B => frame.request(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
+            0x1C => frame.request(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
+            0x1F => frame.request(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x01 => Recognised::reply(&SystemOutput::READ_TOTAL, Self::SystemOutput(Layout::decode(data))),
-            0x02 => Recognised::reply(&ModuleCount::READ_TOTAL, Self::ModuleCount(Layout::decode(data))),
-            0x03 => Recognised::reply(&ModuleOutput::READ, Self::ModuleOutput(Layout::decode(data))),
-            0x04 => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
-            0x06 => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))),
-            0x08 => Recognised::reply(&SystemOutputFixed::READ_TOTAL, Self::SystemOutputFixed(Layout::decode(data))),
-            0x09 => Recognised::reply(&ModuleOutputFixed::READ, Self::ModuleOutputFixed(Layout::decode(data))),
-            0x0A => Recognised::reply(&ModuleLimits::READ, Self::ModuleLimits(Layout::decode(data))),
-            0x0B => Recognised::reply(&Barcode::READ, Self::Barcode(Layout::decode(data))),
-            0x0C => Recognised::reply(&ExternalVoltage::READ, Self::ExternalVoltage(Layout::decode(data))),
-            0x13 => Recognised::reply(&SetWalkIn::SET, Self::SetWalkIn(Layout::decode(data))),
-            0x14 => Recognised::reply(&SetLed::SET, Self::SetLed(Layout::decode(data))),
-            0x16 => Recognised::reply(&SetGroup::SET, Self::SetGroup(Layout::decode(data))),
-            0x19 => Recognised::reply(&SetSleep::SET, Self::SetSleep(Layout::decode(data))),
-            0x1A => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            0x1B => Recognised::reply(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(Layout::decode(data))),
-            0x1C => Recognised::reply(&SetModuleOutput::SET, Self::SetModuleOutput(Layout::decode(data))),
-            0x1F => Recognised::reply(&SetAddressMode::SET, Self::SetAddressMode(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x01 => frame.reply(&SystemOutput::READ_TOTAL, Self::SystemOutput(frame.values())),
+            0x02 => frame.reply(&ModuleCount::READ_TOTAL, Self::ModuleCount(frame.values())),
+            0x03 => frame.reply(&ModuleOutput::READ, Self::ModuleOutput(frame.values())),
+            0x04 => frame.reply(&ModuleStatus::READ, Self::ModuleStatus(frame.values())),
+            0x06 => frame.reply(&InputVoltage::READ, Self::InputVoltage(frame.values())),
+            0x08 => frame.reply(&SystemOutputFixed::READ_TOTAL, Self::SystemOutputFixed(frame.values())),
+            0x09 => frame.reply(&ModuleOutputFixed::READ, Self::ModuleOutputFixed(frame.values())),
+            0x0A => frame.reply(&ModuleLimits::READ, Self::ModuleLimits(frame.values())),
+            0x0B => frame.reply(&Barcode::READ, Self::Barcode(frame.values())),
+            0x0C => frame.reply(&ExternalVoltage::READ, Self::ExternalVoltage(frame.values())),
+            0x13 => frame.reply(&SetWalkIn::SET, Self::SetWalkIn(frame.values())),
+            0x14 => frame.reply(&SetLed::SET, Self::SetLed(frame.values())),
+            0x16 => frame.reply(&SetGroup::SET, Self::SetGroup(frame.values())),
+            0x19 => frame.reply(&SetSleep::SET, Self::SetSleep(frame.values())),
+            0x1A => frame.reply(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            0x1B => frame.reply(&SetTotalOutput::SET_TOTAL, Self::SetTotalOutput(frame.values())),
+            0x1C => frame.reply(&SetModuleOutput::SET, Self::SetModuleOutput(frame.values())),
+            0x1F => frame.reply(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x01..=0x04 | 0x06 | 0x08..=0x0C | 0x13 | 0x14 | 0x16 | 0x19..=0x1C | 0x1F => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x01..=0x04 | 0x06 | 0x08..=0x0C | 0x13 | 0x14 | 0x16 | 0x19..=0x1C | 0x1F => &[8],
             _ => &[],
         }

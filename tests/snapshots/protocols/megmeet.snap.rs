@@ -5283,408 +5283,201 @@ impl Message {
         Received::decode_for(model, frame)
     }
 
-    fn request_2(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x82, 0x175) => Recognised::request(&OutputVoltage::READ, Self::ReadOutputVoltage),
-            (0x82, 0x176) => Recognised::request(&ActualCurrentLimit::READ, Self::ReadActualCurrentLimit),
-            (0x82, 0x177) => Recognised::request(&ActualPowerLimit::READ, Self::ReadActualPowerLimit),
-            (0x82, 0x178) => Recognised::request(&InputVoltage::READ, Self::ReadInputVoltage),
-            (0x82, 0x180) => Recognised::request(&AmbientTemperature::READ, Self::ReadAmbientTemperature),
-            (0x82, 0x182) => Recognised::request(&OutputCurrent::READ, Self::ReadOutputCurrent),
-            (0x82, 0x183) => Recognised::request(&ModuleStatus::READ, Self::ReadModuleStatus),
-            (0x82, 0x184) => Recognised::request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
-            (0x82, 0x188) => Recognised::request(&RatedCurrent::READ, Self::ReadRatedCurrent),
-            (0x82, 0x21D) => Recognised::request(&AddressModeSwitch::READ, Self::ReadAddressModeSwitch),
-            (0x80, 0x21D) => {
-                Recognised::request(&AddressModeSwitch::SET, Self::AddressModeSwitch(Layout::decode(data)))
+    fn request_2(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
+            (0x81, 0x224) => frame.request(&Barcode2::STORE, Self::Barcode2(frame.values())),
+            (0x82, 0x225) => frame.request(&Barcode3::READ, Self::ReadBarcode3),
+            (0x80, 0x225) => frame.request(&Barcode3::SET, Self::Barcode3(frame.values())),
+            (0x81, 0x225) => frame.request(&Barcode3::STORE, Self::Barcode3(frame.values())),
+            (0x82, 0x226) => frame.request(&Barcode4::READ, Self::ReadBarcode4),
+            (0x80, 0x226) => frame.request(&Barcode4::SET, Self::Barcode4(frame.values())),
+            (0x81, 0x226) => frame.request(&Barcode4::STORE, Self::Barcode4(frame.values())),
+            (0x82, 0x22B) => frame.request(&FanDutyCycle::READ, Self::ReadFanDutyCycle),
+            (0x82, 0x22D) => frame.request(&RectifierCurrentLimitSetting::READ, Self::ReadRectifierCurrentLimitSetting),
+            (0x80, 0x22D) => {
+                frame.request(&RectifierCurrentLimitSetting::SET, Self::RectifierCurrentLimitSetting(frame.values()))
             }
-            (0x81, 0x21D) => {
-                Recognised::request(&AddressModeSwitch::STORE, Self::AddressModeSwitch(Layout::decode(data)))
-            }
-            (0x82, 0x222) => Recognised::request(&BarcodeVersion::READ, Self::ReadBarcodeVersion),
-            (0x80, 0x222) => Recognised::request(&BarcodeVersion::SET, Self::BarcodeVersion(Layout::decode(data))),
-            (0x81, 0x222) => Recognised::request(&BarcodeVersion::STORE, Self::BarcodeVersion(Layout::decode(data))),
-            (0x82, 0x223) => Recognised::request(&Barcode1::READ, Self::ReadBarcode1),
-            (0x80, 0x223) => Recognised::request(&Barcode1::SET, Self::Barcode1(Layout::decode(data))),
-            (0x81, 0x223) => Recognised::request(&Barcode1::STORE, Self::Barcode1(Layout::decode(data))),
-            (0x82, 0x224) => Recognised::request(&Barcode2::READ, Self::ReadBarcode2),
-            (0x80, 0x224) => Recognised::request(&Barcode2::SET, Self::Barcode2(Layout::decode(data))),
-            (0x81, 0x224) => Recognised::request(&Barcode2::STORE, Self::Barcode2(Layout::decode(data))),
-            (0x82, 0x225) => Recognised::request(&Barcode3::READ, Self::ReadBarcode3),
-            (0x80, 0x225) => Recognised::request(&Barcode3::SET, Self::Barcode3(Layout::decode(data))),
-            (0x81, 0x225) => Recognised::request(&Barcode3::STORE, Self::Barcode3(Layout::decode(data))),
-            (0x82, 0x226) => Recognised::request(&Barcode4::READ, Self::ReadBarcode4),
-            (0x80, 0x226) => Recognised::request(&Barcode4::SET, Self::Barcode4(Layout::decode(data))),
-            (0x81, 0x226) => Recognised::request(&Barcode4::STORE, Self::Barcode4(Layout::decode(data))),
-            (0x82, 0x22B) => Recognised::request(&FanDutyCycle::READ, Self::ReadFanDutyCycle),
-            (0x82, 0x22D) => {
-                Recognised::request(&RectifierCurrentLimitSetting::READ, Self::ReadRectifierCurrentLimitSetting)
-            }
-            (0x80, 0x22D) => Recognised::request(
-                &RectifierCurrentLimitSetting::SET,
-                Self::RectifierCurrentLimitSetting(Layout::decode(data)),
-            ),
-            (0x82, 0x22E) => Recognised::request(&PvCurrentLimitSetting::READ, Self::ReadPvCurrentLimitSetting),
-            (0x80, 0x22E) => {
-                Recognised::request(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(Layout::decode(data)))
-            }
+            (0x82, 0x22E) => frame.request(&PvCurrentLimitSetting::READ, Self::ReadPvCurrentLimitSetting),
+            (0x80, 0x22E) => frame.request(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(frame.values())),
             (0x82, 0x22F) => {
-                Recognised::request(&RectifierOutputVoltageSetting::READ, Self::ReadRectifierOutputVoltageSetting)
+                frame.request(&RectifierOutputVoltageSetting::READ, Self::ReadRectifierOutputVoltageSetting)
             }
-            (0x80, 0x22F) => Recognised::request(
-                &RectifierOutputVoltageSetting::SET,
-                Self::RectifierOutputVoltageSetting(Layout::decode(data)),
-            ),
-            (0x82, 0x230) => Recognised::request(&PvOutputVoltageSetting::READ, Self::ReadPvOutputVoltageSetting),
-            (0x80, 0x230) => {
-                Recognised::request(&PvOutputVoltageSetting::SET, Self::PvOutputVoltageSetting(Layout::decode(data)))
+            (0x80, 0x22F) => {
+                frame.request(&RectifierOutputVoltageSetting::SET, Self::RectifierOutputVoltageSetting(frame.values()))
             }
-            (0x82, 0x236) => Recognised::request(&PfcAlarmWord::READ, Self::ReadPfcAlarmWord),
-            (0x82, 0x237) => Recognised::request(&PfcFaultWord::READ, Self::ReadPfcFaultWord),
-            (0x82, 0x238) => Recognised::request(&PfcStatusWord::READ, Self::ReadPfcStatusWord),
-            (0x82, 0x239) => Recognised::request(&DcdcAlarmWord::READ, Self::ReadDcdcAlarmWord),
-            (0x82, 0x23A) => Recognised::request(&DcdcFaultWord::READ, Self::ReadDcdcFaultWord),
-            (0x82, 0x23B) => Recognised::request(&DcdcStatusWord::READ, Self::ReadDcdcStatusWord),
-            (0x80, 0x24E) => Recognised::request(&AutoBootSetting::SET, Self::AutoBootSetting(Layout::decode(data))),
-            (0x81, 0x24E) => Recognised::request(&AutoBootSetting::STORE, Self::AutoBootSetting(Layout::decode(data))),
-            (0x82, 0x270) => Recognised::request(&PvVoltageSetting::READ, Self::ReadPvVoltageSetting),
-            (0x80, 0x270) => Recognised::request(&PvVoltageSetting::SET, Self::PvVoltageSetting(Layout::decode(data))),
-            (0x82, 0x271) => Recognised::request(&Reserved271::READ, Self::ReadReserved271),
-            (0x82, 0x272) => Recognised::request(&Reserved272::READ, Self::ReadReserved272),
-            (0x82, 0x273) => Recognised::request(&MpptSingleScan::READ, Self::ReadMpptSingleScan),
-            (0x80, 0x273) => Recognised::request(&MpptSingleScan::SET, Self::MpptSingleScan(Layout::decode(data))),
-            (0x82, 0x274) => Recognised::request(&MpptScanCycle::READ, Self::ReadMpptScanCycle),
-            (0x80, 0x274) => Recognised::request(&MpptScanCycle::SET, Self::MpptScanCycle(Layout::decode(data))),
-            (0x81, 0x274) => Recognised::request(&MpptScanCycle::STORE, Self::MpptScanCycle(Layout::decode(data))),
-            _ => return Self::request_3(frame, model),
-        };
-        Some(recognised)
+            (0x82, 0x230) => frame.request(&PvOutputVoltageSetting::READ, Self::ReadPvOutputVoltageSetting),
+            (0x80, 0x230) => frame.request(&PvOutputVoltageSetting::SET, Self::PvOutputVoltageSetting(frame.values())),
+            (0x82, 0x236) => frame.request(&PfcAlarmWord::READ, Self::ReadPfcAlarmWord),
+            (0x82, 0x237) => frame.request(&PfcFaultWord::READ, Self::ReadPfcFaultWord),
+            (0x82, 0x238) => frame.request(&PfcStatusWord::READ, Self::ReadPfcStatusWord),
+            (0x82, 0x239) => frame.request(&DcdcAlarmWord::READ, Self::ReadDcdcAlarmWord),
+            (0x82, 0x23A) => frame.request(&DcdcFaultWord::READ, Self::ReadDcdcFaultWord),
+            (0x82, 0x23B) => frame.request(&DcdcStatusWord::READ, Self::ReadDcdcStatusWord),
+            (0x80, 0x24E) => frame.request(&AutoBootSetting::SET, Self::AutoBootSetting(frame.values())),
+            (0x81, 0x24E) => frame.request(&AutoBootSetting::STORE, Self::AutoBootSetting(frame.values())),
+            (0x82, 0x270) => frame.request(&PvVoltageSetting::READ, Self::ReadPvVoltageSetting),
+            (0x80, 0x270) => frame.request(&PvVoltageSetting::SET, Self::PvVoltageSetting(frame.values())),
+            (0x82, 0x271) => frame.request(&Reserved271::READ, Self::ReadReserved271),
+            (0x82, 0x272) => frame.request(&Reserved272::READ, Self::ReadReserved272),
+            (0x82, 0x273) => frame.request(&MpptSingleScan::READ, Self::ReadMpptSingleScan),
+            (0x80, 0x273) => frame.request(&MpptSingleScan::SET, Self::MpptSingleScan(frame.values())),
+            (0x82, 0x274) => frame.request(&MpptScanCycle::READ, Self::ReadMpptScanCycle),
+            (0x80, 0x274) => frame.request(&MpptScanCycle::SET, Self::MpptScanCycle(frame.values())),
+            (0x81, 0x274) => frame.request(&MpptScanCycle::STORE, Self::MpptScanCycle(frame.values())),
+            (0x82, 0x275) => frame.request(&WindVoltageSetting::READ, Self::ReadWindVoltageSetting),
+            (0x80, 0x275) => frame.request(&WindVoltageSetting::SET, Self::WindVoltageSetting(frame.values())),
+            (0x82, 0x276) => frame.request(&WindVoltageUpperLimit::READ, Self::ReadWindVoltageUpperLimit),
+            (0x80, 0x276) => frame.request(&WindVoltageUpperLimit::SET, Self::WindVoltageUpperLimit(frame.values())),
+            (0x82, 0x277) => frame.request(&WindVoltageLowerLimit::READ, Self::ReadWindVoltageLowerLimit),
+            (0x80, 0x277) => frame.request(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(frame.values())),
+            (0x82, 0x301) => frame.request(&CustomerInformation1::READ, Self::ReadCustomerInformation1),
+            (0x80, 0x301) => frame.request(&CustomerInformation1::SET, Self::CustomerInformation1(frame.values())),
+            (0x81, 0x301) => frame.request(&CustomerInformation1::STORE, Self::CustomerInformation1(frame.values())),
+            (0x82, 0x302) => frame.request(&CustomerInformation2::READ, Self::ReadCustomerInformation2),
+            (0x80, 0x302) => frame.request(&CustomerInformation2::SET, Self::CustomerInformation2(frame.values())),
+            (0x81, 0x302) => frame.request(&CustomerInformation2::STORE, Self::CustomerInformation2(frame.values())),
+            (0x82, 0x303) => frame.request(&CustomerInformation3::READ, Self::ReadCustomerInformation3),
+            (0x80, 0x303) => frame.request(&CustomerInformation3::SET, Self::CustomerInformation3(frame.values())),
+            (0x81, 0x303) => frame.request(&CustomerInformation3::STORE, Self::CustomerInformation3(frame.values())),
+            (0x82, 0x304) => frame.request(&CustomerInformation4::READ, Self::ReadCustomerInformation4),
+            (0x80, 0x304) => frame.request(&CustomerInformation4::SET, Self::CustomerInformation4(frame.values())),
+            (0x81, 0x304) => frame.request(&CustomerInformation4::STORE, Self::CustomerInformation4(frame.values())),
+            (0x82, 0x305) => frame.request(&CustomerInformation5::READ, Self::ReadCustomerInformation5),
+            (0x80, 0x305) => frame.request(&CustomerInformation5::SET, Self::CustomerInformation5(frame.values())),
+            (0x81, 0x305) => frame.request(&CustomerInformation5::STORE, Self::CustomerInformation5(frame.values())),
+            (0x82, 0x306) => frame.request(&CustomerInformation6::READ, Self::ReadCustomerInformation6),
+            (0x80, 0x306) => frame.request(&CustomerInformation6::SET, Self::CustomerInformation6(frame.values())),
+            (0x81, 0x306) => frame.request(&CustomerInformation6::STORE, Self::CustomerInformation6(frame.values())),
+            (0x82, 0x307) => frame.request(&CustomerInformation7::READ, Self::ReadCustomerInformation7),
+            (0x80, 0x307) => frame.request(&CustomerInformation7::SET, Self::CustomerInformation7(frame.values())),
+            (0x81, 0x307) => frame.request(&CustomerInformation7::STORE, Self::CustomerInformation7(frame.values())),
+            (0x82, 0x308) => frame.request(&CustomerInformation8::READ, Self::ReadCustomerInformation8),
+            (0x80, 0x308) => frame.request(&CustomerInformation8::SET, Self::CustomerInformation8(frame.values())),
+            (0x81, 0x308) => frame.request(&CustomerInformation8::STORE, Self::CustomerInformation8(frame.values())),
+            (0x40, _) => frame.request(&RealTimeData::READ_ALL, Self::ReadAllRealTimeData),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_3(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x82, 0x275) => Recognised::request(&WindVoltageSetting::READ, Self::ReadWindVoltageSetting),
-            (0x80, 0x275) => {
-                Recognised::request(&WindVoltageSetting::SET, Self::WindVoltageSetting(Layout::decode(data)))
+    fn reply_2(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
+            (0x82, 0x172) => frame.reply(&InputCurrent::READ, Self::InputCurrent(frame.values())),
+            (0x40, 0x172) => frame.reply(&InputCurrent::READ_ALL_REAL_TIME_DATA, Self::InputCurrent(frame.values())),
+            (0x82, 0x173) => frame.reply(&OutputPower::READ, Self::OutputPower(frame.values())),
+            (0x40, 0x173) => frame.reply(&OutputPower::READ_ALL_REAL_TIME_DATA, Self::OutputPower(frame.values())),
+            (0x82, 0x175) => frame.reply(&OutputVoltage::READ, Self::OutputVoltage(frame.values())),
+            (0x40, 0x175) => frame.reply(&OutputVoltage::READ_ALL_REAL_TIME_DATA, Self::OutputVoltage(frame.values())),
+            (0x82, 0x176) => frame.reply(&ActualCurrentLimit::READ, Self::ActualCurrentLimit(frame.values())),
+            (0x40, 0x176) => {
+                frame.reply(&ActualCurrentLimit::READ_ALL_REAL_TIME_DATA, Self::ActualCurrentLimit(frame.values()))
             }
-            (0x82, 0x276) => Recognised::request(&WindVoltageUpperLimit::READ, Self::ReadWindVoltageUpperLimit),
-            (0x80, 0x276) => {
-                Recognised::request(&WindVoltageUpperLimit::SET, Self::WindVoltageUpperLimit(Layout::decode(data)))
+            (0x82, 0x177) => frame.reply(&ActualPowerLimit::READ, Self::ActualPowerLimit(frame.values())),
+            (0x82, 0x178) => frame.reply(&InputVoltage::READ, Self::InputVoltage(frame.values())),
+            (0x40, 0x178) => frame.reply(&InputVoltage::READ_ALL_REAL_TIME_DATA, Self::InputVoltage(frame.values())),
+            (0x82, 0x180) => frame.reply(&AmbientTemperature::READ, Self::AmbientTemperature(frame.values())),
+            (0x40, 0x180) => {
+                frame.reply(&AmbientTemperature::READ_ALL_REAL_TIME_DATA, Self::AmbientTemperature(frame.values()))
             }
-            (0x82, 0x277) => Recognised::request(&WindVoltageLowerLimit::READ, Self::ReadWindVoltageLowerLimit),
-            (0x80, 0x277) => {
-                Recognised::request(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(Layout::decode(data)))
+            (0x82, 0x182) => frame.reply(&OutputCurrent::READ, Self::OutputCurrent(frame.values())),
+            (0x40, 0x182) => frame.reply(&OutputCurrent::READ_ALL_REAL_TIME_DATA, Self::OutputCurrent(frame.values())),
+            (0x82, 0x183) => frame.reply(&ModuleStatus::READ, Self::ModuleStatus(frame.values())),
+            (0x40, 0x183) => frame.reply(&ModuleStatus::READ_ALL_REAL_TIME_DATA, Self::ModuleStatus(frame.values())),
+            (0x82, 0x184) => frame.reply(&ExternalVoltage::READ, Self::ExternalVoltage(frame.values())),
+            (0x82, 0x188) => frame.reply(&RatedCurrent::READ, Self::RatedCurrent(frame.values())),
+            (0x82, 0x21D) => frame.reply(&AddressModeSwitch::READ, Self::AddressModeSwitch(frame.values())),
+            (0x80, 0x21D) => frame.reply(&AddressModeSwitch::SET, Self::AddressModeSwitch(frame.values())),
+            (0x81, 0x21D) => frame.reply(&AddressModeSwitch::STORE, Self::AddressModeSwitch(frame.values())),
+            (0x82, 0x222) => frame.reply(&BarcodeVersion::READ, Self::BarcodeVersion(frame.values())),
+            (0x80, 0x222) => frame.reply(&BarcodeVersion::SET, Self::BarcodeVersion(frame.values())),
+            (0x81, 0x222) => frame.reply(&BarcodeVersion::STORE, Self::BarcodeVersion(frame.values())),
+            (0x82, 0x223) => frame.reply(&Barcode1::READ, Self::Barcode1(frame.values())),
+            (0x80, 0x223) => frame.reply(&Barcode1::SET, Self::Barcode1(frame.values())),
+            (0x81, 0x223) => frame.reply(&Barcode1::STORE, Self::Barcode1(frame.values())),
+            (0x82, 0x224) => frame.reply(&Barcode2::READ, Self::Barcode2(frame.values())),
+            (0x80, 0x224) => frame.reply(&Barcode2::SET, Self::Barcode2(frame.values())),
+            (0x81, 0x224) => frame.reply(&Barcode2::STORE, Self::Barcode2(frame.values())),
+            (0x82, 0x225) => frame.reply(&Barcode3::READ, Self::Barcode3(frame.values())),
+            (0x80, 0x225) => frame.reply(&Barcode3::SET, Self::Barcode3(frame.values())),
+            (0x81, 0x225) => frame.reply(&Barcode3::STORE, Self::Barcode3(frame.values())),
+            (0x82, 0x226) => frame.reply(&Barcode4::READ, Self::Barcode4(frame.values())),
+            (0x80, 0x226) => frame.reply(&Barcode4::SET, Self::Barcode4(frame.values())),
+            (0x81, 0x226) => frame.reply(&Barcode4::STORE, Self::Barcode4(frame.values())),
+            (0x82, 0x22B) => frame.reply(&FanDutyCycle::READ, Self::FanDutyCycle(frame.values())),
+            (0x82, 0x22D) => {
+                frame.reply(&RectifierCurrentLimitSetting::READ, Self::RectifierCurrentLimitSetting(frame.values()))
             }
-            (0x82, 0x301) => Recognised::request(&CustomerInformation1::READ, Self::ReadCustomerInformation1),
-            (0x80, 0x301) => {
-                Recognised::request(&CustomerInformation1::SET, Self::CustomerInformation1(Layout::decode(data)))
+            (0x80, 0x22D) => {
+                frame.reply(&RectifierCurrentLimitSetting::SET, Self::RectifierCurrentLimitSetting(frame.values()))
             }
-            (0x81, 0x301) => {
-                Recognised::request(&CustomerInformation1::STORE, Self::CustomerInformation1(Layout::decode(data)))
+            (0x82, 0x22E) => frame.reply(&PvCurrentLimitSetting::READ, Self::PvCurrentLimitSetting(frame.values())),
+            (0x80, 0x22E) => frame.reply(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(frame.values())),
+            (0x82, 0x22F) => {
+                frame.reply(&RectifierOutputVoltageSetting::READ, Self::RectifierOutputVoltageSetting(frame.values()))
             }
-            (0x82, 0x302) => Recognised::request(&CustomerInformation2::READ, Self::ReadCustomerInformation2),
-            (0x80, 0x302) => {
-                Recognised::request(&CustomerInformation2::SET, Self::CustomerInformation2(Layout::decode(data)))
+            (0x80, 0x22F) => {
+                frame.reply(&RectifierOutputVoltageSetting::SET, Self::RectifierOutputVoltageSetting(frame.values()))
             }
-            (0x81, 0x302) => {
-                Recognised::request(&CustomerInformation2::STORE, Self::CustomerInformation2(Layout::decode(data)))
-            }
-            (0x82, 0x303) => Recognised::request(&CustomerInformation3::READ, Self::ReadCustomerInformation3),
-            (0x80, 0x303) => {
-                Recognised::request(&CustomerInformation3::SET, Self::CustomerInformation3(Layout::decode(data)))
-            }
-            (0x81, 0x303) => {
-                Recognised::request(&CustomerInformation3::STORE, Self::CustomerInformation3(Layout::decode(data)))
-            }
-            (0x82, 0x304) => Recognised::request(&CustomerInformation4::READ, Self::ReadCustomerInformation4),
-            (0x80, 0x304) => {
-                Recognised::request(&CustomerInformation4::SET, Self::CustomerInformation4(Layout::decode(data)))
-            }
-            (0x81, 0x304) => {
-                Recognised::request(&CustomerInformation4::STORE, Self::CustomerInformation4(Layout::decode(data)))
-            }
-            (0x82, 0x305) => Recognised::request(&CustomerInformation5::READ, Self::ReadCustomerInformation5),
-            (0x80, 0x305) => {
-                Recognised::request(&CustomerInformation5::SET, Self::CustomerInformation5(Layout::decode(data)))
-            }
-            (0x81, 0x305) => {
-                Recognised::request(&CustomerInformation5::STORE, Self::CustomerInformation5(Layout::decode(data)))
-            }
-            (0x82, 0x306) => Recognised::request(&CustomerInformation6::READ, Self::ReadCustomerInformation6),
-            (0x80, 0x306) => {
-                Recognised::request(&CustomerInformation6::SET, Self::CustomerInformation6(Layout::decode(data)))
-            }
-            (0x81, 0x306) => {
-                Recognised::request(&CustomerInformation6::STORE, Self::CustomerInformation6(Layout::decode(data)))
-            }
-            (0x82, 0x307) => Recognised::request(&CustomerInformation7::READ, Self::ReadCustomerInformation7),
-            (0x80, 0x307) => {
-                Recognised::request(&CustomerInformation7::SET, Self::CustomerInformation7(Layout::decode(data)))
-            }
-            (0x81, 0x307) => {
-                Recognised::request(&CustomerInformation7::STORE, Self::CustomerInformation7(Layout::decode(data)))
-            }
-            (0x82, 0x308) => Recognised::request(&CustomerInformation8::READ, Self::ReadCustomerInformation8),
-            (0x80, 0x308) => {
-                Recognised::request(&CustomerInformation8::SET, Self::CustomerInformation8(Layout::decode(data)))
-            }
-            (0x81, 0x308) => {
-                Recognised::request(&CustomerInformation8::STORE, Self::CustomerInformation8(Layout::decode(data)))
-            }
-            (0x40, _) => Recognised::request(&RealTimeData::READ_ALL, Self::ReadAllRealTimeData),
-            _ => return None,
-        };
-        Some(recognised)
+            _ => Self::reply_3(frame),
+        }
     }
 
-    fn reply_2(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x80, 0x135) => Recognised::reply(&FlashGreenLight::SET, Self::FlashGreenLight(Layout::decode(data))),
-            (0x80, 0x13A) => Recognised::reply(&AssignAddresses::SET, Self::AssignAddresses(Layout::decode(data))),
-            (0x80, 0x140) => Recognised::reply(&ControlLights::SET, Self::ControlLights(Layout::decode(data))),
-            (0x80, 0x142) => Recognised::reply(&ShieldAlarms::SET, Self::ShieldAlarms(Layout::decode(data))),
-            (0x80, 0x143) => {
-                Recognised::reply(&ShieldCommunicationAlarm::SET, Self::ShieldCommunicationAlarm(Layout::decode(data)))
-            }
-            (0x81, 0x143) => Recognised::reply(
-                &ShieldCommunicationAlarm::STORE,
-                Self::ShieldCommunicationAlarm(Layout::decode(data)),
-            ),
-            (0x82, 0x170) => Recognised::reply(&InputPower::READ, Self::InputPower(Layout::decode(data))),
-            (0x40, 0x170) => {
-                Recognised::reply(&InputPower::READ_ALL_REAL_TIME_DATA, Self::InputPower(Layout::decode(data)))
-            }
-            (0x82, 0x171) => Recognised::reply(&InputFrequency::READ, Self::InputFrequency(Layout::decode(data))),
-            (0x40, 0x171) => {
-                Recognised::reply(&InputFrequency::READ_ALL_REAL_TIME_DATA, Self::InputFrequency(Layout::decode(data)))
-            }
-            (0x82, 0x172) => Recognised::reply(&InputCurrent::READ, Self::InputCurrent(Layout::decode(data))),
-            (0x40, 0x172) => {
-                Recognised::reply(&InputCurrent::READ_ALL_REAL_TIME_DATA, Self::InputCurrent(Layout::decode(data)))
-            }
-            (0x82, 0x173) => Recognised::reply(&OutputPower::READ, Self::OutputPower(Layout::decode(data))),
-            (0x40, 0x173) => {
-                Recognised::reply(&OutputPower::READ_ALL_REAL_TIME_DATA, Self::OutputPower(Layout::decode(data)))
-            }
-            (0x82, 0x175) => Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data))),
-            (0x40, 0x175) => {
-                Recognised::reply(&OutputVoltage::READ_ALL_REAL_TIME_DATA, Self::OutputVoltage(Layout::decode(data)))
-            }
-            (0x82, 0x176) => {
-                Recognised::reply(&ActualCurrentLimit::READ, Self::ActualCurrentLimit(Layout::decode(data)))
-            }
-            (0x40, 0x176) => Recognised::reply(
-                &ActualCurrentLimit::READ_ALL_REAL_TIME_DATA,
-                Self::ActualCurrentLimit(Layout::decode(data)),
-            ),
-            (0x82, 0x177) => Recognised::reply(&ActualPowerLimit::READ, Self::ActualPowerLimit(Layout::decode(data))),
-            (0x82, 0x178) => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))),
-            (0x40, 0x178) => {
-                Recognised::reply(&InputVoltage::READ_ALL_REAL_TIME_DATA, Self::InputVoltage(Layout::decode(data)))
-            }
-            (0x82, 0x180) => {
-                Recognised::reply(&AmbientTemperature::READ, Self::AmbientTemperature(Layout::decode(data)))
-            }
-            (0x40, 0x180) => Recognised::reply(
-                &AmbientTemperature::READ_ALL_REAL_TIME_DATA,
-                Self::AmbientTemperature(Layout::decode(data)),
-            ),
-            (0x82, 0x182) => Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data))),
-            (0x40, 0x182) => {
-                Recognised::reply(&OutputCurrent::READ_ALL_REAL_TIME_DATA, Self::OutputCurrent(Layout::decode(data)))
-            }
-            (0x82, 0x183) => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
-            (0x40, 0x183) => {
-                Recognised::reply(&ModuleStatus::READ_ALL_REAL_TIME_DATA, Self::ModuleStatus(Layout::decode(data)))
-            }
-            (0x82, 0x184) => Recognised::reply(&ExternalVoltage::READ, Self::ExternalVoltage(Layout::decode(data))),
-            (0x82, 0x188) => Recognised::reply(&RatedCurrent::READ, Self::RatedCurrent(Layout::decode(data))),
-            (0x82, 0x21D) => Recognised::reply(&AddressModeSwitch::READ, Self::AddressModeSwitch(Layout::decode(data))),
-            (0x80, 0x21D) => Recognised::reply(&AddressModeSwitch::SET, Self::AddressModeSwitch(Layout::decode(data))),
-            (0x81, 0x21D) => {
-                Recognised::reply(&AddressModeSwitch::STORE, Self::AddressModeSwitch(Layout::decode(data)))
-            }
-            (0x82, 0x222) => Recognised::reply(&BarcodeVersion::READ, Self::BarcodeVersion(Layout::decode(data))),
-            (0x80, 0x222) => Recognised::reply(&BarcodeVersion::SET, Self::BarcodeVersion(Layout::decode(data))),
-            (0x81, 0x222) => Recognised::reply(&BarcodeVersion::STORE, Self::BarcodeVersion(Layout::decode(data))),
-            (0x82, 0x223) => Recognised::reply(&Barcode1::READ, Self::Barcode1(Layout::decode(data))),
-            (0x80, 0x223) => Recognised::reply(&Barcode1::SET, Self::Barcode1(Layout::decode(data))),
-            (0x81, 0x223) => Recognised::reply(&Barcode1::STORE, Self::Barcode1(Layout::decode(data))),
-            (0x82, 0x224) => Recognised::reply(&Barcode2::READ, Self::Barcode2(Layout::decode(data))),
-            _ => return Self::reply_3(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_3(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x80, 0x224) => Recognised::reply(&Barcode2::SET, Self::Barcode2(Layout::decode(data))),
-            (0x81, 0x224) => Recognised::reply(&Barcode2::STORE, Self::Barcode2(Layout::decode(data))),
-            (0x82, 0x225) => Recognised::reply(&Barcode3::READ, Self::Barcode3(Layout::decode(data))),
-            (0x80, 0x225) => Recognised::reply(&Barcode3::SET, Self::Barcode3(Layout::decode(data))),
-            (0x81, 0x225) => Recognised::reply(&Barcode3::STORE, Self::Barcode3(Layout::decode(data))),
-            (0x82, 0x226) => Recognised::reply(&Barcode4::READ, Self::Barcode4(Layout::decode(data))),
-            (0x80, 0x226) => Recognised::reply(&Barcode4::SET, Self::Barcode4(Layout::decode(data))),
-            (0x81, 0x226) => Recognised::reply(&Barcode4::STORE, Self::Barcode4(Layout::decode(data))),
-            (0x82, 0x22B) => Recognised::reply(&FanDutyCycle::READ, Self::FanDutyCycle(Layout::decode(data))),
-            (0x82, 0x22D) => Recognised::reply(
-                &RectifierCurrentLimitSetting::READ,
-                Self::RectifierCurrentLimitSetting(Layout::decode(data)),
-            ),
-            (0x80, 0x22D) => Recognised::reply(
-                &RectifierCurrentLimitSetting::SET,
-                Self::RectifierCurrentLimitSetting(Layout::decode(data)),
-            ),
-            (0x82, 0x22E) => {
-                Recognised::reply(&PvCurrentLimitSetting::READ, Self::PvCurrentLimitSetting(Layout::decode(data)))
-            }
-            (0x80, 0x22E) => {
-                Recognised::reply(&PvCurrentLimitSetting::SET, Self::PvCurrentLimitSetting(Layout::decode(data)))
-            }
-            (0x82, 0x22F) => Recognised::reply(
-                &RectifierOutputVoltageSetting::READ,
-                Self::RectifierOutputVoltageSetting(Layout::decode(data)),
-            ),
-            (0x80, 0x22F) => Recognised::reply(
-                &RectifierOutputVoltageSetting::SET,
-                Self::RectifierOutputVoltageSetting(Layout::decode(data)),
-            ),
-            (0x82, 0x230) => {
-                Recognised::reply(&PvOutputVoltageSetting::READ, Self::PvOutputVoltageSetting(Layout::decode(data)))
-            }
-            (0x80, 0x230) => {
-                Recognised::reply(&PvOutputVoltageSetting::SET, Self::PvOutputVoltageSetting(Layout::decode(data)))
-            }
-            (0x82, 0x236) => Recognised::reply(&PfcAlarmWord::READ, Self::PfcAlarmWord(Layout::decode(data))),
-            (0x82, 0x237) => Recognised::reply(&PfcFaultWord::READ, Self::PfcFaultWord(Layout::decode(data))),
-            (0x82, 0x238) => Recognised::reply(&PfcStatusWord::READ, Self::PfcStatusWord(Layout::decode(data))),
-            (0x82, 0x239) => Recognised::reply(&DcdcAlarmWord::READ, Self::DcdcAlarmWord(Layout::decode(data))),
-            (0x82, 0x23A) => Recognised::reply(&DcdcFaultWord::READ, Self::DcdcFaultWord(Layout::decode(data))),
-            (0x82, 0x23B) => Recognised::reply(&DcdcStatusWord::READ, Self::DcdcStatusWord(Layout::decode(data))),
-            (0x80, 0x24E) => Recognised::reply(&AutoBootSetting::SET, Self::AutoBootSetting(Layout::decode(data))),
-            (0x81, 0x24E) => Recognised::reply(&AutoBootSetting::STORE, Self::AutoBootSetting(Layout::decode(data))),
-            (0x82, 0x270) => Recognised::reply(&PvVoltageSetting::READ, Self::PvVoltageSetting(Layout::decode(data))),
-            (0x80, 0x270) => Recognised::reply(&PvVoltageSetting::SET, Self::PvVoltageSetting(Layout::decode(data))),
-            (0x82, 0x271) => Recognised::reply(&Reserved271::READ, Self::Reserved271ReadReply),
-            (0x82, 0x272) => Recognised::reply(&Reserved272::READ, Self::Reserved272ReadReply),
-            (0x82, 0x273) => Recognised::reply(&MpptSingleScan::READ, Self::MpptSingleScan(Layout::decode(data))),
-            (0x80, 0x273) => Recognised::reply(&MpptSingleScan::SET, Self::MpptSingleScan(Layout::decode(data))),
-            (0x82, 0x274) => Recognised::reply(&MpptScanCycle::READ, Self::MpptScanCycle(Layout::decode(data))),
-            (0x80, 0x274) => Recognised::reply(&MpptScanCycle::SET, Self::MpptScanCycle(Layout::decode(data))),
-            (0x81, 0x274) => Recognised::reply(&MpptScanCycle::STORE, Self::MpptScanCycle(Layout::decode(data))),
-            (0x82, 0x275) => {
-                Recognised::reply(&WindVoltageSetting::READ, Self::WindVoltageSetting(Layout::decode(data)))
-            }
-            (0x80, 0x275) => {
-                Recognised::reply(&WindVoltageSetting::SET, Self::WindVoltageSetting(Layout::decode(data)))
-            }
-            (0x82, 0x276) => {
-                Recognised::reply(&WindVoltageUpperLimit::READ, Self::WindVoltageUpperLimit(Layout::decode(data)))
-            }
-            (0x80, 0x276) => {
-                Recognised::reply(&WindVoltageUpperLimit::SET, Self::WindVoltageUpperLimit(Layout::decode(data)))
-            }
-            (0x82, 0x277) => {
-                Recognised::reply(&WindVoltageLowerLimit::READ, Self::WindVoltageLowerLimit(Layout::decode(data)))
-            }
-            (0x80, 0x277) => {
-                Recognised::reply(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(Layout::decode(data)))
-            }
-            _ => return Self::reply_4(frame, model),
-        };
-        Some(recognised)
-    }
-
-    fn reply_4(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x82, 0x301) => {
-                Recognised::reply(&CustomerInformation1::READ, Self::CustomerInformation1(Layout::decode(data)))
-            }
-            (0x80, 0x301) => {
-                Recognised::reply(&CustomerInformation1::SET, Self::CustomerInformation1(Layout::decode(data)))
-            }
-            (0x81, 0x301) => {
-                Recognised::reply(&CustomerInformation1::STORE, Self::CustomerInformation1(Layout::decode(data)))
-            }
-            (0x82, 0x302) => {
-                Recognised::reply(&CustomerInformation2::READ, Self::CustomerInformation2(Layout::decode(data)))
-            }
-            (0x80, 0x302) => {
-                Recognised::reply(&CustomerInformation2::SET, Self::CustomerInformation2(Layout::decode(data)))
-            }
-            (0x81, 0x302) => {
-                Recognised::reply(&CustomerInformation2::STORE, Self::CustomerInformation2(Layout::decode(data)))
-            }
-            (0x82, 0x303) => {
-                Recognised::reply(&CustomerInformation3::READ, Self::CustomerInformation3(Layout::decode(data)))
-            }
-            (0x80, 0x303) => {
-                Recognised::reply(&CustomerInformation3::SET, Self::CustomerInformation3(Layout::decode(data)))
-            }
-            (0x81, 0x303) => {
-                Recognised::reply(&CustomerInformation3::STORE, Self::CustomerInformation3(Layout::decode(data)))
-            }
-            (0x82, 0x304) => {
-                Recognised::reply(&CustomerInformation4::READ, Self::CustomerInformation4(Layout::decode(data)))
-            }
-            (0x80, 0x304) => {
-                Recognised::reply(&CustomerInformation4::SET, Self::CustomerInformation4(Layout::decode(data)))
-            }
-            (0x81, 0x304) => {
-                Recognised::reply(&CustomerInformation4::STORE, Self::CustomerInformation4(Layout::decode(data)))
-            }
-            (0x82, 0x305) => {
-                Recognised::reply(&CustomerInformation5::READ, Self::CustomerInformation5(Layout::decode(data)))
-            }
-            (0x80, 0x305) => {
-                Recognised::reply(&CustomerInformation5::SET, Self::CustomerInformation5(Layout::decode(data)))
-            }
-            (0x81, 0x305) => {
-                Recognised::reply(&CustomerInformation5::STORE, Self::CustomerInformation5(Layout::decode(data)))
-            }
-            (0x82, 0x306) => {
-                Recognised::reply(&CustomerInformation6::READ, Self::CustomerInformation6(Layout::decode(data)))
-            }
-            (0x80, 0x306) => {
-                Recognised::reply(&CustomerInformation6::SET, Self::CustomerInformation6(Layout::decode(data)))
-            }
-            (0x81, 0x306) => {
-                Recognised::reply(&CustomerInformation6::STORE, Self::CustomerInformation6(Layout::decode(data)))
-            }
-            (0x82, 0x307) => {
-                Recognised::reply(&CustomerInformation7::READ, Self::CustomerInformation7(Layout::decode(data)))
-            }
-            (0x80, 0x307) => {
-                Recognised::reply(&CustomerInformation7::SET, Self::CustomerInformation7(Layout::decode(data)))
-            }
-            (0x81, 0x307) => {
-                Recognised::reply(&CustomerInformation7::STORE, Self::CustomerInformation7(Layout::decode(data)))
-            }
-            (0x82, 0x308) => {
-                Recognised::reply(&CustomerInformation8::READ, Self::CustomerInformation8(Layout::decode(data)))
-            }
-            (0x80, 0x308) => {
-                Recognised::reply(&CustomerInformation8::SET, Self::CustomerInformation8(Layout::decode(data)))
-            }
-            (0x81, 0x308) => {
-                Recognised::reply(&CustomerInformation8::STORE, Self::CustomerInformation8(Layout::decode(data)))
-            }
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply_3(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
+            (0x82, 0x230) => frame.reply(&PvOutputVoltageSetting::READ, Self::PvOutputVoltageSetting(frame.values())),
+            (0x80, 0x230) => frame.reply(&PvOutputVoltageSetting::SET, Self::PvOutputVoltageSetting(frame.values())),
+            (0x82, 0x236) => frame.reply(&PfcAlarmWord::READ, Self::PfcAlarmWord(frame.values())),
+            (0x82, 0x237) => frame.reply(&PfcFaultWord::READ, Self::PfcFaultWord(frame.values())),
+            (0x82, 0x238) => frame.reply(&PfcStatusWord::READ, Self::PfcStatusWord(frame.values())),
+            (0x82, 0x239) => frame.reply(&DcdcAlarmWord::READ, Self::DcdcAlarmWord(frame.values())),
+            (0x82, 0x23A) => frame.reply(&DcdcFaultWord::READ, Self::DcdcFaultWord(frame.values())),
+            (0x82, 0x23B) => frame.reply(&DcdcStatusWord::READ, Self::DcdcStatusWord(frame.values())),
+            (0x80, 0x24E) => frame.reply(&AutoBootSetting::SET, Self::AutoBootSetting(frame.values())),
+            (0x81, 0x24E) => frame.reply(&AutoBootSetting::STORE, Self::AutoBootSetting(frame.values())),
+            (0x82, 0x270) => frame.reply(&PvVoltageSetting::READ, Self::PvVoltageSetting(frame.values())),
+            (0x80, 0x270) => frame.reply(&PvVoltageSetting::SET, Self::PvVoltageSetting(frame.values())),
+            (0x82, 0x271) => frame.reply(&Reserved271::READ, Self::Reserved271ReadReply),
+            (0x82, 0x272) => frame.reply(&Reserved272::READ, Self::Reserved272ReadReply),
+            (0x82, 0x273) => frame.reply(&MpptSingleScan::READ, Self::MpptSingleScan(frame.values())),
+            (0x80, 0x273) => frame.reply(&MpptSingleScan::SET, Self::MpptSingleScan(frame.values())),
+            (0x82, 0x274) => frame.reply(&MpptScanCycle::READ, Self::MpptScanCycle(frame.values())),
+            (0x80, 0x274) => frame.reply(&MpptScanCycle::SET, Self::MpptScanCycle(frame.values())),
+            (0x81, 0x274) => frame.reply(&MpptScanCycle::STORE, Self::MpptScanCycle(frame.values())),
+            (0x82, 0x275) => frame.reply(&WindVoltageSetting::READ, Self::WindVoltageSetting(frame.values())),
+            (0x80, 0x275) => frame.reply(&WindVoltageSetting::SET, Self::WindVoltageSetting(frame.values())),
+            (0x82, 0x276) => frame.reply(&WindVoltageUpperLimit::READ, Self::WindVoltageUpperLimit(frame.values())),
+            (0x80, 0x276) => frame.reply(&WindVoltageUpperLimit::SET, Self::WindVoltageUpperLimit(frame.values())),
+            (0x82, 0x277) => frame.reply(&WindVoltageLowerLimit::READ, Self::WindVoltageLowerLimit(frame.values())),
+            (0x80, 0x277) => frame.reply(&WindVoltageLowerLimit::SET, Self::WindVoltageLowerLimit(frame.values())),
+            (0x82, 0x301) => frame.reply(&CustomerInformation1::READ, Self::CustomerInformation1(frame.values())),
+            (0x80, 0x301) => frame.reply(&CustomerInformation1::SET, Self::CustomerInformation1(frame.values())),
+            (0x81, 0x301) => frame.reply(&CustomerInformation1::STORE, Self::CustomerInformation1(frame.values())),
+            (0x82, 0x302) => frame.reply(&CustomerInformation2::READ, Self::CustomerInformation2(frame.values())),
+            (0x80, 0x302) => frame.reply(&CustomerInformation2::SET, Self::CustomerInformation2(frame.values())),
+            (0x81, 0x302) => frame.reply(&CustomerInformation2::STORE, Self::CustomerInformation2(frame.values())),
+            (0x82, 0x303) => frame.reply(&CustomerInformation3::READ, Self::CustomerInformation3(frame.values())),
+            (0x80, 0x303) => frame.reply(&CustomerInformation3::SET, Self::CustomerInformation3(frame.values())),
+            (0x81, 0x303) => frame.reply(&CustomerInformation3::STORE, Self::CustomerInformation3(frame.values())),
+            (0x82, 0x304) => frame.reply(&CustomerInformation4::READ, Self::CustomerInformation4(frame.values())),
+            (0x80, 0x304) => frame.reply(&CustomerInformation4::SET, Self::CustomerInformation4(frame.values())),
+            (0x81, 0x304) => frame.reply(&CustomerInformation4::STORE, Self::CustomerInformation4(frame.values())),
+            (0x82, 0x305) => frame.reply(&CustomerInformation5::READ, Self::CustomerInformation5(frame.values())),
+            (0x80, 0x305) => frame.reply(&CustomerInformation5::SET, Self::CustomerInformation5(frame.values())),
+            (0x81, 0x305) => frame.reply(&CustomerInformation5::STORE, Self::CustomerInformation5(frame.values())),
+            (0x82, 0x306) => frame.reply(&CustomerInformation6::READ, Self::CustomerInformation6(frame.values())),
+            (0x80, 0x306) => frame.reply(&CustomerInformation6::SET, Self::CustomerInformation6(frame.values())),
+            (0x81, 0x306) => frame.reply(&CustomerInformation6::STORE, Self::CustomerInformation6(frame.values())),
+            (0x82, 0x307) => frame.reply(&CustomerInformation7::READ, Self::CustomerInformation7(frame.values())),
+            (0x80, 0x307) => frame.reply(&CustomerInformation7::SET, Self::CustomerInformation7(frame.values())),
+            (0x81, 0x307) => frame.reply(&CustomerInformation7::STORE, Self::CustomerInformation7(frame.values())),
+            (0x82, 0x308) => frame.reply(&CustomerInformation8::READ, Self::CustomerInformation8(frame.values())),
+            (0x80, 0x308) => frame.reply(&CustomerInformation8::SET, Self::CustomerInformation8(frame.values())),
+            (0x81, 0x308) => frame.reply(&CustomerInformation8::STORE, Self::CustomerInformation8(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -5695,180 +5488,155 @@ impl Protocol for Message {
     const DATA_SELECTORS: bool = true;
     const FOREIGN_LIKE_OWN: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x82, 0x001) => Recognised::request(&CharacteristicWord::READ, Self::ReadCharacteristicWord),
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
+            (0x82, 0x001) => frame.request(&CharacteristicWord::READ, Self::ReadCharacteristicWord),
             (0x50, 0x001) => {
-                Recognised::request(&CharacteristicWord::READ_ALL_INHERENT_INFORMATION, Self::ReadAllCharacteristicWord)
+                frame.request(&CharacteristicWord::READ_ALL_INHERENT_INFORMATION, Self::ReadAllCharacteristicWord)
             }
-            (0x82, 0x005) => Recognised::request(&Versions::READ, Self::ReadVersions),
-            (0x50, 0x005) => Recognised::request(&Versions::READ_ALL_INHERENT_INFORMATION, Self::ReadAllVersions),
-            (0x82, 0x006) => Recognised::request(&HardwareAddress::READ, Self::ReadHardwareAddress),
+            (0x82, 0x005) => frame.request(&Versions::READ, Self::ReadVersions),
+            (0x50, 0x005) => frame.request(&Versions::READ_ALL_INHERENT_INFORMATION, Self::ReadAllVersions),
+            (0x82, 0x006) => frame.request(&HardwareAddress::READ, Self::ReadHardwareAddress),
             (0x50, 0x006) => {
-                Recognised::request(&HardwareAddress::READ_ALL_INHERENT_INFORMATION, Self::ReadAllHardwareAddress)
+                frame.request(&HardwareAddress::READ_ALL_INHERENT_INFORMATION, Self::ReadAllHardwareAddress)
             }
-            (0x82, 0x100) => Recognised::request(&OutputVoltageSetting::READ, Self::ReadOutputVoltageSetting),
-            (0x80, 0x100) => {
-                Recognised::request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
+            (0x82, 0x100) => frame.request(&OutputVoltageSetting::READ, Self::ReadOutputVoltageSetting),
+            (0x80, 0x100) => frame.request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(frame.values())),
+            (0x82, 0x101) => frame.request(&DefaultOutputVoltage::READ, Self::ReadDefaultOutputVoltage),
+            (0x80, 0x101) => frame.request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(frame.values())),
+            (0x81, 0x101) => frame.request(&DefaultOutputVoltage::STORE, Self::DefaultOutputVoltage(frame.values())),
+            (0x82, 0x102) => frame.request(&OvervoltageProtectionPoint::READ, Self::ReadOvervoltageProtectionPoint),
+            (0x80, 0x102) => {
+                frame.request(&OvervoltageProtectionPoint::SET, Self::OvervoltageProtectionPoint(frame.values()))
             }
-            (0x82, 0x101) => Recognised::request(&DefaultOutputVoltage::READ, Self::ReadDefaultOutputVoltage),
-            (0x80, 0x101) => {
-                Recognised::request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
+            (0x81, 0x102) => {
+                frame.request(&OvervoltageProtectionPoint::STORE, Self::OvervoltageProtectionPoint(frame.values()))
             }
-            (0x81, 0x101) => {
-                Recognised::request(&DefaultOutputVoltage::STORE, Self::DefaultOutputVoltage(Layout::decode(data)))
-            }
-            (0x82, 0x102) => {
-                Recognised::request(&OvervoltageProtectionPoint::READ, Self::ReadOvervoltageProtectionPoint)
-            }
-            (0x80, 0x102) => Recognised::request(
-                &OvervoltageProtectionPoint::SET,
-                Self::OvervoltageProtectionPoint(Layout::decode(data)),
-            ),
-            (0x81, 0x102) => Recognised::request(
-                &OvervoltageProtectionPoint::STORE,
-                Self::OvervoltageProtectionPoint(Layout::decode(data)),
-            ),
-            (0x82, 0x103) => Recognised::request(&CurrentLimitSetting::READ, Self::ReadCurrentLimitSetting),
-            (0x80, 0x103) => {
-                Recognised::request(&CurrentLimitSetting::SET, Self::CurrentLimitSetting(Layout::decode(data)))
-            }
-            (0x82, 0x104) => Recognised::request(&DefaultCurrentLimit::READ, Self::ReadDefaultCurrentLimit),
-            (0x80, 0x104) => {
-                Recognised::request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x81, 0x104) => {
-                Recognised::request(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x82, 0x10C) => Recognised::request(&WalkInTime::READ, Self::ReadWalkInTime),
-            (0x80, 0x10C) => Recognised::request(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
-            (0x81, 0x10C) => Recognised::request(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
-            (0x82, 0x10E) => Recognised::request(&TotalRunningTime::READ, Self::ReadTotalRunningTime),
-            (0x80, 0x10E) => Recognised::request(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
-            (0x81, 0x10E) => {
-                Recognised::request(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data)))
-            }
-            (0x80, 0x132) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
+            (0x82, 0x103) => frame.request(&CurrentLimitSetting::READ, Self::ReadCurrentLimitSetting),
+            (0x80, 0x103) => frame.request(&CurrentLimitSetting::SET, Self::CurrentLimitSetting(frame.values())),
+            (0x82, 0x104) => frame.request(&DefaultCurrentLimit::READ, Self::ReadDefaultCurrentLimit),
+            (0x80, 0x104) => frame.request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(frame.values())),
+            (0x81, 0x104) => frame.request(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(frame.values())),
+            (0x82, 0x10C) => frame.request(&WalkInTime::READ, Self::ReadWalkInTime),
+            (0x80, 0x10C) => frame.request(&WalkInTime::SET, Self::WalkInTime(frame.values())),
+            (0x81, 0x10C) => frame.request(&WalkInTime::STORE, Self::WalkInTime(frame.values())),
+            (0x82, 0x10E) => frame.request(&TotalRunningTime::READ, Self::ReadTotalRunningTime),
+            (0x80, 0x10E) => frame.request(&TotalRunningTime::SET, Self::TotalRunningTime(frame.values())),
+            (0x81, 0x10E) => frame.request(&TotalRunningTime::STORE, Self::TotalRunningTime(frame.values())),
+            (0x80, 0x132) => frame.request(&SwitchModules::SET, Self::SwitchModules(frame.values())),
             (0x80, 0x133) => {
-                Recognised::request(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
+                frame.request(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(frame.values()))
             }
-            (0x80, 0x135) => Recognised::request(&FlashGreenLight::SET, Self::FlashGreenLight(Layout::decode(data))),
-            (0x80, 0x13A) => Recognised::request(&AssignAddresses::SET, Self::AssignAddresses(Layout::decode(data))),
-            (0x80, 0x140) => Recognised::request(&ControlLights::SET, Self::ControlLights(Layout::decode(data))),
-            (0x80, 0x142) => Recognised::request(&ShieldAlarms::SET, Self::ShieldAlarms(Layout::decode(data))),
-            (0x80, 0x143) => Recognised::request(
-                &ShieldCommunicationAlarm::SET,
-                Self::ShieldCommunicationAlarm(Layout::decode(data)),
-            ),
-            (0x81, 0x143) => Recognised::request(
-                &ShieldCommunicationAlarm::STORE,
-                Self::ShieldCommunicationAlarm(Layout::decode(data)),
-            ),
-            (0x82, 0x170) => Recognised::request(&InputPower::READ, Self::ReadInputPower),
-            (0x82, 0x171) => Recognised::request(&InputFrequency::READ, Self::ReadInputFrequency),
-            (0x82, 0x172) => Recognised::request(&InputCurrent::READ, Self::ReadInputCurrent),
-            (0x82, 0x173) => Recognised::request(&OutputPower::READ, Self::ReadOutputPower),
-            _ => return Self::request_2(frame, model),
-        };
-        Some(recognised)
+            (0x80, 0x135) => frame.request(&FlashGreenLight::SET, Self::FlashGreenLight(frame.values())),
+            (0x80, 0x13A) => frame.request(&AssignAddresses::SET, Self::AssignAddresses(frame.values())),
+            (0x80, 0x140) => frame.request(&ControlLights::SET, Self::ControlLights(frame.values())),
+            (0x80, 0x142) => frame.request(&ShieldAlarms::SET, Self::ShieldAlarms(frame.values())),
+            (0x80, 0x143) => {
+                frame.request(&ShieldCommunicationAlarm::SET, Self::ShieldCommunicationAlarm(frame.values()))
+            }
+            (0x81, 0x143) => {
+                frame.request(&ShieldCommunicationAlarm::STORE, Self::ShieldCommunicationAlarm(frame.values()))
+            }
+            (0x82, 0x170) => frame.request(&InputPower::READ, Self::ReadInputPower),
+            (0x82, 0x171) => frame.request(&InputFrequency::READ, Self::ReadInputFrequency),
+            (0x82, 0x172) => frame.request(&InputCurrent::READ, Self::ReadInputCurrent),
+            (0x82, 0x173) => frame.request(&OutputPower::READ, Self::ReadOutputPower),
+            (0x82, 0x175) => frame.request(&OutputVoltage::READ, Self::ReadOutputVoltage),
+            (0x82, 0x176) => frame.request(&ActualCurrentLimit::READ, Self::ReadActualCurrentLimit),
+            (0x82, 0x177) => frame.request(&ActualPowerLimit::READ, Self::ReadActualPowerLimit),
+            (0x82, 0x178) => frame.request(&InputVoltage::READ, Self::ReadInputVoltage),
+            (0x82, 0x180) => frame.request(&AmbientTemperature::READ, Self::ReadAmbientTemperature),
+            (0x82, 0x182) => frame.request(&OutputCurrent::READ, Self::ReadOutputCurrent),
+            (0x82, 0x183) => frame.request(&ModuleStatus::READ, Self::ReadModuleStatus),
+            (0x82, 0x184) => frame.request(&ExternalVoltage::READ, Self::ReadExternalVoltage),
+            (0x82, 0x188) => frame.request(&RatedCurrent::READ, Self::ReadRatedCurrent),
+            (0x82, 0x21D) => frame.request(&AddressModeSwitch::READ, Self::ReadAddressModeSwitch),
+            (0x80, 0x21D) => frame.request(&AddressModeSwitch::SET, Self::AddressModeSwitch(frame.values())),
+            (0x81, 0x21D) => frame.request(&AddressModeSwitch::STORE, Self::AddressModeSwitch(frame.values())),
+            (0x82, 0x222) => frame.request(&BarcodeVersion::READ, Self::ReadBarcodeVersion),
+            (0x80, 0x222) => frame.request(&BarcodeVersion::SET, Self::BarcodeVersion(frame.values())),
+            (0x81, 0x222) => frame.request(&BarcodeVersion::STORE, Self::BarcodeVersion(frame.values())),
+            (0x82, 0x223) => frame.request(&Barcode1::READ, Self::ReadBarcode1),
+            (0x80, 0x223) => frame.request(&Barcode1::SET, Self::Barcode1(frame.values())),
+            (0x81, 0x223) => frame.request(&Barcode1::STORE, Self::Barcode1(frame.values())),
+            (0x82, 0x224) => frame.request(&Barcode2::READ, Self::ReadBarcode2),
+            (0x80, 0x224) => frame.request(&Barcode2::SET, Self::Barcode2(frame.values())),
+            _ => Self::request_2(frame),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), SIGNAL_SELECTOR.place.get(data)) {
-            (0x82, 0x001) => {
-                Recognised::reply(&CharacteristicWord::READ, Self::CharacteristicWord(Layout::decode(data)))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(SIGNAL_SELECTOR.place)) {
+            (0x82, 0x001) => frame.reply(&CharacteristicWord::READ, Self::CharacteristicWord(frame.values())),
+            (0x50, 0x001) => frame
+                .reply(&CharacteristicWord::READ_ALL_INHERENT_INFORMATION, Self::CharacteristicWord(frame.values())),
+            (0x82, 0x005) => frame.reply(&Versions::READ, Self::Versions(frame.values())),
+            (0x50, 0x005) => frame.reply(&Versions::READ_ALL_INHERENT_INFORMATION, Self::Versions(frame.values())),
+            (0x82, 0x006) => frame.reply(&HardwareAddress::READ, Self::HardwareAddress(frame.values())),
+            (0x50, 0x006) => {
+                frame.reply(&HardwareAddress::READ_ALL_INHERENT_INFORMATION, Self::HardwareAddress(frame.values()))
             }
-            (0x50, 0x001) => Recognised::reply(
-                &CharacteristicWord::READ_ALL_INHERENT_INFORMATION,
-                Self::CharacteristicWord(Layout::decode(data)),
-            ),
-            (0x82, 0x005) => Recognised::reply(&Versions::READ, Self::Versions(Layout::decode(data))),
-            (0x50, 0x005) => {
-                Recognised::reply(&Versions::READ_ALL_INHERENT_INFORMATION, Self::Versions(Layout::decode(data)))
+            (0x82, 0x100) => frame.reply(&OutputVoltageSetting::READ, Self::OutputVoltageSetting(frame.values())),
+            (0x80, 0x100) => frame.reply(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(frame.values())),
+            (0x82, 0x101) => frame.reply(&DefaultOutputVoltage::READ, Self::DefaultOutputVoltage(frame.values())),
+            (0x80, 0x101) => frame.reply(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(frame.values())),
+            (0x81, 0x101) => frame.reply(&DefaultOutputVoltage::STORE, Self::DefaultOutputVoltage(frame.values())),
+            (0x82, 0x102) => {
+                frame.reply(&OvervoltageProtectionPoint::READ, Self::OvervoltageProtectionPoint(frame.values()))
             }
-            (0x82, 0x006) => Recognised::reply(&HardwareAddress::READ, Self::HardwareAddress(Layout::decode(data))),
-            (0x50, 0x006) => Recognised::reply(
-                &HardwareAddress::READ_ALL_INHERENT_INFORMATION,
-                Self::HardwareAddress(Layout::decode(data)),
-            ),
-            (0x82, 0x100) => {
-                Recognised::reply(&OutputVoltageSetting::READ, Self::OutputVoltageSetting(Layout::decode(data)))
+            (0x80, 0x102) => {
+                frame.reply(&OvervoltageProtectionPoint::SET, Self::OvervoltageProtectionPoint(frame.values()))
             }
-            (0x80, 0x100) => {
-                Recognised::reply(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
+            (0x81, 0x102) => {
+                frame.reply(&OvervoltageProtectionPoint::STORE, Self::OvervoltageProtectionPoint(frame.values()))
             }
-            (0x82, 0x101) => {
-                Recognised::reply(&DefaultOutputVoltage::READ, Self::DefaultOutputVoltage(Layout::decode(data)))
+            (0x82, 0x103) => frame.reply(&CurrentLimitSetting::READ, Self::CurrentLimitSetting(frame.values())),
+            (0x80, 0x103) => frame.reply(&CurrentLimitSetting::SET, Self::CurrentLimitSetting(frame.values())),
+            (0x82, 0x104) => frame.reply(&DefaultCurrentLimit::READ, Self::DefaultCurrentLimit(frame.values())),
+            (0x80, 0x104) => frame.reply(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(frame.values())),
+            (0x81, 0x104) => frame.reply(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(frame.values())),
+            (0x82, 0x10C) => frame.reply(&WalkInTime::READ, Self::WalkInTime(frame.values())),
+            (0x80, 0x10C) => frame.reply(&WalkInTime::SET, Self::WalkInTime(frame.values())),
+            (0x81, 0x10C) => frame.reply(&WalkInTime::STORE, Self::WalkInTime(frame.values())),
+            (0x82, 0x10E) => frame.reply(&TotalRunningTime::READ, Self::TotalRunningTime(frame.values())),
+            (0x80, 0x10E) => frame.reply(&TotalRunningTime::SET, Self::TotalRunningTime(frame.values())),
+            (0x81, 0x10E) => frame.reply(&TotalRunningTime::STORE, Self::TotalRunningTime(frame.values())),
+            (0x40, 0x10E) => {
+                frame.reply(&TotalRunningTime::READ_ALL_REAL_TIME_DATA, Self::TotalRunningTime(frame.values()))
             }
-            (0x80, 0x101) => {
-                Recognised::reply(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
+            (0x80, 0x132) => frame.reply(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            (0x80, 0x133) => frame.reply(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(frame.values())),
+            (0x80, 0x135) => frame.reply(&FlashGreenLight::SET, Self::FlashGreenLight(frame.values())),
+            (0x80, 0x13A) => frame.reply(&AssignAddresses::SET, Self::AssignAddresses(frame.values())),
+            (0x80, 0x140) => frame.reply(&ControlLights::SET, Self::ControlLights(frame.values())),
+            (0x80, 0x142) => frame.reply(&ShieldAlarms::SET, Self::ShieldAlarms(frame.values())),
+            (0x80, 0x143) => {
+                frame.reply(&ShieldCommunicationAlarm::SET, Self::ShieldCommunicationAlarm(frame.values()))
             }
-            (0x81, 0x101) => {
-                Recognised::reply(&DefaultOutputVoltage::STORE, Self::DefaultOutputVoltage(Layout::decode(data)))
+            (0x81, 0x143) => {
+                frame.reply(&ShieldCommunicationAlarm::STORE, Self::ShieldCommunicationAlarm(frame.values()))
             }
-            (0x82, 0x102) => Recognised::reply(
-                &OvervoltageProtectionPoint::READ,
-                Self::OvervoltageProtectionPoint(Layout::decode(data)),
-            ),
-            (0x80, 0x102) => Recognised::reply(
-                &OvervoltageProtectionPoint::SET,
-                Self::OvervoltageProtectionPoint(Layout::decode(data)),
-            ),
-            (0x81, 0x102) => Recognised::reply(
-                &OvervoltageProtectionPoint::STORE,
-                Self::OvervoltageProtectionPoint(Layout::decode(data)),
-            ),
-            (0x82, 0x103) => {
-                Recognised::reply(&CurrentLimitSetting::READ, Self::CurrentLimitSetting(Layout::decode(data)))
+            (0x82, 0x170) => frame.reply(&InputPower::READ, Self::InputPower(frame.values())),
+            (0x40, 0x170) => frame.reply(&InputPower::READ_ALL_REAL_TIME_DATA, Self::InputPower(frame.values())),
+            (0x82, 0x171) => frame.reply(&InputFrequency::READ, Self::InputFrequency(frame.values())),
+            (0x40, 0x171) => {
+                frame.reply(&InputFrequency::READ_ALL_REAL_TIME_DATA, Self::InputFrequency(frame.values()))
             }
-            (0x80, 0x103) => {
-                Recognised::reply(&CurrentLimitSetting::SET, Self::CurrentLimitSetting(Layout::decode(data)))
-            }
-            (0x82, 0x104) => {
-                Recognised::reply(&DefaultCurrentLimit::READ, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x80, 0x104) => {
-                Recognised::reply(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x81, 0x104) => {
-                Recognised::reply(&DefaultCurrentLimit::STORE, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x82, 0x10C) => Recognised::reply(&WalkInTime::READ, Self::WalkInTime(Layout::decode(data))),
-            (0x80, 0x10C) => Recognised::reply(&WalkInTime::SET, Self::WalkInTime(Layout::decode(data))),
-            (0x81, 0x10C) => Recognised::reply(&WalkInTime::STORE, Self::WalkInTime(Layout::decode(data))),
-            (0x82, 0x10E) => Recognised::reply(&TotalRunningTime::READ, Self::TotalRunningTime(Layout::decode(data))),
-            (0x80, 0x10E) => Recognised::reply(&TotalRunningTime::SET, Self::TotalRunningTime(Layout::decode(data))),
-            (0x81, 0x10E) => Recognised::reply(&TotalRunningTime::STORE, Self::TotalRunningTime(Layout::decode(data))),
-            (0x40, 0x10E) => Recognised::reply(
-                &TotalRunningTime::READ_ALL_REAL_TIME_DATA,
-                Self::TotalRunningTime(Layout::decode(data)),
-            ),
-            (0x80, 0x132) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            (0x80, 0x133) => {
-                Recognised::reply(&ResetOvervoltageLockout::SET, Self::ResetOvervoltageLockout(Layout::decode(data)))
-            }
-            _ => return Self::reply_2(frame, model),
-        };
-        Some(recognised)
+            _ => Self::reply_2(frame),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x40 | 0x50 | 0x80..=0x82 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x40 | 0x50 | 0x80..=0x82 => &[8],
             _ => &[],
         }

@@ -2394,6 +2394,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -2403,119 +2404,99 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
-            (0x10, 0x0001) => Recognised::request(&OutputVoltage::READ, Self::ReadOutputVoltage),
-            (0x10, 0x0002) => Recognised::request(&OutputCurrent::READ, Self::ReadOutputCurrent),
-            (0x10, 0x0003) => Recognised::request(&CurrentLimit::READ, Self::ReadCurrentLimit),
-            (0x10, 0x0004) => Recognised::request(&DcBoardTemperature::READ, Self::ReadDcBoardTemperature),
-            (0x10, 0x0005) => Recognised::request(&InputVoltage::READ, Self::ReadInputVoltage),
-            (0x10, 0x0008) => Recognised::request(&Pfc0Voltage::READ, Self::ReadPfc0Voltage),
-            (0x10, 0x000A) => Recognised::request(&Pfc1Voltage::READ, Self::ReadPfc1Voltage),
-            (0x10, 0x000B) => Recognised::request(&AmbientTemperature::READ, Self::ReadAmbientTemperature),
-            (0x10, 0x000C) => Recognised::request(&PhaseAVoltage::READ, Self::ReadPhaseAVoltage),
-            (0x10, 0x000D) => Recognised::request(&PhaseBVoltage::READ, Self::ReadPhaseBVoltage),
-            (0x10, 0x000E) => Recognised::request(&PhaseCVoltage::READ, Self::ReadPhaseCVoltage),
-            (0x10, 0x0010) => Recognised::request(&PfcBoardTemperature::READ, Self::ReadPfcBoardTemperature),
-            (0x10, 0x0011) => Recognised::request(&RatedPower::READ, Self::ReadRatedPower),
-            (0x10, 0x0012) => Recognised::request(&RatedCurrent::READ, Self::ReadRatedCurrent),
-            (0x03, 0x0017) => Recognised::request(&SetAltitude::SET, Self::SetAltitude(Layout::decode(data))),
-            (0x03, 0x001B) => Recognised::request(&SetOutputCurrent::SET, Self::SetOutputCurrent(Layout::decode(data))),
-            (0x03, 0x001E) => Recognised::request(&SetGroup::SET, Self::SetGroup(Layout::decode(data))),
-            (0x03, 0x001F) => Recognised::request(&SetAddressMode::SET, Self::SetAddressMode(Layout::decode(data))),
-            (0x03, 0x0020) => Recognised::request(&SetOutputPower::SET, Self::SetOutputPower(Layout::decode(data))),
-            (0x03, 0x0021) => Recognised::request(&SetOutputVoltage::SET, Self::SetOutputVoltage(Layout::decode(data))),
-            (0x03, 0x0022) => Recognised::request(&SetCurrentLimit::SET, Self::SetCurrentLimit(Layout::decode(data))),
-            (0x03, 0x0023) => {
-                Recognised::request(&SetOvervoltagePoint::SET, Self::SetOvervoltagePoint(Layout::decode(data)))
-            }
-            (0x03, 0x0030) => Recognised::request(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            (0x03, 0x0031) => Recognised::request(&ResetOvervoltage::SET, Self::ResetOvervoltage(Layout::decode(data))),
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.data(FUNCTION_SELECTOR.place), frame.data(REGISTER_SELECTOR.place)) {
+            (0x10, 0x0001) => frame.request(&OutputVoltage::READ, Self::ReadOutputVoltage),
+            (0x10, 0x0002) => frame.request(&OutputCurrent::READ, Self::ReadOutputCurrent),
+            (0x10, 0x0003) => frame.request(&CurrentLimit::READ, Self::ReadCurrentLimit),
+            (0x10, 0x0004) => frame.request(&DcBoardTemperature::READ, Self::ReadDcBoardTemperature),
+            (0x10, 0x0005) => frame.request(&InputVoltage::READ, Self::ReadInputVoltage),
+            (0x10, 0x0008) => frame.request(&Pfc0Voltage::READ, Self::ReadPfc0Voltage),
+            (0x10, 0x000A) => frame.request(&Pfc1Voltage::READ, Self::ReadPfc1Voltage),
+            (0x10, 0x000B) => frame.request(&AmbientTemperature::READ, Self::ReadAmbientTemperature),
+            (0x10, 0x000C) => frame.request(&PhaseAVoltage::READ, Self::ReadPhaseAVoltage),
+            (0x10, 0x000D) => frame.request(&PhaseBVoltage::READ, Self::ReadPhaseBVoltage),
+            (0x10, 0x000E) => frame.request(&PhaseCVoltage::READ, Self::ReadPhaseCVoltage),
+            (0x10, 0x0010) => frame.request(&PfcBoardTemperature::READ, Self::ReadPfcBoardTemperature),
+            (0x10, 0x0011) => frame.request(&RatedPower::READ, Self::ReadRatedPower),
+            (0x10, 0x0012) => frame.request(&RatedCurrent::READ, Self::ReadRatedCurrent),
+            (0x03, 0x0017) => frame.request(&SetAltitude::SET, Self::SetAltitude(frame.values())),
+            (0x03, 0x001B) => frame.request(&SetOutputCurrent::SET, Self::SetOutputCurrent(frame.values())),
+            (0x03, 0x001E) => frame.request(&SetGroup::SET, Self::SetGroup(frame.values())),
+            (0x03, 0x001F) => frame.request(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
+            (0x03, 0x0020) => frame.request(&SetOutputPower::SET, Self::SetOutputPower(frame.values())),
+            (0x03, 0x0021) => frame.request(&SetOutputVoltage::SET, Self::SetOutputVoltage(frame.values())),
+            (0x03, 0x0022) => frame.request(&SetCurrentLimit::SET, Self::SetCurrentLimit(frame.values())),
+            (0x03, 0x0023) => frame.request(&SetOvervoltagePoint::SET, Self::SetOvervoltagePoint(frame.values())),
+            (0x03, 0x0030) => frame.request(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            (0x03, 0x0031) => frame.request(&ResetOvervoltage::SET, Self::ResetOvervoltage(frame.values())),
             (0x03, 0x003E) => {
-                Recognised::request(&SetOvervoltageRelevance::SET, Self::SetOvervoltageRelevance(Layout::decode(data)))
+                frame.request(&SetOvervoltageRelevance::SET, Self::SetOvervoltageRelevance(frame.values()))
             }
-            (0x10, 0x0040) => Recognised::request(&ModuleStatus::READ, Self::ReadModuleStatus),
-            (0x10, 0x0043) => Recognised::request(&GroupAndAddress::READ, Self::ReadGroupAndAddress),
-            (0x03, 0x0044) => {
-                Recognised::request(&ResetShortCircuit::SET, Self::ResetShortCircuit(Layout::decode(data)))
-            }
-            (0x03, 0x0046) => Recognised::request(&SetInputMode::SET, Self::SetInputMode(Layout::decode(data))),
-            (0x10, 0x0048) => Recognised::request(&InputPower::READ, Self::ReadInputPower),
-            (0x10, 0x004A) => Recognised::request(&Altitude::READ, Self::ReadAltitude),
-            (0x10, 0x004B) => Recognised::request(&ActiveInputMode::READ, Self::ReadActiveInputMode),
-            (0x10, 0x0054) => Recognised::request(&SerialNumberLow::READ, Self::ReadSerialNumberLow),
-            (0x10, 0x0055) => Recognised::request(&SerialNumberHigh::READ, Self::ReadSerialNumberHigh),
-            (0x10, 0x0056) => Recognised::request(&DcdcVersion::READ, Self::ReadDcdcVersion),
-            (0x10, 0x0057) => Recognised::request(&PfcVersion::READ, Self::ReadPfcVersion),
-            _ => return None,
-        };
-        Some(recognised)
+            (0x10, 0x0040) => frame.request(&ModuleStatus::READ, Self::ReadModuleStatus),
+            (0x10, 0x0043) => frame.request(&GroupAndAddress::READ, Self::ReadGroupAndAddress),
+            (0x03, 0x0044) => frame.request(&ResetShortCircuit::SET, Self::ResetShortCircuit(frame.values())),
+            (0x03, 0x0046) => frame.request(&SetInputMode::SET, Self::SetInputMode(frame.values())),
+            (0x10, 0x0048) => frame.request(&InputPower::READ, Self::ReadInputPower),
+            (0x10, 0x004A) => frame.request(&Altitude::READ, Self::ReadAltitude),
+            (0x10, 0x004B) => frame.request(&ActiveInputMode::READ, Self::ReadActiveInputMode),
+            (0x10, 0x0054) => frame.request(&SerialNumberLow::READ, Self::ReadSerialNumberLow),
+            (0x10, 0x0055) => frame.request(&SerialNumberHigh::READ, Self::ReadSerialNumberHigh),
+            (0x10, 0x0056) => frame.request(&DcdcVersion::READ, Self::ReadDcdcVersion),
+            (0x10, 0x0057) => frame.request(&PfcVersion::READ, Self::ReadPfcVersion),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let data = &frame.bytes();
-        let recognised = match (FUNCTION_SELECTOR.place.get(data), REGISTER_SELECTOR.place.get(data)) {
-            (0x41, 0x0001) => Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data))),
-            (0x41, 0x0002) => Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data))),
-            (0x41, 0x0003) => Recognised::reply(&CurrentLimit::READ, Self::CurrentLimit(Layout::decode(data))),
-            (0x41, 0x0004) => {
-                Recognised::reply(&DcBoardTemperature::READ, Self::DcBoardTemperature(Layout::decode(data)))
-            }
-            (0x41, 0x0005) => Recognised::reply(&InputVoltage::READ, Self::InputVoltage(Layout::decode(data))),
-            (0x41, 0x0008) => Recognised::reply(&Pfc0Voltage::READ, Self::Pfc0Voltage(Layout::decode(data))),
-            (0x41, 0x000A) => Recognised::reply(&Pfc1Voltage::READ, Self::Pfc1Voltage(Layout::decode(data))),
-            (0x41, 0x000B) => {
-                Recognised::reply(&AmbientTemperature::READ, Self::AmbientTemperature(Layout::decode(data)))
-            }
-            (0x41, 0x000C) => Recognised::reply(&PhaseAVoltage::READ, Self::PhaseAVoltage(Layout::decode(data))),
-            (0x41, 0x000D) => Recognised::reply(&PhaseBVoltage::READ, Self::PhaseBVoltage(Layout::decode(data))),
-            (0x41, 0x000E) => Recognised::reply(&PhaseCVoltage::READ, Self::PhaseCVoltage(Layout::decode(data))),
-            (0x41, 0x0010) => {
-                Recognised::reply(&PfcBoardTemperature::READ, Self::PfcBoardTemperature(Layout::decode(data)))
-            }
-            (0x41, 0x0011) => Recognised::reply(&RatedPower::READ, Self::RatedPower(Layout::decode(data))),
-            (0x41, 0x0012) => Recognised::reply(&RatedCurrent::READ, Self::RatedCurrent(Layout::decode(data))),
-            (0x42, 0x0017) => Recognised::reply(&SetAltitude::SET, Self::SetAltitude(Layout::decode(data))),
-            (0x42, 0x001B) => Recognised::reply(&SetOutputCurrent::SET, Self::SetOutputCurrent(Layout::decode(data))),
-            (0x42, 0x001E) => Recognised::reply(&SetGroup::SET, Self::SetGroup(Layout::decode(data))),
-            (0x42, 0x001F) => Recognised::reply(&SetAddressMode::SET, Self::SetAddressMode(Layout::decode(data))),
-            (0x41, 0x0020) => Recognised::reply(&SetOutputPower::SET, Self::SetOutputPower(Layout::decode(data))),
-            (0x41, 0x0021) => Recognised::reply(&SetOutputVoltage::SET, Self::SetOutputVoltage(Layout::decode(data))),
-            (0x41, 0x0022) => Recognised::reply(&SetCurrentLimit::SET, Self::SetCurrentLimit(Layout::decode(data))),
-            (0x41, 0x0023) => {
-                Recognised::reply(&SetOvervoltagePoint::SET, Self::SetOvervoltagePoint(Layout::decode(data)))
-            }
-            (0x42, 0x0030) => Recognised::reply(&SwitchModules::SET, Self::SwitchModules(Layout::decode(data))),
-            (0x42, 0x0031) => Recognised::reply(&ResetOvervoltage::SET, Self::ResetOvervoltage(Layout::decode(data))),
-            (0x42, 0x003E) => {
-                Recognised::reply(&SetOvervoltageRelevance::SET, Self::SetOvervoltageRelevance(Layout::decode(data)))
-            }
-            (0x42, 0x0040) => Recognised::reply(&ModuleStatus::READ, Self::ModuleStatus(Layout::decode(data))),
-            (0x42, 0x0043) => Recognised::reply(&GroupAndAddress::READ, Self::GroupAndAddress(Layout::decode(data))),
-            (0x42, 0x0044) => Recognised::reply(&ResetShortCircuit::SET, Self::ResetShortCircuit(Layout::decode(data))),
-            (0x42, 0x0046) => Recognised::reply(&SetInputMode::SET, Self::SetInputMode(Layout::decode(data))),
-            (0x42, 0x0048) => Recognised::reply(&InputPower::READ, Self::InputPower(Layout::decode(data))),
-            (0x42, 0x004A) => Recognised::reply(&Altitude::READ, Self::Altitude(Layout::decode(data))),
-            (0x42, 0x004B) => Recognised::reply(&ActiveInputMode::READ, Self::ActiveInputMode(Layout::decode(data))),
-            (0x42, 0x0054) => Recognised::reply(&SerialNumberLow::READ, Self::SerialNumberLow(Layout::decode(data))),
-            (0x42, 0x0055) => Recognised::reply(&SerialNumberHigh::READ, Self::SerialNumberHigh(Layout::decode(data))),
-            (0x42, 0x0056) => Recognised::reply(&DcdcVersion::READ, Self::DcdcVersion(Layout::decode(data))),
-            (0x42, 0x0057) => Recognised::reply(&PfcVersion::READ, Self::PfcVersion(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.data(FUNCTION_SELECTOR.place), frame.data(REGISTER_SELECTOR.place)) {
+            (0x41, 0x0001) => frame.reply(&OutputVoltage::READ, Self::OutputVoltage(frame.values())),
+            (0x41, 0x0002) => frame.reply(&OutputCurrent::READ, Self::OutputCurrent(frame.values())),
+            (0x41, 0x0003) => frame.reply(&CurrentLimit::READ, Self::CurrentLimit(frame.values())),
+            (0x41, 0x0004) => frame.reply(&DcBoardTemperature::READ, Self::DcBoardTemperature(frame.values())),
+            (0x41, 0x0005) => frame.reply(&InputVoltage::READ, Self::InputVoltage(frame.values())),
+            (0x41, 0x0008) => frame.reply(&Pfc0Voltage::READ, Self::Pfc0Voltage(frame.values())),
+            (0x41, 0x000A) => frame.reply(&Pfc1Voltage::READ, Self::Pfc1Voltage(frame.values())),
+            (0x41, 0x000B) => frame.reply(&AmbientTemperature::READ, Self::AmbientTemperature(frame.values())),
+            (0x41, 0x000C) => frame.reply(&PhaseAVoltage::READ, Self::PhaseAVoltage(frame.values())),
+            (0x41, 0x000D) => frame.reply(&PhaseBVoltage::READ, Self::PhaseBVoltage(frame.values())),
+            (0x41, 0x000E) => frame.reply(&PhaseCVoltage::READ, Self::PhaseCVoltage(frame.values())),
+            (0x41, 0x0010) => frame.reply(&PfcBoardTemperature::READ, Self::PfcBoardTemperature(frame.values())),
+            (0x41, 0x0011) => frame.reply(&RatedPower::READ, Self::RatedPower(frame.values())),
+            (0x41, 0x0012) => frame.reply(&RatedCurrent::READ, Self::RatedCurrent(frame.values())),
+            (0x42, 0x0017) => frame.reply(&SetAltitude::SET, Self::SetAltitude(frame.values())),
+            (0x42, 0x001B) => frame.reply(&SetOutputCurrent::SET, Self::SetOutputCurrent(frame.values())),
+            (0x42, 0x001E) => frame.reply(&SetGroup::SET, Self::SetGroup(frame.values())),
+            (0x42, 0x001F) => frame.reply(&SetAddressMode::SET, Self::SetAddressMode(frame.values())),
+            (0x41, 0x0020) => frame.reply(&SetOutputPower::SET, Self::SetOutputPower(frame.values())),
+            (0x41, 0x0021) => frame.reply(&SetOutputVoltage::SET, Self::SetOutputVoltage(frame.values())),
+            (0x41, 0x0022) => frame.reply(&SetCurrentLimit::SET, Self::SetCurrentLimit(frame.values())),
+            (0x41, 0x0023) => frame.reply(&SetOvervoltagePoint::SET, Self::SetOvervoltagePoint(frame.values())),
+            (0x42, 0x0030) => frame.reply(&SwitchModules::SET, Self::SwitchModules(frame.values())),
+            (0x42, 0x0031) => frame.reply(&ResetOvervoltage::SET, Self::ResetOvervoltage(frame.values())),
+            (0x42, 0x003E) => frame.reply(&SetOvervoltageRelevance::SET, Self::SetOvervoltageRelevance(frame.values())),
+            (0x42, 0x0040) => frame.reply(&ModuleStatus::READ, Self::ModuleStatus(frame.values())),
+            (0x42, 0x0043) => frame.reply(&GroupAndAddress::READ, Self::GroupAndAddress(frame.values())),
+            (0x42, 0x0044) => frame.reply(&ResetShortCircuit::SET, Self::ResetShortCircuit(frame.values())),
+            (0x42, 0x0046) => frame.reply(&SetInputMode::SET, Self::SetInputMode(frame.values())),
+            (0x42, 0x0048) => frame.reply(&InputPower::READ, Self::InputPower(frame.values())),
+            (0x42, 0x004A) => frame.reply(&Altitude::READ, Self::Altitude(frame.values())),
+            (0x42, 0x004B) => frame.reply(&ActiveInputMode::READ, Self::ActiveInputMode(frame.values())),
+            (0x42, 0x0054) => frame.reply(&SerialNumberLow::READ, Self::SerialNumberLow(frame.values())),
+            (0x42, 0x0055) => frame.reply(&SerialNumberHigh::READ, Self::SerialNumberHigh(frame.values())),
+            (0x42, 0x0056) => frame.reply(&DcdcVersion::READ, Self::DcdcVersion(frame.values())),
+            (0x42, 0x0057) => frame.reply(&PfcVersion::READ, Self::PfcVersion(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(_: u32) -> &'static [u8] {
+    fn request_lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[8]
     }
 

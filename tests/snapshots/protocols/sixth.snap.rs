@@ -1588,6 +1588,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -1597,110 +1598,71 @@ impl Protocol for Message {
     const DATA_SELECTORS: bool = true;
     const REFUSALS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (
-            Identifier::FUNCTION.of(id),
-            OPERATION_SELECTOR.place.get(data),
-            INDEX_SELECTOR.place.get(data),
-            SIGN_SELECTOR.place.get(data),
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (
+            frame.id(Identifier::FUNCTION),
+            frame.data(OPERATION_SELECTOR.place),
+            frame.data(INDEX_SELECTOR.place),
+            frame.data(SIGN_SELECTOR.place),
         ) {
-            (0x6, 0x40, 0x2100, _) => Recognised::request(&VoltageSetPoint::READ, Self::ReadVoltageSetPoint),
-            (0x6, 0x22, 0x2100, _) => {
-                Recognised::request(&VoltageSetPoint::WRITE, Self::VoltageSetPoint(Layout::decode(data)))
-            }
-            (0x6, 0x40, 0x2101, _) => Recognised::request(&CurrentLimit::READ, Self::ReadCurrentLimit),
-            (0x6, 0x22, 0x2101, _) => {
-                Recognised::request(&CurrentLimit::WRITE, Self::CurrentLimit(Layout::decode(data)))
-            }
-            (0x6, 0x40, 0x2102, _) => Recognised::request(&OutputSwitch::READ, Self::ReadOutputSwitch),
-            (0x6, 0x22, 0x2102, _) => {
-                Recognised::request(&OutputSwitch::WRITE, Self::OutputSwitch(Layout::decode(data)))
-            }
-            (0x6, 0x40, 0x2103, _) => Recognised::request(&MinimumFanSpeed::READ, Self::ReadMinimumFanSpeed),
-            (0x6, 0x22, 0x2103, _) => {
-                Recognised::request(&MinimumFanSpeed::WRITE, Self::MinimumFanSpeed(Layout::decode(data)))
-            }
-            (0x6, 0x40, 0x2200, _) => Recognised::request(&OutputVoltage::READ, Self::ReadOutputVoltage),
-            (0x6, 0x40, 0x2201, _) => Recognised::request(&OutputCurrent::READ, Self::ReadOutputCurrent),
-            (0x6, 0x40, 0x2202, _) => Recognised::request(&HeatSinkTemperature::READ, Self::ReadHeatSinkTemperature),
-            (0x6, 0x40, 0x2203, _) => Recognised::request(&InputFrequency::READ, Self::ReadInputFrequency),
-            (0x6, 0x40, 0x2204, _) => Recognised::request(&OperatingTime::READ, Self::ReadOperatingTime),
-            (0x6, 0x40, 0x2300, _) => Recognised::request(&SerialNumber::READ, Self::ReadSerialNumber),
-            (0x6, 0x40, 0x2301, _) => Recognised::request(&Firmware::READ, Self::ReadFirmware),
-            (0x6, 0x40, 0x2400, _) => Recognised::request(&State::READ, Self::ReadState),
-            (0xF, _, _, 0x55) => Recognised::request(&KeepAlive::TELL, Self::KeepAlive(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+            (0x6, 0x40, 0x2100, _) => frame.request(&VoltageSetPoint::READ, Self::ReadVoltageSetPoint),
+            (0x6, 0x22, 0x2100, _) => frame.request(&VoltageSetPoint::WRITE, Self::VoltageSetPoint(frame.values())),
+            (0x6, 0x40, 0x2101, _) => frame.request(&CurrentLimit::READ, Self::ReadCurrentLimit),
+            (0x6, 0x22, 0x2101, _) => frame.request(&CurrentLimit::WRITE, Self::CurrentLimit(frame.values())),
+            (0x6, 0x40, 0x2102, _) => frame.request(&OutputSwitch::READ, Self::ReadOutputSwitch),
+            (0x6, 0x22, 0x2102, _) => frame.request(&OutputSwitch::WRITE, Self::OutputSwitch(frame.values())),
+            (0x6, 0x40, 0x2103, _) => frame.request(&MinimumFanSpeed::READ, Self::ReadMinimumFanSpeed),
+            (0x6, 0x22, 0x2103, _) => frame.request(&MinimumFanSpeed::WRITE, Self::MinimumFanSpeed(frame.values())),
+            (0x6, 0x40, 0x2200, _) => frame.request(&OutputVoltage::READ, Self::ReadOutputVoltage),
+            (0x6, 0x40, 0x2201, _) => frame.request(&OutputCurrent::READ, Self::ReadOutputCurrent),
+            (0x6, 0x40, 0x2202, _) => frame.request(&HeatSinkTemperature::READ, Self::ReadHeatSinkTemperature),
+            (0x6, 0x40, 0x2203, _) => frame.request(&InputFrequency::READ, Self::ReadInputFrequency),
+            (0x6, 0x40, 0x2204, _) => frame.request(&OperatingTime::READ, Self::ReadOperatingTime),
+            (0x6, 0x40, 0x2300, _) => frame.request(&SerialNumber::READ, Self::ReadSerialNumber),
+            (0x6, 0x40, 0x2301, _) => frame.request(&Firmware::READ, Self::ReadFirmware),
+            (0x6, 0x40, 0x2400, _) => frame.request(&State::READ, Self::ReadState),
+            (0xF, _, _, 0x55) => frame.request(&KeepAlive::TELL, Self::KeepAlive(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised =
-            match (Identifier::FUNCTION.of(id), OPERATION_SELECTOR.place.get(data), INDEX_SELECTOR.place.get(data)) {
-                (0x5, 0x4B, 0x2100) => {
-                    Recognised::reply(&VoltageSetPoint::READ, Self::VoltageSetPoint(Layout::decode(data)))
-                }
-                (0x5, 0x60, 0x2100) => {
-                    Recognised::reply(&VoltageSetPoint::WRITE, Self::VoltageSetPoint(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2101) => Recognised::reply(&CurrentLimit::READ, Self::CurrentLimit(Layout::decode(data))),
-                (0x5, 0x60, 0x2101) => {
-                    Recognised::reply(&CurrentLimit::WRITE, Self::CurrentLimit(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2102) => Recognised::reply(&OutputSwitch::READ, Self::OutputSwitch(Layout::decode(data))),
-                (0x5, 0x60, 0x2102) => {
-                    Recognised::reply(&OutputSwitch::WRITE, Self::OutputSwitch(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2103) => {
-                    Recognised::reply(&MinimumFanSpeed::READ, Self::MinimumFanSpeed(Layout::decode(data)))
-                }
-                (0x5, 0x60, 0x2103) => {
-                    Recognised::reply(&MinimumFanSpeed::WRITE, Self::MinimumFanSpeed(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2200) => {
-                    Recognised::reply(&OutputVoltage::READ, Self::OutputVoltage(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2201) => {
-                    Recognised::reply(&OutputCurrent::READ, Self::OutputCurrent(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2202) => {
-                    Recognised::reply(&HeatSinkTemperature::READ, Self::HeatSinkTemperature(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2203) => {
-                    Recognised::reply(&InputFrequency::READ, Self::InputFrequency(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2204) => {
-                    Recognised::reply(&OperatingTime::READ, Self::OperatingTime(Layout::decode(data)))
-                }
-                (0x5, 0x4B, 0x2300) => Recognised::reply(&SerialNumber::READ, Self::SerialNumber(Layout::decode(data))),
-                (0x5, 0x4B, 0x2301) => Recognised::reply(&Firmware::READ, Self::Firmware(Layout::decode(data))),
-                (0x5, 0x4B, 0x2400) => Recognised::reply(&State::READ, Self::State(Layout::decode(data))),
-                (0x5, 0x80, _) => Recognised::reply(&Refusal::REFUSE, Self::Refusal(Layout::decode(data))),
-                (0x1, _, _) => Recognised::report(&MeasurementA::REPORT_A, Self::MeasurementA(Layout::decode(data))),
-                (0x2, _, _) => Recognised::report(&MeasurementB::REPORT_B, Self::MeasurementB(Layout::decode(data))),
-                _ => return None,
-            };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::FUNCTION), frame.data(OPERATION_SELECTOR.place), frame.data(INDEX_SELECTOR.place)) {
+            (0x5, 0x4B, 0x2100) => frame.reply(&VoltageSetPoint::READ, Self::VoltageSetPoint(frame.values())),
+            (0x5, 0x60, 0x2100) => frame.reply(&VoltageSetPoint::WRITE, Self::VoltageSetPoint(frame.values())),
+            (0x5, 0x4B, 0x2101) => frame.reply(&CurrentLimit::READ, Self::CurrentLimit(frame.values())),
+            (0x5, 0x60, 0x2101) => frame.reply(&CurrentLimit::WRITE, Self::CurrentLimit(frame.values())),
+            (0x5, 0x4B, 0x2102) => frame.reply(&OutputSwitch::READ, Self::OutputSwitch(frame.values())),
+            (0x5, 0x60, 0x2102) => frame.reply(&OutputSwitch::WRITE, Self::OutputSwitch(frame.values())),
+            (0x5, 0x4B, 0x2103) => frame.reply(&MinimumFanSpeed::READ, Self::MinimumFanSpeed(frame.values())),
+            (0x5, 0x60, 0x2103) => frame.reply(&MinimumFanSpeed::WRITE, Self::MinimumFanSpeed(frame.values())),
+            (0x5, 0x4B, 0x2200) => frame.reply(&OutputVoltage::READ, Self::OutputVoltage(frame.values())),
+            (0x5, 0x4B, 0x2201) => frame.reply(&OutputCurrent::READ, Self::OutputCurrent(frame.values())),
+            (0x5, 0x4B, 0x2202) => frame.reply(&HeatSinkTemperature::READ, Self::HeatSinkTemperature(frame.values())),
+            (0x5, 0x4B, 0x2203) => frame.reply(&InputFrequency::READ, Self::InputFrequency(frame.values())),
+            (0x5, 0x4B, 0x2204) => frame.reply(&OperatingTime::READ, Self::OperatingTime(frame.values())),
+            (0x5, 0x4B, 0x2300) => frame.reply(&SerialNumber::READ, Self::SerialNumber(frame.values())),
+            (0x5, 0x4B, 0x2301) => frame.reply(&Firmware::READ, Self::Firmware(frame.values())),
+            (0x5, 0x4B, 0x2400) => frame.reply(&State::READ, Self::State(frame.values())),
+            (0x5, 0x80, _) => frame.reply(&Refusal::REFUSE, Self::Refusal(frame.values())),
+            (0x1, _, _) => frame.report(&MeasurementA::REPORT_A, Self::MeasurementA(frame.values())),
+            (0x2, _, _) => frame.report(&MeasurementB::REPORT_B, Self::MeasurementB(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::FUNCTION.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::FUNCTION) {
             0x6 => &[8],
             0xF => &[2],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::FUNCTION.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::FUNCTION) {
             0x1 | 0x5 => &[8],
             0x2 => &[6],
             _ => &[],

@@ -961,6 +961,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -969,45 +970,37 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x10 => Recognised::request(&Control::SET, Self::Control(Layout::decode(data))),
-            0x11 => Recognised::request(&SetAddress::SET, Self::SetAddress(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x10 => frame.request(&Control::SET, Self::Control(frame.values())),
+            0x11 => frame.request(&SetAddress::SET, Self::SetAddress(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x20 => Recognised::report(&ReferenceValues::REPORT, Self::ReferenceValues(Layout::decode(data))),
-            0x21 => Recognised::report(&OutputValues::REPORT, Self::OutputValues(Layout::decode(data))),
-            0x22 => Recognised::report(&TemperatureValues::REPORT, Self::TemperatureValues(Layout::decode(data))),
-            0x23 => Recognised::report(&FirmwareVersion::REPORT, Self::FirmwareVersion(Layout::decode(data))),
-            0x25 => Recognised::report(&RunningTime::REPORT, Self::RunningTime(Layout::decode(data))),
-            0x27 => Recognised::report(&ReplacementAdvice::REPORT, Self::ReplacementAdvice(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x20 => frame.report(&ReferenceValues::REPORT, Self::ReferenceValues(frame.values())),
+            0x21 => frame.report(&OutputValues::REPORT, Self::OutputValues(frame.values())),
+            0x22 => frame.report(&TemperatureValues::REPORT, Self::TemperatureValues(frame.values())),
+            0x23 => frame.report(&FirmwareVersion::REPORT, Self::FirmwareVersion(frame.values())),
+            0x25 => frame.report(&RunningTime::REPORT, Self::RunningTime(frame.values())),
+            0x27 => frame.report(&ReplacementAdvice::REPORT, Self::ReplacementAdvice(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x10 | 0x11 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x20..=0x23 | 0x25 | 0x27 => &[8],
             _ => &[],
         }

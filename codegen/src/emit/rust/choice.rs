@@ -8,8 +8,7 @@ use super::plan::rows::{Arm, Constants};
 use super::plan::selector::{Selector, Selectors, Source};
 use crate::model::SelectorId;
 
-/// Chooses the first arm with a set that holds, else `otherwise`. It reads the identifier `id` and
-/// the bytes `data`.
+/// Chooses the first arm with a set that holds, else `otherwise`. It asks `frame`.
 pub fn choice(selectors: &Selectors, arms: &[Arm<TokenStream>], otherwise: &TokenStream) -> TokenStream {
     if let [Arm { sets, outcome }] = arms
         && let [only] = sets.as_slice()
@@ -20,6 +19,11 @@ pub fn choice(selectors: &Selectors, arms: &[Arm<TokenStream>], otherwise: &Toke
     if arms.is_empty() {
         return otherwise.clone();
     }
+    matched(selectors, arms, otherwise)
+}
+
+/// The same as a `match`, also of a single arm.
+pub fn matched(selectors: &Selectors, arms: &[Arm<TokenStream>], otherwise: &TokenStream) -> TokenStream {
     let columns = columns(selectors, arms);
     let values = columns.iter().map(|selector| value(&selectors[*selector]));
     let subject = tuple(values.collect());
@@ -28,7 +32,7 @@ pub fn choice(selectors: &Selectors, arms: &[Arm<TokenStream>], otherwise: &Toke
 }
 
 /// Tests whether all constants hold.
-pub fn condition(selectors: &Selectors, constants: &Constants) -> TokenStream {
+fn condition(selectors: &Selectors, constants: &Constants) -> TokenStream {
     let tests = in_order(selectors, constants.keys().copied()).into_iter().filter_map(|id| {
         let (value, constant) = (value(&selectors[id]), selectors[id].value(*constants.get(&id)?));
         Some(quote!(#value == #constant))
@@ -88,7 +92,7 @@ fn in_order(selectors: &Selectors, known: impl Iterator<Item = SelectorId>) -> V
 
 fn value(selector: &Selector) -> TokenStream {
     match &selector.source {
-        Source::Identifier(place) => quote!(Identifier::#place.of(id)),
-        Source::Data(constant) => quote!(#constant.place.get(data)),
+        Source::Identifier(place) => quote!(frame.id(Identifier::#place)),
+        Source::Data(constant) => quote!(frame.data(#constant.place)),
     }
 }

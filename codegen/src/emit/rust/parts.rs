@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn no_part_is_empty_beside_arms_that_are_too_wide_to_be_laid_out() {
         let wide = ident(&"a".repeat(200));
-        let arm = |_: &usize| quote!(0x01 => Recognised::reply(&#wide::#wide, Self::#wide(Layout::decode(data))),);
+        let arm = |_: &usize| quote!(0x01 => frame.reply(&#wide::#wide, Self::#wide(frame.values())),);
         for count in [1, 2, 30] {
             let parts = parts((0..count).collect(), arm);
             assert!(parts.iter().all(|part| !part.is_empty()), "{count}");

@@ -98,7 +98,7 @@ impl Plan {
         let context = &Context { protocol, types, models: &models, scaled: options.scaled };
         let planner = message::Planner { context, selectors: &selectors, accesses: &accesses };
         let messages = protocol.messages.ids().map(|id| planner.message(id)).collect();
-        let planner = recognition::Planner { protocol, types, selectors: &selectors, messages: &messages };
+        let planner = recognition::Planner { protocol, types, messages: &messages };
         let course = &protocol.recognition;
         let variants = variant::variants(protocol, types);
         let set = |id| Set::new(protocol, types, &messages, addresses, &variants, id);

@@ -131,7 +131,10 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
     let modes = plan.modes.iter().map(|mode| &mode.constant);
     let truths = truths(plan);
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
+    let recognises = [&plan.requests, &plan.replies, &plan.either].into_iter().any(Option::is_some);
+    let inlines = recognises.then(|| quote!(#[expect(clippy::inline_always, reason = "only decoding calls them")]));
     quote! {
+        #inlines
         impl Protocol for Message {
             type Identifier = Identifier;
             const FRAME: Filter = FRAME;

@@ -1,9 +1,9 @@
 //! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
 
-use crate::plumbing::{Address, Continuation, Decode, Encode, Pattern, Recognised, Task, Who};
+use crate::plumbing::{Address, Continuation, Decode, Encode, Incoming, Pattern, Task, Who};
 use crate::{
-    AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Place, Protocol,
-    Selector, Signal,
+    AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Place, Problem,
+    Protocol, Received, Selector, Signal,
 };
 
 const DIRECTION: Bits = Bits::new(10, 10);
@@ -98,21 +98,19 @@ impl Protocol for Value {
     const NORMAL: Filter = Filter::STANDARD;
     const MODES: &'static [Mode] = &[SINGLE];
 
-    fn request(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let exchanges = exchanges(frame, model);
-        exchanges.map(|exchange| Recognised::request(exchange, Layout::decode(&frame.bytes())))
+    fn request(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        found(frame).map_or_else(|| frame.unknown(), |exchange| frame.request(exchange, frame.values()))
     }
 
-    fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let exchanges = exchanges(frame, model);
-        exchanges.map(|exchange| Recognised::reply(exchange, Layout::decode(&frame.bytes())))
+    fn reply(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        found(frame).map_or_else(|| frame.unknown(), |exchange| frame.reply(exchange, frame.values()))
     }
 
-    fn request_lengths(_: u32) -> &'static [u8] {
+    fn request_lengths(_: &Incoming) -> &'static [u8] {
         &[4]
     }
 
-    fn reply_lengths(_: u32) -> &'static [u8] {
+    fn reply_lengths(_: &Incoming) -> &'static [u8] {
         &[4, 8]
     }
 
@@ -122,14 +120,14 @@ impl Protocol for Value {
 }
 
 /// Finds how a frame travels; device model 1 takes the six as members of no set.
-fn exchanges(frame: &Frame, model: Option<u8>) -> Option<&'static Exchange> {
-    let known: &[Exchange] = match (COMMAND.of(frame.raw_id()), model) {
+fn found(frame: &Incoming) -> Option<&'static Exchange> {
+    let known: &[Exchange] = match (frame.id(COMMAND), frame.model) {
         (5, None) => &OF_ALL,
         (6, None) => &OF_PAIR,
         (5 | 7, _) => &ALONE,
         _ => return None,
     };
-    known.get(usize::from(frame.bytes()[0]).wrapping_sub(1))
+    known.get(usize::try_from(frame.data(Place::byte(0))).ok()?.wrapping_sub(1))
 }
 
 /// The six values of an oven.

@@ -1,0 +1,146 @@
+//! Frames while they are recognised.
+
+use crate::address::Rank;
+use crate::protocol::{Direction, direction, own_id};
+use crate::{Bits, Exchange, Frame, IdentifierFields, Kind, Layout, Place, Problem, Protocol, Received};
+
+/// A frame of a protocol while it is recognised, and the number of the device model that it should be of.
+///
+/// Generated code names the message. Each of its answers is complete, so that nothing is copied on the way to the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct Incoming {
+    frame: Frame,
+    pub(crate) model: Option<u8>,
+    /// The numbers of data bytes, if there are several.
+    lengths: &'static [u8],
+}
+
+impl Incoming {
+    /// Returns a frame that should be of a device model.
+    #[inline(always)]
+    pub const fn new(frame: Frame, model: Option<u8>) -> Self {
+        Self { frame, model, lengths: &[] }
+    }
+
+    /// Returns the value of a field of the identifier.
+    #[inline(always)]
+    pub const fn id(&self, bits: Bits) -> u32 {
+        bits.of(self.frame.raw_id())
+    }
+
+    /// Returns the value at a place of the data.
+    #[inline(always)]
+    pub const fn data(&self, place: Place) -> u64 {
+        place.get(&self.frame.bytes())
+    }
+
+    /// Returns the values that the frame carries if it is of a message.
+    #[inline(always)]
+    pub fn values<L: Layout>(&self) -> L {
+        L::read(&self.frame)
+    }
+
+    /// Sets the numbers of data bytes that the message can have.
+    #[must_use]
+    #[inline(always)]
+    pub const fn of_lengths(&self, lengths: &'static [u8]) -> Self {
+        Self { lengths, ..*self }
+    }
+
+    /// Returns the message of a request.
+    ///
+    /// # Errors
+    ///
+    /// Refuses another number of data bytes than the message has.
+    #[inline(always)]
+    pub fn request<P: Protocol>(&self, exchange: &'static Exchange, message: P) -> Result<Received<P>, Problem> {
+        self.received(exchange, Kind::Request, message)
+    }
+
+    /// Returns the message of a reply.
+    ///
+    /// # Errors
+    ///
+    /// Refuses another number of data bytes than the message has.
+    #[inline(always)]
+    pub fn reply<P: Protocol>(&self, exchange: &'static Exchange, message: P) -> Result<Received<P>, Problem> {
+        self.received(exchange, Kind::Reply, message)
+    }
+
+    /// Returns the message of a report.
+    ///
+    /// # Errors
+    ///
+    /// Refuses another number of data bytes than the message has.
+    #[inline(always)]
+    pub fn report<P: Protocol>(&self, exchange: &'static Exchange, message: P) -> Result<Received<P>, Problem> {
+        self.received(exchange, Kind::Report, message)
+    }
+
+    #[inline(always)]
+    fn received<P: Protocol>(
+        &self,
+        exchange: &'static Exchange,
+        kind: Kind,
+        message: P,
+    ) -> Result<Received<P>, Problem> {
+        if P::LENGTH.is_none() && !self.frame.has_length(exchange.data_length().into(), self.lengths) {
+            return self.unknown();
+        }
+        Ok(Received::new(message, exchange, kind, self.frame, self.model))
+    }
+
+    /// Returns the message that fits the frame best: first by length, then by device model, then by addresses.
+    ///
+    /// # Errors
+    ///
+    /// Refuses another number of data bytes than the messages have.
+    pub fn best<P: Protocol, const N: usize>(
+        &self,
+        messages: [Result<Received<P>, Problem>; N],
+    ) -> Result<Received<P>, Problem> {
+        let fitting = messages.into_iter().filter_map(Result::ok);
+        let best = fitting.reduce(|best, next| if self.rank(&next) > self.rank(&best) { next } else { best });
+        best.map_or_else(|| self.unknown(), Ok)
+    }
+
+    fn rank<P: Protocol>(&self, received: &Received<P>) -> (bool, Option<Rank>) {
+        (received.exchange().is_of(self.model), received.addressing().map(|addressing| addressing.rank()))
+    }
+
+    /// Says why no message is the frame's.
+    ///
+    /// # Errors
+    ///
+    /// Always.
+    #[inline(always)]
+    pub fn unknown<P: Protocol>(&self) -> Result<Received<P>, Problem> {
+        unknown(self.frame)
+    }
+}
+
+/// The same as [`Incoming::unknown`]. It takes the frame by value, or there would have to be a copy in memory.
+#[cold]
+#[inline(never)]
+fn unknown<P: Protocol>(frame: Frame) -> Result<Received<P>, Problem> {
+    Err(problem::<P>(Some(frame)))
+}
+
+/// Says why a frame is not recognised, by the same tests.
+#[cold]
+pub fn problem<P: Protocol>(classic: Option<Frame>) -> Problem {
+    let Some(frame) = classic else { return Problem::Frame };
+    let Some(id) = own_id::<P>(&frame) else { return Problem::Identifier };
+    if P::Identifier::is_foreign(id) {
+        return Problem::Foreign;
+    }
+    let incoming = Incoming::new(frame, None);
+    let lengths = match direction::<P>(id) {
+        None => return Problem::Identifier,
+        Some(Direction::Module) => P::request_lengths(&incoming),
+        Some(Direction::Controller) => P::reply_lengths(&incoming),
+        Some(Direction::Either) => P::either_lengths(&incoming),
+    };
+    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());
+    if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
+}
