@@ -23,7 +23,14 @@ impl Payload {
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
     #[inline(always)]
     pub const fn within_limits(message: &'static str, data: Data) -> Self {
-        Self { message, data, keeps_limits: true, model: None, length: None, received: 0 }
+        Self::new(message, data).keeping_limits()
+    }
+
+    /// Returns the same bytes of a message that only takes values within their documented limits.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) const fn keeping_limits(self) -> Self {
+        Self { keeps_limits: true, ..self }
     }
 
     /// Returns the same bytes for a device model, by its number. The model's limits then replace

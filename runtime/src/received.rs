@@ -192,7 +192,7 @@ impl<P: Protocol> Received<P> {
     /// - addresses that the document does not name.
     pub fn encode(&self) -> Result<Frame, Error> {
         let payload = self.payload()?;
-        let length = payload.length().unwrap_or(self.exchange.data_length());
+        let length = P::LENGTH.or(payload.length()).unwrap_or(self.exchange.data_length());
         let frame = Frame::new_raw(self.id, P::FRAME.is_extended(), *payload.data(), length);
         if self.is_other || self.id != self.frame.raw_id() {
             self.check_recognised(&frame)?;
@@ -221,9 +221,9 @@ impl<P: Protocol> Received<P> {
 
     /// Writes the signals over the received data.
     fn payload(&self) -> Result<Payload, Error> {
-        let new = if self.is_to_module() { Payload::within_limits } else { Payload::new };
-        let payload = new(self.exchange().message(), self.frame.bytes()).for_model(self.model);
-        let mut payload = payload.received_with(self.frame.byte_count());
+        let payload = Payload::new(self.exchange.message(), self.frame.bytes()).for_model(self.model);
+        let payload = payload.received_with(self.frame.byte_count());
+        let mut payload = if self.is_to_module() { payload.keeping_limits() } else { payload };
         self.content.run(&mut payload)?;
         Ok(payload)
     }
