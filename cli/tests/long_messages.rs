@@ -61,7 +61,7 @@ fn an_object_with_the_joined_values_stands_behind_that_of_the_last_frame() {
 
 #[test]
 fn a_part_that_is_lost_is_said_and_nothing_of_it_is_shown() {
-    let log: String = LOG.lines().filter(|line| !line.contains("(1.2)")).map(|line| format!("{line}\n")).collect();
+    let log = LOG.lines().filter(|line| !line.contains("(1.2)")).collect::<Vec<_>>().join("\n");
     let objects = objects(&log);
     let whole = objects.last().expect("there is one");
     assert_eq!(whole["incomplete"], "part 1 is missing");
@@ -86,7 +86,7 @@ fn an_object_of_a_whole_message_becomes_frames_unless_these_have_objects() {
     let (all, _) = canspec(&["decode", "--assemble", "--format", "jsonl", "-"], LOG);
     let (back, complaints) = canspec(&["encode", "--from", "jsonl"], &all);
     assert_eq!((back.as_str(), complaints.as_str()), (LOG, ""));
-    let whole: String = all.lines().filter(|line| line.contains("\"lines\"")).map(|line| format!("{line}\n")).collect();
+    let whole = all.lines().filter(|line| line.contains("\"lines\"")).collect::<Vec<_>>().join("\n");
     let (back, complaints) = canspec(&["encode", "--from", "jsonl"], &whole);
     let frames = "(1.3) can0 051#010201E8030A0000\n(1.3) can0 051#020B000C004A0100\n";
     assert_eq!((back.as_str(), complaints.as_str()), (frames, ""));

@@ -23,7 +23,7 @@ fn protocol() -> Protocol {
 #[derive(Clone, Debug)]
 struct Transfer {
     device: u32,
-    /// The data of the message, of which each transfer has its own.
+    /// The data of the message. Each transfer has its own.
     data: Vec<u8>,
 }
 
@@ -62,7 +62,9 @@ fn spoilt(parts: Vec<Frame>, rng: &mut Rng) -> Vec<Frame> {
 
 /// Mixes what several devices send, keeping the order of each.
 fn mixed(mut queues: Vec<Vec<Frame>>, rng: &mut Rng) -> Vec<Frame> {
-    queues.iter_mut().for_each(|queue| queue.reverse());
+    for queue in &mut queues {
+        queue.reverse();
+    }
     let mut bus = Vec::new();
     while !queues.is_empty() {
         let index = rng.usize(..queues.len());

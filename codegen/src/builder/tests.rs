@@ -125,7 +125,7 @@ fn errors_of_all_specs_are_told_with_their_places_and_nothing_is_written() {
         refusals[0],
         "cargo::error=specs/a.yaml:19:55: error[unit]: there is no unit `lx`; \
          help: the units are V A W VA var Ah Wh Ω Hz °C K Pa % s ms min h rpm m. \
-         For another leave `unit` out, and say it in `title`"
+         Declare another one in `units`"
     );
     assert!(refusals[1].starts_with("cargo::error=specs/c.yaml:19:43: error[number]: "), "{refusals:?}");
     assert_eq!(refusals.len(), 2);

@@ -9,7 +9,7 @@ use crate::model::{
 /// The parts that came so far. `M` is what the caller remembers of each frame.
 ///
 /// A device sends the parts of a message in their order. A part whose number is not greater than that of the part
-/// before begins another message, and so does a part after a request. A frame that is repeated at once counts once.
+/// before begins another message. A part after a request begins one, too. A frame that is repeated at once counts once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {
     transfers: Vec<Transfer<M>>,

@@ -45,13 +45,13 @@ impl LongMessage {
         self.bytes_with(self.varying().and_then(|array| array.least))
     }
 
-    /// Returns how many data bytes it has with so many elements in its arrays of varying length, or with all.
+    /// Returns how many data bytes it has with some number of elements in arrays of varying length, or with all.
     pub fn bytes_with(&self, elements: Option<usize>) -> usize {
         let present = self.content.signals.iter().filter(|signal| self.is_among(elements, signal));
         present.map(Signal::reach).max().unwrap_or(0)
     }
 
-    /// Tests whether a signal is there if arrays of varying length have so many elements.
+    /// Tests whether a signal is there if arrays of varying length have some number of elements.
     pub fn is_among(&self, elements: Option<usize>, signal: &Signal) -> bool {
         let known = elements.zip(self.counted(signal));
         known.is_none_or(|(elements, index)| index < elements)
@@ -68,7 +68,7 @@ impl LongMessage {
         self.content.arrays.iter().find(|array| array.least.is_some())
     }
 
-    /// Returns how many parts carry so many bytes.
+    /// Returns how many parts carry some number of bytes.
     pub fn parts_of(&self, bytes: usize) -> usize {
         bytes.div_ceil(self.parts.size.into()).max(1)
     }

@@ -123,9 +123,6 @@ pub const SINGLE_MODE: Mode = Mode {
 /// Read. Section 1.
 pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).request(FRAME).reply(FRAME);
 
-/// Set. Section 1.
-pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::Nobody)]).with_values().request(FRAME);
-
 /// A device model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
@@ -198,44 +195,6 @@ impl Layout for Label {
     };
 }
 
-/// Limits that a host sets: `command` 0x04. Section 2.3.
-/// - [`set`](SET_ACCESS): nobody answers (`single`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Limits {
-    /// Part: byte 0, `0..=1`.
-    pub part: u8,
-    /// Data: bytes 2..7.
-    pub data: Bytes<6>,
-}
-
-impl Limits {
-    /// The signal `part`, to read or write it alone, or to ask for its limits.
-    pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 1);
-    /// The signal `data`, to read or write it alone, or to ask for its limits.
-    pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00, 0xFF, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
-    /// The access `set`, for filters and blank frames of it.
-    pub const SET: Exchange = SET_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x04));
-
-    /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
-    /// # Errors
-    /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
-    pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::SET.request_to(route, self)
-    }
-}
-
-impl Layout for Limits {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
-    const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
-    const ENCODE: Encode<Self> = |message, payload| {
-        Self::PART.put(message.part, payload)?;
-        Self::DATA.put(message.data, payload)
-    };
-}
-
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
@@ -243,8 +202,6 @@ pub enum Message {
     ReadLabel,
     /// Serial number and hours of use.
     Label(Label),
-    /// Limits that a host sets.
-    Limits(Limits),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -274,57 +231,47 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(4);
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x03 => Recognised::request(&Label::READ, Self::ReadLabel),
-            0x04 => Recognised::request(&Limits::SET, Self::Limits(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
-    }
-
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
-    #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x03).then(|| Recognised::reply(&Label::READ, Self::Label(Layout::decode(data))))
-    }
-
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
-            0x03 => &[4],
-            0x04 => &[8],
-            _ => &[],
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x03 => frame.request(&Label::READ, Self::ReadLabel),
+            _ => frame.unknown(),
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x03 { &[4] } else { &[] }
+    #[inline(always)]
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x03 => frame.reply(&Label::READ, Self::Label(frame.values())),
+            _ => frame.unknown(),
+        }
+    }
+
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x03 { &[4] } else { &[] }
+    }
+
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x03 { &[4] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Label(message) => task.run(message),
-            Self::Limits(message) => task.run(message),
             Self::ReadLabel => task.run(&()),
         }
     }
 }
 
 /// Every message, for programs that go through them without naming one.
-pub const MESSAGES: &[Entry<Message>] = &[
-    Entry::of::<Label>("Serial number and hours of use", &[("command", 0x03)], &[&Label::READ]),
-    Entry::of::<Limits>("Limits that a host sets", &[("command", 0x04)], &[&Limits::SET]),
-];
+pub const MESSAGES: &[Entry<Message>] =
+    &[Entry::of::<Label>("Serial number and hours of use", &[("command", 0x03)], &[&Label::READ])];

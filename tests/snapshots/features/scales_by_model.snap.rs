@@ -190,8 +190,7 @@ impl SetOutput {
     #[must_use]
     pub const fn temperature_on(model: Model) -> Option<Signal<u8, f64>> {
         match model {
-            Model::R4830 => Some(Self::TEMPERATURE.on_model().unit("°C").scale(1, 2)),
-            Model::R4850X20 => Some(Self::TEMPERATURE.on_model().unit("°C").scale(1, 2)),
+            Model::R4830 | Model::R4850X20 => Some(Self::TEMPERATURE.on_model().unit("°C").scale(1, 2)),
             Model::R4850X30 => Some(Self::TEMPERATURE.on_model().unit("°C").scale(1, 2).offset(-40, 1)),
         }
     }
@@ -306,6 +305,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -314,17 +314,16 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[RECTIFIER_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        (Identifier::COMMAND.of(id) == 0x002)
-            .then(|| Recognised::request(&SetOutput::SET, Self::SetOutput(Layout::decode(data))))
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x002 => frame.request(&SetOutput::SET, Self::SetOutput(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        if Identifier::COMMAND.of(id) == 0x002 { &[4] } else { &[] }
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        if frame.id(Identifier::COMMAND) == 0x002 { &[4] } else { &[] }
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -1446,6 +1446,7 @@ impl Message {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -1454,54 +1455,47 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x90 => Recognised::request(&PackValues::READ, Self::ReadPackValues),
-            0x91 => Recognised::request(&CellVoltageExtremes::READ, Self::ReadCellVoltageExtremes),
-            0x92 => Recognised::request(&TemperatureExtremes::READ, Self::ReadTemperatureExtremes),
-            0x93 => Recognised::request(&ChargeState::READ, Self::ReadChargeState),
-            0x94 => Recognised::request(&StatusInformation::READ, Self::ReadStatusInformation),
-            0x95 => Recognised::request(&CellVoltages::READ, Self::ReadCellVoltages),
-            0x96 => Recognised::request(&Temperatures::READ, Self::ReadTemperatures),
-            0x97 => Recognised::request(&BalanceState::READ, Self::ReadBalanceState),
-            0x98 => Recognised::request(&FailureStatus::READ, Self::ReadFailureStatus),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x90 => frame.request(&PackValues::READ, Self::ReadPackValues),
+            0x91 => frame.request(&CellVoltageExtremes::READ, Self::ReadCellVoltageExtremes),
+            0x92 => frame.request(&TemperatureExtremes::READ, Self::ReadTemperatureExtremes),
+            0x93 => frame.request(&ChargeState::READ, Self::ReadChargeState),
+            0x94 => frame.request(&StatusInformation::READ, Self::ReadStatusInformation),
+            0x95 => frame.request(&CellVoltages::READ, Self::ReadCellVoltages),
+            0x96 => frame.request(&Temperatures::READ, Self::ReadTemperatures),
+            0x97 => frame.request(&BalanceState::READ, Self::ReadBalanceState),
+            0x98 => frame.request(&FailureStatus::READ, Self::ReadFailureStatus),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match Identifier::COMMAND.of(id) {
-            0x90 => Recognised::reply(&PackValues::READ, Self::PackValues(Layout::decode(data))),
-            0x91 => Recognised::reply(&CellVoltageExtremes::READ, Self::CellVoltageExtremes(Layout::decode(data))),
-            0x92 => Recognised::reply(&TemperatureExtremes::READ, Self::TemperatureExtremes(Layout::decode(data))),
-            0x93 => Recognised::reply(&ChargeState::READ, Self::ChargeState(Layout::decode(data))),
-            0x94 => Recognised::reply(&StatusInformation::READ, Self::StatusInformation(Layout::decode(data))),
-            0x95 => Recognised::reply(&CellVoltages::READ, Self::CellVoltages(Layout::decode(data))),
-            0x96 => Recognised::reply(&Temperatures::READ, Self::Temperatures(Layout::decode(data))),
-            0x97 => Recognised::reply(&BalanceState::READ, Self::BalanceState(Layout::decode(data))),
-            0x98 => Recognised::reply(&FailureStatus::READ, Self::FailureStatus(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match frame.id(Identifier::COMMAND) {
+            0x90 => frame.reply(&PackValues::READ, Self::PackValues(frame.values())),
+            0x91 => frame.reply(&CellVoltageExtremes::READ, Self::CellVoltageExtremes(frame.values())),
+            0x92 => frame.reply(&TemperatureExtremes::READ, Self::TemperatureExtremes(frame.values())),
+            0x93 => frame.reply(&ChargeState::READ, Self::ChargeState(frame.values())),
+            0x94 => frame.reply(&StatusInformation::READ, Self::StatusInformation(frame.values())),
+            0x95 => frame.reply(&CellVoltages::READ, Self::CellVoltages(frame.values())),
+            0x96 => frame.reply(&Temperatures::READ, Self::Temperatures(frame.values())),
+            0x97 => frame.reply(&BalanceState::READ, Self::BalanceState(frame.values())),
+            0x98 => frame.reply(&FailureStatus::READ, Self::FailureStatus(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x90..=0x98 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x90..=0x98 => &[8],
             _ => &[],
         }

@@ -8,13 +8,14 @@ pub use canspec_runtime::prelude::*;
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id(Identifier::GROUP, 0x1F).id(Identifier::SOFTWARE, 0x1);
 
-/// Why a PSU did not do what was asked: byte 0, bits 7..4. Section 7.2.
+/// Why a PSU did not do what was asked: byte 0, bits 7..4. Section 7.2, 8.2.
 ///
 /// 0 in a request; a parameter error is a value out of range or a register that does not exist.
 ///
 /// Erratum Z10: printed is "the status in the low nibble of byte 0 in words of P, and 21 as its value
-/// after an error in X", used is "the high nibble", because 21 is the status 2 before the register 01,
-/// and Y has the high nibble too; the low one is a part of the register.
+/// after an error in X", used is "the high nibble, in all frames with a register", because 21 is the
+/// status 2 before the register 01, and Y has the high nibble too; the low one is a part of the
+/// register.
 ///
 /// Erratum N1: printed is "0 and 2 as status, and no other", used is "any other as an error without a
 /// name", because nothing else is said.
@@ -32,8 +33,7 @@ pub const REGISTER_SELECTOR: Selector = Selector::new("register", Place::bytes(0
 pub struct Identifier {
     /// Number of the protocol: bits 28..23. Section 0.3, 2.1.
     ///
-    /// 0x21 to and from a host and 0x20 between rectifiers; other power units of the maker have other
-    /// numbers.
+    /// 0x21, and between rectifiers also 0x20; other power units of the maker have other numbers.
     ///
     /// Erratum Z1: printed is "0x21 as the only number in a sentence, and 0x20 in the table of frames
     /// without a request", used is "0x20 for the frames of 9.1 and 9.3 that are printed with it, 0x21 for
@@ -391,38 +391,38 @@ pub const START_UP_ACCESS: Exchange =
 pub enum Model {
     /// `R4830S1`. Section 0.3, 7.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     R4830s1,
     /// `R4830G2`. Section 0.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     ///
     /// Erratum N14: printed is "no scale for the R4830G2 and the R4850N2", used is "a raw number on these
     /// models", because that of another model may be wrong.
     R4830g2,
     /// `R4850G2`. Section 0.3, 7.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     ///
     /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
-    /// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+    /// of the full current on models of P; for 1 A 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
     /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
     /// disagree on the R4850G2, so each has a model.
     R4850g2,
     /// `R4850G2_20`: R4850G2 as in C, where 20 stands for 1 A. Section 0.3, 7.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     ///
     /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
-    /// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+    /// of the full current on models of P; for 1 A 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
     /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
     /// disagree on the R4850G2, so each has a model.
     ///
@@ -436,9 +436,9 @@ pub enum Model {
     R4850g2_20,
     /// `R4850G6`. Section 0.3, 7.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     ///
     /// Erratum Z17: printed is "63.3 A as the full current of the R4850G6 in P, 53.5 A in E", used is "63.3
     /// A as a fact of the model", because P compared it with the measured current, and its examples of 10.3
@@ -446,21 +446,21 @@ pub enum Model {
     R4850g6,
     /// `R4850N2`. Section 0.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     ///
     /// Erratum N14: printed is "no scale for the R4830G2 and the R4850N2", used is "a raw number on these
     /// models", because that of another model may be wrong.
     R4850n2,
     /// `R4875G1`. Section 0.3, 10.2.
     ///
-    /// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-    /// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-    /// other models", because each source had these models.
+    /// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+    /// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+    /// together for others", because no source has a range of the others, and all have 53.5 V.
     ///
     /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
-    /// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+    /// of the full current on models of P; for 1 A 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
     /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
     /// disagree on the R4850G2, so each has a model.
     ///
@@ -505,34 +505,34 @@ pub struct Within<M> {
 /// Limits of `output_voltage` by device model.
 const OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
     (Model::R4830s1 as u8, Some((41.0, 58.600_585_937_5))),
-    (Model::R4830g2 as u8, None),
+    (Model::R4830g2 as u8, Some((41.0, 58.600_585_937_5))),
     (Model::R4850g2 as u8, Some((41.5, 58.5))),
     (Model::R4850g2_20 as u8, Some((41.5, 58.5))),
     (Model::R4850g6 as u8, Some((41.0, 58.600_585_937_5))),
-    (Model::R4850n2 as u8, None),
-    (Model::R4875g1 as u8, None),
+    (Model::R4850n2 as u8, Some((41.0, 58.600_585_937_5))),
+    (Model::R4875g1 as u8, Some((41.0, 58.600_585_937_5))),
 ];
 
 /// Limits of `default_output_voltage` by device model.
 const DEFAULT_OUTPUT_VOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
     (Model::R4830s1 as u8, Some((48.0, 58.400_390_625))),
-    (Model::R4830g2 as u8, None),
+    (Model::R4830g2 as u8, Some((48.0, 58.5))),
     (Model::R4850g2 as u8, Some((48.0, 58.5))),
     (Model::R4850g2_20 as u8, Some((48.0, 58.5))),
     (Model::R4850g6 as u8, Some((48.0, 58.400_390_625))),
-    (Model::R4850n2 as u8, None),
-    (Model::R4875g1 as u8, None),
+    (Model::R4850n2 as u8, Some((48.0, 58.5))),
+    (Model::R4875g1 as u8, Some((48.0, 58.5))),
 ];
 
 /// Limits of `overvoltage` by device model.
 const OVERVOLTAGE_LIMITS: &[(u8, Option<(f64, f64)>)] = &[
-    (Model::R4830s1 as u8, None),
-    (Model::R4830g2 as u8, None),
+    (Model::R4830s1 as u8, Some((56.5, 60.5))),
+    (Model::R4830g2 as u8, Some((56.5, 60.5))),
     (Model::R4850g2 as u8, Some((56.5, 60.5))),
     (Model::R4850g2_20 as u8, Some((56.5, 60.5))),
-    (Model::R4850g6 as u8, None),
-    (Model::R4850n2 as u8, None),
-    (Model::R4875g1 as u8, None),
+    (Model::R4850g6 as u8, Some((56.5, 60.5))),
+    (Model::R4850n2 as u8, Some((56.5, 60.5))),
+    (Model::R4875g1 as u8, Some((56.5, 60.5))),
 ];
 
 /// Limits of `current_limit` by device model.
@@ -754,13 +754,14 @@ impl Word for MoreCode {
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
-/// Why a PSU did not do what was asked. Section 7.2.
+/// Why a PSU did not do what was asked. Section 7.2, 8.2.
 ///
 /// 0 in a request; a parameter error is a value out of range or a register that does not exist.
 ///
 /// Erratum Z10: printed is "the status in the low nibble of byte 0 in words of P, and 21 as its value
-/// after an error in X", used is "the high nibble", because 21 is the status 2 before the register 01,
-/// and Y has the high nibble too; the low one is a part of the register.
+/// after an error in X", used is "the high nibble, in all frames with a register", because 21 is the
+/// status 2 before the register 01, and Y has the high nibble too; the low one is a part of the
+/// register.
 ///
 /// Erratum N1: printed is "0 and 2 as status, and no other", used is "any other as an error without a
 /// name", because nothing else is said.
@@ -867,7 +868,7 @@ impl Word for LimitState {
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
-/// Whether the output is off. Section 7.1.
+/// Whether the PSU is on or in standby. Section 7.1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SwitchState {
     /// 0: `on`.
@@ -919,7 +920,9 @@ impl Word for SwitchState {
     const RAW: fn(Self) -> u8 = Self::raw;
 }
 
-/// How the fan runs. Section 7.1, 11.3.
+/// How the fan runs. Section 7.1, 7.4, 11.3.
+///
+/// The maximum prevents that a low limit of the input current stops the fan.
 ///
 /// Erratum Z19: printed is "2 as persistent in P, and in O 1 as maximum on-line and 2 as maximum
 /// off-line", used is "persistent", because O is an older revision of P.
@@ -1469,7 +1472,7 @@ impl Layout for OutputPower {
 /// - Reply `1081407F#01740000000003A4`: `value` 0.91015625.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Efficiency {
-    /// Efficiency as a share: bytes 4..7, steps of 1/1024.
+    /// Efficiency, 1 being 100 %: bytes 4..7, steps of 1/1024.
     pub value: f64,
 }
 
@@ -1548,7 +1551,7 @@ impl Layout for OutputVoltage {
 /// The set limit, the limit of the input current, and perhaps voltage and temperature decide it.
 ///
 /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
-/// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+/// of the full current on models of P; for 1 A 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
 /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
 /// disagree on the R4850G2, so each has a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -1566,10 +1569,9 @@ impl MaximumOutputCurrent {
     #[must_use]
     pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
         match model {
-            Model::R4830s1 => Some(Self::VALUE.on_model().unit("%").scale(2, 25)),
+            Model::R4830s1 | Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25)),
             Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30)),
             Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
-            Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25)),
             Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
             _ => None,
         }
@@ -1605,8 +1607,7 @@ impl MaximumOutputCurrent {
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal =
             Self::value_on(model).ok_or(Error::Meaning { message: "maximum_output_current", signal: "value" })?;
-        let raw = signal.raw_of(value, "maximum_output_current")?;
-        self.value_raw = raw;
+        self.value_raw = signal.raw_of(value, "maximum_output_current")?;
         Ok(())
     }
 }
@@ -2051,6 +2052,8 @@ impl Layout for SerialNumber {
 /// - [`read_all`](READ_ALL_INFORMATION_ACCESS) in the set `information`: the psu answers
 ///   (`point_to_point`).
 /// - Reply `1081507F#0003323130323331`: `value` 210231.
+///
+/// The first six characters of `BarCode` in the E-label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Barcode1 {
     /// Value: bytes 2..7.
@@ -2077,6 +2080,8 @@ impl Layout for Barcode1 {
 /// - [`read_all`](READ_ALL_INFORMATION_ACCESS) in the set `information`: the psu answers
 ///   (`point_to_point`).
 /// - Reply `1082507F#0004375141424332`: `value` 7QABC2.
+///
+/// The next six characters of `BarCode` in the E-label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Barcode2 {
     /// Value: bytes 2..7.
@@ -2231,14 +2236,13 @@ impl Layout for ELabel {
 /// Erratum Z4: printed is "a voltage to set as V x 1024 in P, as V x 1020 in X and K", used is "V x
 /// 1024", because P has 1024 both ways, and X divides by 1024 when it reads.
 ///
-/// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-/// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-/// other models", because each source had these models.
+/// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+/// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+/// together for others", because no source has a range of the others, and all have 53.5 V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputVoltageSetting {
     /// Output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `41..=58.6005859375`. The limits depend on the device model. These have none: `R4830G2`, `R4850N2`,
-    /// `R4875G1`.
+    /// `41..=58.6005859375`. The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -2297,14 +2301,13 @@ impl Layout for OutputVoltageSetting {
 /// Erratum Z4: printed is "a voltage to set as V x 1024 in P, as V x 1020 in X and K", used is "V x
 /// 1024", because P has 1024 both ways, and X divides by 1024 when it reads.
 ///
-/// Erratum Z11: printed is "41.0 to 58.6 V and 48.0 to 58.4 V in P, 41.5 to 58.5 V and 48 to 58.5 V in
-/// X", used is "those of P for R4830S1 and R4850G6, those of X for R4850G2 and `R4850G2_20`, none for
-/// other models", because each source had these models.
+/// Erratum Z11: printed is "41 to 58.6 V and 48 to 58.4 V in P; in X 41.5 and 48 to 58.5 V in steps of
+/// 0.1 V", used is "those of P for R4830S1 and R4850G6, of X for R4850G2 and `R4850G2_20`, all taken
+/// together for others", because no source has a range of the others, and all have 53.5 V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultOutputVoltage {
     /// Default output voltage within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `48..=58.5`. The limits depend on the device model. These have none: `R4830G2`, `R4850N2`,
-    /// `R4875G1`.
+    /// `48..=58.5`. The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -2361,14 +2364,13 @@ impl Layout for DefaultOutputVoltage {
 /// Erratum Z4: printed is "a voltage to set as V x 1024 in P, as V x 1020 in X and K", used is "V x
 /// 1024", because P has 1024 both ways, and X divides by 1024 when it reads.
 ///
-/// Erratum N3: printed is "no range of 01 02 in P and 56.5 to 60.5 V in X, none of 01 09 at all", used
-/// is "that of X for R4850G2 and `R4850G2_20`, none for the rest", because X takes it from the data
-/// sheet of that model, and has not tried it.
+/// Erratum N3: printed is "01 02 with a question mark, no range of it in P and 56.5 to 60.5 V in X,
+/// none of 01 09 at all", used is "that of X for 01 02 of all models, none for 01 09", because X takes
+/// it from the data sheet of that model, and has not tried it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OvervoltageProtection {
     /// Overvoltage protection within the limits of the model in V: bytes 4..7, steps of 1/1024 V,
-    /// `56.5..=60.5`. The limits depend on the device model. These have none: `R4830S1`, `R4830G2`,
-    /// `R4850G6`, `R4850N2`, `R4875G1`.
+    /// `56.5..=60.5`. The limits depend on the device model.
     pub value_v: f64,
 }
 
@@ -2429,7 +2431,7 @@ impl Layout for OvervoltageProtection {
 /// P, and P compared its numbers with measured currents.
 ///
 /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
-/// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+/// of the full current on models of P; for 1 A 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
 /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
 /// disagree on the R4850G2, so each has a model.
 ///
@@ -2453,10 +2455,9 @@ impl CurrentLimit {
     #[must_use]
     pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
         match model {
-            Model::R4830s1 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
+            Model::R4830s1 | Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
             Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0)),
             Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
-            Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
             Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
             _ => None,
         }
@@ -2496,8 +2497,7 @@ impl CurrentLimit {
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal = Self::value_on(model).ok_or(Error::Meaning { message: "current_limit", signal: "value" })?;
-        let raw = signal.raw_of(value, "current_limit")?;
-        self.value_raw = raw;
+        self.value_raw = signal.raw_of(value, "current_limit")?;
         Ok(())
     }
 }
@@ -2529,7 +2529,7 @@ impl Layout for CurrentLimit {
 /// P, and P compared its numbers with measured currents.
 ///
 /// Erratum Z16: printed is "30, 20, 29.34, 19.75 and 15 as the raw number for 1 A", used is "per cent
-/// of the full current on the models of P, 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
+/// of the full current on models of P; for 1 A 30 on the R4850G2, 20 on the `R4850G2_20`, 15 on the
 /// R4875G1", because P has 1250 for the full current, and only the amperes differ by model; X and C
 /// disagree on the R4850G2, so each has a model.
 ///
@@ -2553,10 +2553,9 @@ impl DefaultCurrentLimit {
     #[must_use]
     pub const fn value_on(model: Model) -> Option<Signal<i32, f64>> {
         match model {
-            Model::R4830s1 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
+            Model::R4830s1 | Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
             Model::R4850g2 => Some(Self::VALUE.on_model().unit("A").scale(1, 30).limits(0.0, 60.0)),
             Model::R4850g2_20 => Some(Self::VALUE.on_model().unit("A").scale(1, 20)),
-            Model::R4850g6 => Some(Self::VALUE.on_model().unit("%").scale(2, 25).limits(0.0, 100.0)),
             Model::R4875g1 => Some(Self::VALUE.on_model().unit("A").scale(1, 15)),
             _ => None,
         }
@@ -2597,8 +2596,7 @@ impl DefaultCurrentLimit {
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
         let signal =
             Self::value_on(model).ok_or(Error::Meaning { message: "default_current_limit", signal: "value" })?;
-        let raw = signal.raw_of(value, "default_current_limit")?;
-        self.value_raw = raw;
+        self.value_raw = signal.raw_of(value, "default_current_limit")?;
         Ok(())
     }
 }
@@ -2623,12 +2621,12 @@ impl Layout for DefaultCurrentLimit {
 /// - [`set`](SET_ACCESS): the psu answers (`point_to_point`).
 /// - Request `108180FE#0109000100002A00`: `state` active, `current` 10.5 A.
 ///
-/// Kept without power; a limit of about 5 A can stop the fan until the output has about 75 °C, but not
-/// in the mode `maximum`.
+/// Kept without power, always used; about 5 A can stop the fan until about 75 °C at the output, and
+/// again at about 65 °C.
 ///
-/// Erratum N3: printed is "no range of 01 02 in P and 56.5 to 60.5 V in X, none of 01 09 at all", used
-/// is "that of X for R4850G2 and `R4850G2_20`, none for the rest", because X takes it from the data
-/// sheet of that model, and has not tried it.
+/// Erratum N3: printed is "01 02 with a question mark, no range of it in P and 56.5 to 60.5 V in X,
+/// none of 01 09 at all", used is "that of X for 01 02 of all models, none for 01 09", because X takes
+/// it from the data sheet of that model, and has not tried it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputCurrentLimit {
     /// Whether the limit holds: byte 3.
@@ -2669,7 +2667,8 @@ impl Layout for InputCurrentLimit {
 /// - [`set`](SET_ACCESS): the psu answers (`point_to_point`).
 /// - Request `108180FE#01144B0000000000`: `value` 75 %.
 ///
-/// A PSU loses it without power; it becomes `auto` if a value below the minimum is refused.
+/// Used on-line; a PSU loses it without power; it becomes `auto` if a value below the minimum is
+/// refused.
 ///
 /// Erratum N4: printed is "30 % as the minimum on the R4830S1, the present setting as its minimum, and
 /// a changing minimum on the R4850G6", used is "30 % for R4830S1, and one step for the rest", because a
@@ -2735,7 +2734,7 @@ impl Layout for FanDuty {
 /// - Request `108180FE#0132000100000000`: `value` standby.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Standby {
-    /// Whether the output is off: byte 3.
+    /// Whether the PSU is on or in standby: byte 3.
     pub value: SwitchState,
 }
 
@@ -3143,65 +3142,9 @@ impl Message {
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }
-
-    fn reply_2(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), REGISTER_SELECTOR.place.get(data)) {
-            (0x82, 0x181) => Recognised::reply(&OutputCurrent1::GET, Self::OutputCurrent1(Layout::decode(data))),
-            (0x40, 0x181) => {
-                Recognised::reply(&OutputCurrent1::READ_ALL_MEASURED_DATA, Self::OutputCurrent1(Layout::decode(data)))
-            }
-            (0x82, 0x182) => Recognised::reply(&OutputCurrent2::GET, Self::OutputCurrent2(Layout::decode(data))),
-            (0x40, 0x182) => {
-                Recognised::reply(&OutputCurrent2::READ_ALL_MEASURED_DATA, Self::OutputCurrent2(Layout::decode(data)))
-            }
-            (0x82, 0x183) => Recognised::reply(&Alarms::GET, Self::Alarms(Layout::decode(data))),
-            (0x40, 0x183) => Recognised::reply(&Alarms::READ_ALL_MEASURED_DATA, Self::Alarms(Layout::decode(data))),
-            (0x82, 0x187) => Recognised::reply(&FanState::GET, Self::FanState(Layout::decode(data))),
-            (0x50, 0x001) => Recognised::reply(
-                &CharacteristicData::READ_ALL_INFORMATION,
-                Self::CharacteristicData(Layout::decode(data)),
-            ),
-            (0x50, 0x002) => {
-                Recognised::reply(&SerialNumber::READ_ALL_INFORMATION, Self::SerialNumber(Layout::decode(data)))
-            }
-            (0x50, 0x003) => Recognised::reply(&Barcode1::READ_ALL_INFORMATION, Self::Barcode1(Layout::decode(data))),
-            (0x50, 0x004) => Recognised::reply(&Barcode2::READ_ALL_INFORMATION, Self::Barcode2(Layout::decode(data))),
-            (0x50, 0x005) => Recognised::reply(&Versions::READ_ALL_INFORMATION, Self::Versions(Layout::decode(data))),
-            (0x50, 0x006) => {
-                Recognised::reply(&HardwareAddress::READ_ALL_INFORMATION, Self::HardwareAddress(Layout::decode(data)))
-            }
-            (0x80, 0x100) => {
-                Recognised::reply(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
-            }
-            (0x80, 0x101) => {
-                Recognised::reply(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
-            }
-            (0x80, 0x102) => {
-                Recognised::reply(&OvervoltageProtection::SET, Self::OvervoltageProtection(Layout::decode(data)))
-            }
-            (0x80, 0x103) => Recognised::reply(&CurrentLimit::SET, Self::CurrentLimit(Layout::decode(data))),
-            (0x80, 0x104) => {
-                Recognised::reply(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x80, 0x109) => Recognised::reply(&InputCurrentLimit::SET, Self::InputCurrentLimit(Layout::decode(data))),
-            (0x80, 0x114) => Recognised::reply(&FanDuty::SET, Self::FanDuty(Layout::decode(data))),
-            (0x80, 0x132) => Recognised::reply(&Standby::SET, Self::Standby(Layout::decode(data))),
-            (0x80, 0x134) => Recognised::reply(&FanMode::SET, Self::FanMode(Layout::decode(data))),
-            (0x82, 0x134) => Recognised::reply(&FanMode::GET, Self::FanMode(Layout::decode(data))),
-            (0x11, 0x001) => Recognised::report(&ReadyState::ANNOUNCE, Self::ReadyState(Layout::decode(data))),
-            (0x11, 0x002) => Recognised::report(&CommonLoad::ANNOUNCE, Self::CommonLoad(Layout::decode(data))),
-            (0x11, 0x003) => Recognised::report(&ActiveState::ANNOUNCE, Self::ActiveState(Layout::decode(data))),
-            (0xD2, _) => Recognised::reply(&ELabel::READ_TEXT, Self::ELabel(Layout::decode(data))),
-            (0x10, _) => Recognised::report(&StartUp10::START_UP, Self::StartUp10(Layout::decode(data))),
-            (0x81, _) => Recognised::report(&StartUp81::START_UP, Self::StartUp81(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
-    }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls them")]
 impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
@@ -3217,183 +3160,162 @@ impl Protocol for Message {
         START_UP_MODE,
     ];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+    const DATA_SELECTORS: bool = true;
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn request(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), REGISTER_SELECTOR.place.get(data)) {
-            (0x82, 0x10E) => Recognised::request(&OperatingHours::GET, Self::GetOperatingHours),
-            (0x82, 0x170) => Recognised::request(&InputPower::GET, Self::GetInputPower),
-            (0x82, 0x171) => Recognised::request(&InputFrequency::GET, Self::GetInputFrequency),
-            (0x82, 0x172) => Recognised::request(&InputCurrent::GET, Self::GetInputCurrent),
-            (0x82, 0x173) => Recognised::request(&OutputPower::GET, Self::GetOutputPower),
-            (0x82, 0x174) => Recognised::request(&Efficiency::GET, Self::GetEfficiency),
-            (0x82, 0x175) => Recognised::request(&OutputVoltage::GET, Self::GetOutputVoltage),
-            (0x82, 0x176) => Recognised::request(&MaximumOutputCurrent::GET, Self::GetMaximumOutputCurrent),
-            (0x82, 0x178) => Recognised::request(&InputVoltage::GET, Self::GetInputVoltage),
-            (0x82, 0x17F) => Recognised::request(&OutputTemperature::GET, Self::GetOutputTemperature),
-            (0x82, 0x180) => Recognised::request(&InputTemperature::GET, Self::GetInputTemperature),
-            (0x82, 0x181) => Recognised::request(&OutputCurrent1::GET, Self::GetOutputCurrent1),
-            (0x82, 0x182) => Recognised::request(&OutputCurrent2::GET, Self::GetOutputCurrent2),
-            (0x82, 0x183) => Recognised::request(&Alarms::GET, Self::GetAlarms),
-            (0x82, 0x187) => Recognised::request(&FanState::GET, Self::GetFanState),
-            (0x80, 0x100) => {
-                Recognised::request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
-            }
-            (0x80, 0x101) => {
-                Recognised::request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
-            }
-            (0x80, 0x102) => {
-                Recognised::request(&OvervoltageProtection::SET, Self::OvervoltageProtection(Layout::decode(data)))
-            }
-            (0x80, 0x103) => Recognised::request(&CurrentLimit::SET, Self::CurrentLimit(Layout::decode(data))),
-            (0x80, 0x104) => {
-                Recognised::request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x80, 0x109) => {
-                Recognised::request(&InputCurrentLimit::SET, Self::InputCurrentLimit(Layout::decode(data)))
-            }
-            (0x80, 0x114) => Recognised::request(&FanDuty::SET, Self::FanDuty(Layout::decode(data))),
-            (0x80, 0x132) => Recognised::request(&Standby::SET, Self::Standby(Layout::decode(data))),
-            (0x80, 0x134) => Recognised::request(&FanMode::SET, Self::FanMode(Layout::decode(data))),
-            (0x82, 0x134) => Recognised::request(&FanMode::GET, Self::GetFanMode),
-            (0x40, _) => Recognised::request(&MeasuredData::READ_ALL, Self::ReadAllMeasuredData),
-            (0x50, _) => Recognised::request(&Information::READ_ALL, Self::ReadAllInformation),
-            (0xD2, _) => Recognised::request(&ELabel::READ_TEXT, Self::ReadTextELabel),
-            _ => return None,
-        };
-        Some(recognised)
+    fn request(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(REGISTER_SELECTOR.place)) {
+            (0x82, 0x10E) => frame.request(&OperatingHours::GET, Self::GetOperatingHours),
+            (0x82, 0x170) => frame.request(&InputPower::GET, Self::GetInputPower),
+            (0x82, 0x171) => frame.request(&InputFrequency::GET, Self::GetInputFrequency),
+            (0x82, 0x172) => frame.request(&InputCurrent::GET, Self::GetInputCurrent),
+            (0x82, 0x173) => frame.request(&OutputPower::GET, Self::GetOutputPower),
+            (0x82, 0x174) => frame.request(&Efficiency::GET, Self::GetEfficiency),
+            (0x82, 0x175) => frame.request(&OutputVoltage::GET, Self::GetOutputVoltage),
+            (0x82, 0x176) => frame.request(&MaximumOutputCurrent::GET, Self::GetMaximumOutputCurrent),
+            (0x82, 0x178) => frame.request(&InputVoltage::GET, Self::GetInputVoltage),
+            (0x82, 0x17F) => frame.request(&OutputTemperature::GET, Self::GetOutputTemperature),
+            (0x82, 0x180) => frame.request(&InputTemperature::GET, Self::GetInputTemperature),
+            (0x82, 0x181) => frame.request(&OutputCurrent1::GET, Self::GetOutputCurrent1),
+            (0x82, 0x182) => frame.request(&OutputCurrent2::GET, Self::GetOutputCurrent2),
+            (0x82, 0x183) => frame.request(&Alarms::GET, Self::GetAlarms),
+            (0x82, 0x187) => frame.request(&FanState::GET, Self::GetFanState),
+            (0x80, 0x100) => frame.request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(frame.values())),
+            (0x80, 0x101) => frame.request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(frame.values())),
+            (0x80, 0x102) => frame.request(&OvervoltageProtection::SET, Self::OvervoltageProtection(frame.values())),
+            (0x80, 0x103) => frame.request(&CurrentLimit::SET, Self::CurrentLimit(frame.values())),
+            (0x80, 0x104) => frame.request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(frame.values())),
+            (0x80, 0x109) => frame.request(&InputCurrentLimit::SET, Self::InputCurrentLimit(frame.values())),
+            (0x80, 0x114) => frame.request(&FanDuty::SET, Self::FanDuty(frame.values())),
+            (0x80, 0x132) => frame.request(&Standby::SET, Self::Standby(frame.values())),
+            (0x80, 0x134) => frame.request(&FanMode::SET, Self::FanMode(frame.values())),
+            (0x82, 0x134) => frame.request(&FanMode::GET, Self::GetFanMode),
+            (0x40, _) => frame.request(&MeasuredData::READ_ALL, Self::ReadAllMeasuredData),
+            (0x50, _) => frame.request(&Information::READ_ALL, Self::ReadAllInformation),
+            (0xD2, _) => frame.request(&ELabel::READ_TEXT, Self::ReadTextELabel),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn reply(frame: &Frame, model: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), REGISTER_SELECTOR.place.get(data)) {
-            (0x82, 0x10E) => Recognised::reply(&OperatingHours::GET, Self::OperatingHours(Layout::decode(data))),
-            (0x40, 0x10E) => {
-                Recognised::reply(&OperatingHours::READ_ALL_MEASURED_DATA, Self::OperatingHours(Layout::decode(data)))
+    fn reply(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(REGISTER_SELECTOR.place)) {
+            (0x82, 0x10E) => frame.reply(&OperatingHours::GET, Self::OperatingHours(frame.values())),
+            (0x40, 0x10E) => frame.reply(&OperatingHours::READ_ALL_MEASURED_DATA, Self::OperatingHours(frame.values())),
+            (0x82, 0x170) => frame.reply(&InputPower::GET, Self::InputPower(frame.values())),
+            (0x40, 0x170) => frame.reply(&InputPower::READ_ALL_MEASURED_DATA, Self::InputPower(frame.values())),
+            (0x82, 0x171) => frame.reply(&InputFrequency::GET, Self::InputFrequency(frame.values())),
+            (0x40, 0x171) => frame.reply(&InputFrequency::READ_ALL_MEASURED_DATA, Self::InputFrequency(frame.values())),
+            (0x82, 0x172) => frame.reply(&InputCurrent::GET, Self::InputCurrent(frame.values())),
+            (0x40, 0x172) => frame.reply(&InputCurrent::READ_ALL_MEASURED_DATA, Self::InputCurrent(frame.values())),
+            (0x82, 0x173) => frame.reply(&OutputPower::GET, Self::OutputPower(frame.values())),
+            (0x40, 0x173) => frame.reply(&OutputPower::READ_ALL_MEASURED_DATA, Self::OutputPower(frame.values())),
+            (0x82, 0x174) => frame.reply(&Efficiency::GET, Self::Efficiency(frame.values())),
+            (0x40, 0x174) => frame.reply(&Efficiency::READ_ALL_MEASURED_DATA, Self::Efficiency(frame.values())),
+            (0x82, 0x175) => frame.reply(&OutputVoltage::GET, Self::OutputVoltage(frame.values())),
+            (0x40, 0x175) => frame.reply(&OutputVoltage::READ_ALL_MEASURED_DATA, Self::OutputVoltage(frame.values())),
+            (0x82, 0x176) => frame.reply(&MaximumOutputCurrent::GET, Self::MaximumOutputCurrent(frame.values())),
+            (0x40, 0x176) => {
+                frame.reply(&MaximumOutputCurrent::READ_ALL_MEASURED_DATA, Self::MaximumOutputCurrent(frame.values()))
             }
-            (0x82, 0x170) => Recognised::reply(&InputPower::GET, Self::InputPower(Layout::decode(data))),
-            (0x40, 0x170) => {
-                Recognised::reply(&InputPower::READ_ALL_MEASURED_DATA, Self::InputPower(Layout::decode(data)))
+            (0x82, 0x178) => frame.reply(&InputVoltage::GET, Self::InputVoltage(frame.values())),
+            (0x40, 0x178) => frame.reply(&InputVoltage::READ_ALL_MEASURED_DATA, Self::InputVoltage(frame.values())),
+            (0x82, 0x17F) => frame.reply(&OutputTemperature::GET, Self::OutputTemperature(frame.values())),
+            (0x40, 0x17F) => {
+                frame.reply(&OutputTemperature::READ_ALL_MEASURED_DATA, Self::OutputTemperature(frame.values()))
             }
-            (0x82, 0x171) => Recognised::reply(&InputFrequency::GET, Self::InputFrequency(Layout::decode(data))),
-            (0x40, 0x171) => {
-                Recognised::reply(&InputFrequency::READ_ALL_MEASURED_DATA, Self::InputFrequency(Layout::decode(data)))
+            (0x82, 0x180) => frame.reply(&InputTemperature::GET, Self::InputTemperature(frame.values())),
+            (0x40, 0x180) => {
+                frame.reply(&InputTemperature::READ_ALL_MEASURED_DATA, Self::InputTemperature(frame.values()))
             }
-            (0x82, 0x172) => Recognised::reply(&InputCurrent::GET, Self::InputCurrent(Layout::decode(data))),
-            (0x40, 0x172) => {
-                Recognised::reply(&InputCurrent::READ_ALL_MEASURED_DATA, Self::InputCurrent(Layout::decode(data)))
+            (0x82, 0x181) => frame.reply(&OutputCurrent1::GET, Self::OutputCurrent1(frame.values())),
+            (0x40, 0x181) => frame.reply(&OutputCurrent1::READ_ALL_MEASURED_DATA, Self::OutputCurrent1(frame.values())),
+            (0x82, 0x182) => frame.reply(&OutputCurrent2::GET, Self::OutputCurrent2(frame.values())),
+            (0x40, 0x182) => frame.reply(&OutputCurrent2::READ_ALL_MEASURED_DATA, Self::OutputCurrent2(frame.values())),
+            (0x82, 0x183) => frame.reply(&Alarms::GET, Self::Alarms(frame.values())),
+            (0x40, 0x183) => frame.reply(&Alarms::READ_ALL_MEASURED_DATA, Self::Alarms(frame.values())),
+            (0x82, 0x187) => frame.reply(&FanState::GET, Self::FanState(frame.values())),
+            (0x50, 0x001) => {
+                frame.reply(&CharacteristicData::READ_ALL_INFORMATION, Self::CharacteristicData(frame.values()))
             }
-            (0x82, 0x173) => Recognised::reply(&OutputPower::GET, Self::OutputPower(Layout::decode(data))),
-            (0x40, 0x173) => {
-                Recognised::reply(&OutputPower::READ_ALL_MEASURED_DATA, Self::OutputPower(Layout::decode(data)))
-            }
-            (0x82, 0x174) => Recognised::reply(&Efficiency::GET, Self::Efficiency(Layout::decode(data))),
-            (0x40, 0x174) => {
-                Recognised::reply(&Efficiency::READ_ALL_MEASURED_DATA, Self::Efficiency(Layout::decode(data)))
-            }
-            (0x82, 0x175) => Recognised::reply(&OutputVoltage::GET, Self::OutputVoltage(Layout::decode(data))),
-            (0x40, 0x175) => {
-                Recognised::reply(&OutputVoltage::READ_ALL_MEASURED_DATA, Self::OutputVoltage(Layout::decode(data)))
-            }
-            (0x82, 0x176) => {
-                Recognised::reply(&MaximumOutputCurrent::GET, Self::MaximumOutputCurrent(Layout::decode(data)))
-            }
-            (0x40, 0x176) => Recognised::reply(
-                &MaximumOutputCurrent::READ_ALL_MEASURED_DATA,
-                Self::MaximumOutputCurrent(Layout::decode(data)),
-            ),
-            (0x82, 0x178) => Recognised::reply(&InputVoltage::GET, Self::InputVoltage(Layout::decode(data))),
-            (0x40, 0x178) => {
-                Recognised::reply(&InputVoltage::READ_ALL_MEASURED_DATA, Self::InputVoltage(Layout::decode(data)))
-            }
-            (0x82, 0x17F) => Recognised::reply(&OutputTemperature::GET, Self::OutputTemperature(Layout::decode(data))),
-            (0x40, 0x17F) => Recognised::reply(
-                &OutputTemperature::READ_ALL_MEASURED_DATA,
-                Self::OutputTemperature(Layout::decode(data)),
-            ),
-            (0x82, 0x180) => Recognised::reply(&InputTemperature::GET, Self::InputTemperature(Layout::decode(data))),
-            (0x40, 0x180) => Recognised::reply(
-                &InputTemperature::READ_ALL_MEASURED_DATA,
-                Self::InputTemperature(Layout::decode(data)),
-            ),
-            _ => return Self::reply_2(frame, model),
-        };
-        Some(recognised)
+            (0x50, 0x002) => frame.reply(&SerialNumber::READ_ALL_INFORMATION, Self::SerialNumber(frame.values())),
+            (0x50, 0x003) => frame.reply(&Barcode1::READ_ALL_INFORMATION, Self::Barcode1(frame.values())),
+            (0x50, 0x004) => frame.reply(&Barcode2::READ_ALL_INFORMATION, Self::Barcode2(frame.values())),
+            (0x50, 0x005) => frame.reply(&Versions::READ_ALL_INFORMATION, Self::Versions(frame.values())),
+            (0x50, 0x006) => frame.reply(&HardwareAddress::READ_ALL_INFORMATION, Self::HardwareAddress(frame.values())),
+            (0x80, 0x100) => frame.reply(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(frame.values())),
+            (0x80, 0x101) => frame.reply(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(frame.values())),
+            (0x80, 0x102) => frame.reply(&OvervoltageProtection::SET, Self::OvervoltageProtection(frame.values())),
+            (0x80, 0x103) => frame.reply(&CurrentLimit::SET, Self::CurrentLimit(frame.values())),
+            (0x80, 0x104) => frame.reply(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(frame.values())),
+            (0x80, 0x109) => frame.reply(&InputCurrentLimit::SET, Self::InputCurrentLimit(frame.values())),
+            (0x80, 0x114) => frame.reply(&FanDuty::SET, Self::FanDuty(frame.values())),
+            (0x80, 0x132) => frame.reply(&Standby::SET, Self::Standby(frame.values())),
+            (0x80, 0x134) => frame.reply(&FanMode::SET, Self::FanMode(frame.values())),
+            (0x82, 0x134) => frame.reply(&FanMode::GET, Self::FanMode(frame.values())),
+            (0x11, 0x001) => frame.report(&ReadyState::ANNOUNCE, Self::ReadyState(frame.values())),
+            (0x11, 0x002) => frame.report(&CommonLoad::ANNOUNCE, Self::CommonLoad(frame.values())),
+            (0x11, 0x003) => frame.report(&ActiveState::ANNOUNCE, Self::ActiveState(frame.values())),
+            (0xD2, _) => frame.reply(&ELabel::READ_TEXT, Self::ELabel(frame.values())),
+            (0x10, _) => frame.report(&StartUp10::START_UP, Self::StartUp10(frame.values())),
+            (0x81, _) => frame.report(&StartUp81::START_UP, Self::StartUp81(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    #[expect(clippy::inline_always, reason = "only decoding calls it")]
     #[inline(always)]
-    fn either(frame: &Frame, _: Option<u8>) -> Option<Recognised<Self>> {
-        let id = frame.raw_id();
-        let data = &frame.bytes();
-        let recognised = match (Identifier::COMMAND.of(id), REGISTER_SELECTOR.place.get(data)) {
-            (0x82, 0x10E) => Recognised::request(&OperatingHours::GET, Self::GetOperatingHours),
-            (0x82, 0x170) => Recognised::request(&InputPower::GET, Self::GetInputPower),
-            (0x82, 0x171) => Recognised::request(&InputFrequency::GET, Self::GetInputFrequency),
-            (0x82, 0x172) => Recognised::request(&InputCurrent::GET, Self::GetInputCurrent),
-            (0x82, 0x173) => Recognised::request(&OutputPower::GET, Self::GetOutputPower),
-            (0x82, 0x174) => Recognised::request(&Efficiency::GET, Self::GetEfficiency),
-            (0x82, 0x175) => Recognised::request(&OutputVoltage::GET, Self::GetOutputVoltage),
-            (0x82, 0x176) => Recognised::request(&MaximumOutputCurrent::GET, Self::GetMaximumOutputCurrent),
-            (0x82, 0x178) => Recognised::request(&InputVoltage::GET, Self::GetInputVoltage),
-            (0x82, 0x17F) => Recognised::request(&OutputTemperature::GET, Self::GetOutputTemperature),
-            (0x82, 0x180) => Recognised::request(&InputTemperature::GET, Self::GetInputTemperature),
-            (0x82, 0x181) => Recognised::request(&OutputCurrent1::GET, Self::GetOutputCurrent1),
-            (0x82, 0x182) => Recognised::request(&OutputCurrent2::GET, Self::GetOutputCurrent2),
-            (0x82, 0x183) => Recognised::request(&Alarms::GET, Self::GetAlarms),
-            (0x82, 0x187) => Recognised::request(&FanState::GET, Self::GetFanState),
-            (0x80, 0x100) => {
-                Recognised::request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(Layout::decode(data)))
-            }
-            (0x80, 0x101) => {
-                Recognised::request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(Layout::decode(data)))
-            }
-            (0x80, 0x102) => {
-                Recognised::request(&OvervoltageProtection::SET, Self::OvervoltageProtection(Layout::decode(data)))
-            }
-            (0x80, 0x103) => Recognised::request(&CurrentLimit::SET, Self::CurrentLimit(Layout::decode(data))),
-            (0x80, 0x104) => {
-                Recognised::request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(Layout::decode(data)))
-            }
-            (0x80, 0x109) => {
-                Recognised::request(&InputCurrentLimit::SET, Self::InputCurrentLimit(Layout::decode(data)))
-            }
-            (0x80, 0x114) => Recognised::request(&FanDuty::SET, Self::FanDuty(Layout::decode(data))),
-            (0x80, 0x132) => Recognised::request(&Standby::SET, Self::Standby(Layout::decode(data))),
-            (0x80, 0x134) => Recognised::request(&FanMode::SET, Self::FanMode(Layout::decode(data))),
-            (0x82, 0x134) => Recognised::request(&FanMode::GET, Self::GetFanMode),
-            (0x11, 0x003) => Recognised::report(&ActiveState::ANNOUNCE, Self::ActiveState(Layout::decode(data))),
-            (0x40, _) => Recognised::request(&MeasuredData::READ_ALL, Self::ReadAllMeasuredData),
-            (0x50, _) => Recognised::request(&Information::READ_ALL, Self::ReadAllInformation),
-            (0xD2, _) => Recognised::request(&ELabel::READ_TEXT, Self::ReadTextELabel),
-            (0x81, _) => Recognised::report(&StartUp81::START_UP, Self::StartUp81(Layout::decode(data))),
-            _ => return None,
-        };
-        Some(recognised)
+    fn either(frame: &Incoming) -> Result<Received, Problem> {
+        match (frame.id(Identifier::COMMAND), frame.data(REGISTER_SELECTOR.place)) {
+            (0x82, 0x10E) => frame.request(&OperatingHours::GET, Self::GetOperatingHours),
+            (0x82, 0x170) => frame.request(&InputPower::GET, Self::GetInputPower),
+            (0x82, 0x171) => frame.request(&InputFrequency::GET, Self::GetInputFrequency),
+            (0x82, 0x172) => frame.request(&InputCurrent::GET, Self::GetInputCurrent),
+            (0x82, 0x173) => frame.request(&OutputPower::GET, Self::GetOutputPower),
+            (0x82, 0x174) => frame.request(&Efficiency::GET, Self::GetEfficiency),
+            (0x82, 0x175) => frame.request(&OutputVoltage::GET, Self::GetOutputVoltage),
+            (0x82, 0x176) => frame.request(&MaximumOutputCurrent::GET, Self::GetMaximumOutputCurrent),
+            (0x82, 0x178) => frame.request(&InputVoltage::GET, Self::GetInputVoltage),
+            (0x82, 0x17F) => frame.request(&OutputTemperature::GET, Self::GetOutputTemperature),
+            (0x82, 0x180) => frame.request(&InputTemperature::GET, Self::GetInputTemperature),
+            (0x82, 0x181) => frame.request(&OutputCurrent1::GET, Self::GetOutputCurrent1),
+            (0x82, 0x182) => frame.request(&OutputCurrent2::GET, Self::GetOutputCurrent2),
+            (0x82, 0x183) => frame.request(&Alarms::GET, Self::GetAlarms),
+            (0x82, 0x187) => frame.request(&FanState::GET, Self::GetFanState),
+            (0x80, 0x100) => frame.request(&OutputVoltageSetting::SET, Self::OutputVoltageSetting(frame.values())),
+            (0x80, 0x101) => frame.request(&DefaultOutputVoltage::SET, Self::DefaultOutputVoltage(frame.values())),
+            (0x80, 0x102) => frame.request(&OvervoltageProtection::SET, Self::OvervoltageProtection(frame.values())),
+            (0x80, 0x103) => frame.request(&CurrentLimit::SET, Self::CurrentLimit(frame.values())),
+            (0x80, 0x104) => frame.request(&DefaultCurrentLimit::SET, Self::DefaultCurrentLimit(frame.values())),
+            (0x80, 0x109) => frame.request(&InputCurrentLimit::SET, Self::InputCurrentLimit(frame.values())),
+            (0x80, 0x114) => frame.request(&FanDuty::SET, Self::FanDuty(frame.values())),
+            (0x80, 0x132) => frame.request(&Standby::SET, Self::Standby(frame.values())),
+            (0x80, 0x134) => frame.request(&FanMode::SET, Self::FanMode(frame.values())),
+            (0x82, 0x134) => frame.request(&FanMode::GET, Self::GetFanMode),
+            (0x11, 0x003) => frame.report(&ActiveState::ANNOUNCE, Self::ActiveState(frame.values())),
+            (0x40, _) => frame.request(&MeasuredData::READ_ALL, Self::ReadAllMeasuredData),
+            (0x50, _) => frame.request(&Information::READ_ALL, Self::ReadAllInformation),
+            (0xD2, _) => frame.request(&ELabel::READ_TEXT, Self::ReadTextELabel),
+            (0x81, _) => frame.report(&StartUp81::START_UP, Self::StartUp81(frame.values())),
+            _ => frame.unknown(),
+        }
     }
 
-    fn request_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn request_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x40 | 0x50 | 0x80 | 0x82 | 0xD2 => &[8],
             _ => &[],
         }
     }
 
-    fn reply_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn reply_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x10 | 0x11 | 0x40 | 0x50 | 0x80..=0x82 | 0xD2 => &[8],
             _ => &[],
         }
     }
 
-    fn either_lengths(id: u32) -> &'static [u8] {
-        match Identifier::COMMAND.of(id) {
+    fn either_lengths(frame: &Incoming) -> &'static [u8] {
+        match frame.id(Identifier::COMMAND) {
             0x11 | 0x40 | 0x50 | 0x80..=0x82 | 0xD2 => &[8],
             _ => &[],
         }

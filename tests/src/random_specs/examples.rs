@@ -50,7 +50,7 @@ impl Draft {
                 Err(unrecognised) => self.failing(protocol, &frame, &unrecognised),
             });
         }
-        for _ in 0..FRAMES {
+        for _ in 0..4 * FRAMES * protocol.long_messages.len() {
             let (model, frame) = (self.one(&models), frames.next_frame());
             let decoded = decode(protocol, model, &frame).ok();
             examples.extend(decoded.and_then(|decoded| self.of_all_parts(protocol, model, &frame, &decoded)));
@@ -101,7 +101,7 @@ impl Draft {
         Some(Example { map, kind: decoded.kind, of: Some((outer, inner)), message: Some(name) })
     }
 
-    /// Returns an example of all frames of a long message, the first of which has the form of `frame`.
+    /// Returns an example of all frames of a long message. The frames have the form of `frame`.
     fn of_all_parts(
         &mut self,
         protocol: &Protocol,

@@ -1,6 +1,6 @@
 //! Methods that read and set a number whose scale depends on the device model.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::plan::scales::{Row, Scales};
@@ -11,13 +11,23 @@ pub fn on_model(signal: &Signal) -> Option<TokenStream> {
     let Signal { constant, coding, name, scales, .. } = signal;
     let Scales { on, kind, rows, has_others, .. } = scales.as_ref()?;
     let raw = &coding.raw;
-    let arms = rows.iter().map(|Row { model, unit, scale, offset, limits }| {
+    let scaled = |Row { unit, scale, offset, limits, .. }: &Row| {
         let unit = unit.iter().map(|unit| quote!(.unit(#unit)));
         let scale = scale.iter().map(|[numerator, denominator]| quote!(.scale(#numerator, #denominator)));
         let offset = offset.iter().map(|[above, below]| quote!(.offset(#above, #below)));
         let limits = limits.iter().map(|[minimum, maximum]| quote!(.limits(#minimum, #maximum)));
-        quote!(Model::#model => Some(Self::#constant.on_model() #(#unit)* #(#scale)* #(#offset)* #(#limits)*),)
-    });
+        quote!(Self::#constant.on_model() #(#unit)* #(#scale)* #(#offset)* #(#limits)*)
+    };
+    // Models with the same signal share an arm.
+    let mut groups: Vec<(Vec<&Ident>, TokenStream)> = Vec::new();
+    for row in rows {
+        let scaled = scaled(row);
+        match groups.iter_mut().find(|(_, known)| known.to_string() == scaled.to_string()) {
+            Some((models, _)) => models.push(&row.model),
+            None => groups.push((vec![&row.model], scaled)),
+        }
+    }
+    let arms = groups.iter().map(|(models, scaled)| quote!(#(Model::#models)|* => Some(#scaled),));
     let others = has_others.then(|| quote!(_ => None,));
     let comment = format!(" Returns the signal `{name}` of a device model; `None` of a model without a scale.");
     Some(quote! {

@@ -49,9 +49,9 @@ pub struct Message {
     /// `[voltage, current]`; none if absent. They make the message a set of frames.
     #[serde(default)]
     pub members: Vec<String>,
-    /// How a message longer than a frame travels in several, each with a number:
-    /// `{number: {bytes: 0}, first: 1, data: 1..6}`; it is one frame if absent. The bytes of its
-    /// fields then count in the data of all parts together.
+    /// How a message travels in several frames with numbers: `{number: {bytes: 0}, first: 1, data: 1..6}`;
+    /// it is one frame if absent. The bytes of its fields then count in the data of all parts
+    /// together.
     pub parts: Option<Parts>,
     /// Kinds of frames that each of the `members` has, out of `request` and `reply`:
     /// `[request, reply]`; `[reply]` if absent.
