@@ -81,9 +81,17 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
     Value::record()
         .with("name", Value::text(&message.name))
         .maybe("models", models)
+        .maybe("numbered", numbered(protocol, message))
         .with("signals", Value::list(&message.signals, |known| signal(protocol, message, known)))
         .with("layouts", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
         .maybe("refusals", refusals)
+}
+
+/// Returns the device models whose number of the first part is known, unless all have the same.
+fn numbered(protocol: &Protocol, message: &Message) -> Option<Value> {
+    let (_, long) = protocol.long_message(message).filter(|(_, long)| long.parts.first.is_none())?;
+    let known = long.parts.model_firsts.iter().map(|own| (Value::id(own.model), Value::flag(true)));
+    Some(Value::map(known))
 }
 
 fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {

@@ -578,6 +578,10 @@ local function decode(frame)
       if known.rule then note(known.rule, known.text) end
     end
   end
+  local numbered = layout.message.numbered
+  if numbered and #decoded.readings > 0 and not numbered[frame.model] then
+    note("model_dependent", "the first part of `" .. layout.message.name .. "` has another number on each model")
+  end
   local reserved = frame.big:band(layout.reserved):tohex(-16):sub(1, 2 * frame.length)
   if reserved:find("[^0]") then decoded.reserved = reserved end
   local odd = frame.big:band(layout.reserved):bxor(layout.filled):tohex(-16):sub(1, 2 * frame.length)
