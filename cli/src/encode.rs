@@ -7,12 +7,12 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use canspec_codegen::interpret::{self, Frame, Refusal, Sent, Target, Targets};
-use canspec_codegen::model::{Kind, ModelId, Protocol, Signal};
+use canspec_codegen::model::{Kind, LongMessage, ModelId, Protocol, Signal};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Finish};
 use crate::input::Input;
-use crate::line::{Content, Line, Message};
+use crate::line::{self, Content, Line, Message};
 use crate::log;
 use crate::model::{Device, Model};
 use crate::output::output;
@@ -186,7 +186,8 @@ fn pairs(words: &[String]) -> Result<Vec<(String, String)>, Failure> {
 /// Turns decoded lines into those of a log.
 #[derive(Default)]
 pub struct Encoder {
-    /// Messages whose frames have lines of their own, by protocol. They are not made once more of the whole message.
+    /// Messages and transports whose frames have lines of their own, by protocol. They are not made once more of the whole
+    /// message.
     by_frames: HashSet<(Option<String>, String)>,
 }
 
@@ -214,25 +215,35 @@ impl Encoder {
     fn frame(&mut self, devices: &[Device<'_>], message: &Message) -> Result<Frame, String> {
         let (protocol, model) = device(devices, message.protocol.as_deref())?;
         check_units(protocol.messages.iter(), model, message)?;
-        let frame = interpret::encode(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())?;
+        let of_transport = line::of_transport(protocol, &message.frame);
+        let (carrier, content) =
+            of_transport.as_ref().map_or((&*message.frame.message, &message.frame), |(name, content)| (*name, content));
+        let frame = interpret::encode(protocol, model, content).map_err(|refusal| refusal.to_string())?;
         if !protocol.long_messages.is_empty() {
-            self.by_frames.insert((message.protocol.clone(), message.frame.message.clone()));
+            self.by_frames.insert((message.protocol.clone(), carrier.to_owned()));
         }
         Ok(frame)
     }
 
     /// Makes the frames of a long message, unless they have lines of their own.
     fn frames(&self, devices: &[Device<'_>], message: &Message) -> Result<Vec<Frame>, String> {
-        if self.by_frames.contains(&(message.protocol.clone(), message.frame.message.clone())) {
+        let (protocol, model) = device(devices, message.protocol.as_deref())?;
+        let carrier = carrier(protocol, &message.frame.message);
+        if self.by_frames.contains(&(message.protocol.clone(), carrier.to_owned())) {
             return Ok(Vec::new());
         }
         if let Some(missing) = &message.incomplete {
             return Err(format!("an incomplete message is not made again: {missing}"));
         }
-        let (protocol, model) = device(devices, message.protocol.as_deref())?;
         check_units(protocol.long_messages.iter().map(|long| &long.content), model, message)?;
         interpret::encode_long(protocol, model, &message.frame).map_err(|refusal| refusal.to_string())
     }
+}
+
+/// Returns the name of what carries a long message: its transport, or itself.
+fn carrier<'a>(protocol: &'a Protocol, message: &'a str) -> &'a str {
+    let known = protocol.long_messages.iter().find(|long| long.content.name == message);
+    known.and_then(LongMessage::transport).map_or(message, |transport| &protocol[transport].name)
 }
 
 /// Turns decoded lines into a log.

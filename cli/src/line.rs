@@ -2,9 +2,11 @@
 
 mod input;
 mod output;
+mod transport;
 
 pub use input::{Content, Line, Message};
 pub use output::{Outcome, Whole, addresses, bit_names, set_bits, write};
+pub use transport::content as of_transport;
 
 use serde::{Serialize, Serializer};
 

@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
 use canspec_codegen::model::{
-    DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, ModelId, Protocol, SelectorId, Side,
-    Signal, StatusBit,
+    Carrier, DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, ModelId, Parts, Protocol,
+    SelectorId, Side, Signal, StatusBit,
 };
 use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
@@ -152,8 +152,8 @@ fn selectors(protocol: &Protocol) -> Vec<SelectorId> {
 /// Returns the value that a selector has in every frame of a message. If the message has accesses
 /// of its own, frames of sets do not count.
 fn constant(protocol: &Protocol, message: &Message, selector: SelectorId) -> Option<u64> {
-    let has_own = protocol.frames_of(message).any(|frame| frame.set.is_none());
-    let own = protocol.frames_of(message).filter(|frame| frame.set.is_none() || !has_own);
+    let has_own = protocol.layouts_of(message).any(|frame| frame.set.is_none());
+    let own = protocol.layouts_of(message).filter(|frame| frame.set.is_none() || !has_own);
     let own = own.map(|frame| &frame.constants).chain(message.set.as_ref().map(|set| &set.replies));
     let mut values = own.map(|constants| {
         let constant = constants.iter().find(|constant| constant.selector == selector);
@@ -175,8 +175,8 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_string()));
     cells.push(words(message.doc.section.as_ref()));
     let models = only(protocol, &message.models).map_or(String::new(), |only| format!(" ({only})"));
-    let parts = protocol.long_message(message).map_or(String::new(), |(_, long)| parts(protocol, long));
-    let title = format!("{}{models}{parts}", title(&message.doc).unwrap_or_default());
+    let carrier = protocol.long_message(message).map_or(String::new(), |(_, long)| carrier(protocol, long));
+    let title = format!("{}{models}{carrier}", title(&message.doc).unwrap_or_default());
     let title = Some(title.trim_start()).filter(|title| !title.is_empty());
     match value(message) {
         Some(signal) => Row { cells, last: titled(title, meaning(protocol, signal)), separator: ", " },
@@ -187,13 +187,31 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     }
 }
 
+/// Says how a long message travels: in numbered parts, or by a transport.
+fn carrier(protocol: &Protocol, long: &LongMessage) -> String {
+    match &long.carrier {
+        Carrier::Parts(known) => parts(protocol, long, known),
+        Carrier::Transport(transport) => {
+            let (least, most) = (long.shortest(), long.longest());
+            let lengths: Vec<_> = match long.lengths.as_slice() {
+                [] if least == most => vec![most.to_string()],
+                [] => vec![format!("{least} to {most}")],
+                several => several.iter().map(u16::to_string).collect(),
+            };
+            format!(" ({} bytes by {})", lengths.join(" or "), protocol[*transport].name)
+        }
+        // The enum may grow.
+        _ => String::new(),
+    }
+}
+
 /// Says in how many parts a long message travels, and how they are numbered.
-fn parts(protocol: &Protocol, long: &LongMessage) -> String {
-    let of_models = long.parts.model_firsts.iter().map(|own| format!("{} ({})", own.value, protocol[own.model].name));
-    let firsts: Vec<_> = long.parts.first.map(|first| first.to_string()).into_iter().chain(of_models).collect();
+fn parts(protocol: &Protocol, long: &LongMessage, parts: &Parts) -> String {
+    let of_models = parts.model_firsts.iter().map(|own| format!("{} ({})", own.value, protocol[own.model].name));
+    let firsts: Vec<_> = parts.first.map(|first| first.to_string()).into_iter().chain(of_models).collect();
     let (least, most) = (long.parts_of(long.shortest()), long.parts_of(long.longest()));
     let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
-    format!(" (in {count} parts of {} bytes, numbered from {})", long.parts.size, firsts.join(" or "))
+    format!(" (in {count} parts of {} bytes, numbered from {})", parts.size, firsts.join(" or "))
 }
 
 /// Returns the names of the messages that travel in the frames of a set.

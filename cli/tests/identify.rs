@@ -25,7 +25,7 @@ fn each_session_is_known_by_its_own_protocol() {
         assert!(found[0]["share"].as_f64().is_some_and(|share| share > 0.8), "{text}");
         count += 1;
     }
-    assert_eq!(count, 8);
+    assert_eq!(count, 10);
 }
 
 #[test]

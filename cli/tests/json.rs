@@ -162,7 +162,7 @@ fn no_example_has_a_name_twice() {
 #[test]
 fn no_frame_has_a_name_twice() {
     let logs = root().join("tests/logs");
-    for name in ["daly", "gcp", "huawei", "infy", "megmeet", "mxr", "trio"] {
+    for name in ["daly", "gbt27930", "gcp", "huawei", "infy", "megmeet", "mxr", "trio"] {
         let log = logs.join(format!("{name}-session.log"));
         let output = canspec(&["decode", "--format", "jsonl", "--protocol", name, &log.to_string_lossy()]);
         assert!(assert_unique(name, &output.stdout) > 0, "{name}");

@@ -18,6 +18,19 @@ const LOG: &str = "\
 /// The spec whose parts have other numbers on each model.
 const BY_MODEL: &str = "parts_by_model.yaml";
 
+/// The spec of a transport.
+const TRANSPORT: &str = "transport.yaml";
+
+/// The vehicle sends 14 bytes: ACME, 400 V, 180 Ah, 515 cycles, April 2022, and a byte without a name.
+const TRANSFER: &str = "\
+(1.0) can0 1CEC56F4#100E000201000200
+(1.1) can0 1CECF456#110101FFFF000200
+(1.2) can0 1CEB56F4#0141434D45A00F08
+(1.3) can0 1CECF456#110102FFFF000200
+(1.4) can0 1CEB56F4#02070302002504FF
+(1.5) can0 1CECF456#130E0002FF000200
+";
+
 fn spec(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features").join(name)
 }
@@ -117,6 +130,8 @@ fn a_model_says_which_number_the_first_part_has() {
     assert_eq!(complaints, "canspec: label: the first part has another number on each model; choose a model\n");
     let (frames, _) = canspec_with(BY_MODEL, &[&reply[..], &["--model", "B"]].concat(), "");
     assert_eq!(frames, "071#01414231\n071#02323334\n071#03353600\n071#040003E8\n");
+    let (new, _) = canspec_with(BY_MODEL, &[&reply[..7], &["--model", "B"]].concat(), "");
+    assert_eq!(new.lines().last(), Some("071#04000000"), "hours that are left out are 0");
     let (table, _) = canspec_with(BY_MODEL, &["decode", "--model", "B", "-"], &frames);
     assert!(table.contains("serial AB123456  hours 1000 h"), "{table}");
     let (table, _) = canspec_with(BY_MODEL, &["decode", "-"], &frames);
@@ -139,4 +154,45 @@ fn a_message_that_crosses_two_parts_of_a_file_is_the_same_as_from_a_live_bus() {
         let input = run(Path::new("-"), File::open(&path).expect("it is there").into());
         assert!(file == input && !file.is_empty(), "{format} differs");
     }
+}
+
+#[test]
+fn a_transfer_is_one_row_and_its_frames_stay_what_they_were() {
+    let (table, _) = canspec_with(TRANSPORT, &["decode", "-"], TRANSFER);
+    let rows: Vec<_> = table.lines().filter(|row| row.contains("can0")).collect();
+    let [row] = rows.as_slice() else { panic!("one row:\n{table}") };
+    assert!(row.contains("180256F4") && row.contains("voltage 400.0 V") && table.contains("year 2022"), "{table}");
+    let (lines, _) = canspec_with(TRANSPORT, &["decode", "--assemble", "--format", "jsonl", "-"], TRANSFER);
+    let objects: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    assert_eq!(objects[0]["message"], "tp.control");
+    assert_eq!(objects[0]["selectors"], json!({"control": 16, "size": 14, "packets": 2, "most": 1, "group": 512}));
+    assert_eq!(objects[2]["message"], "tp.data");
+    assert_eq!(objects[2]["selectors"], json!({"number": 1}));
+    assert_eq!(objects[2]["signals"]["data"]["value"], "41434D45A00F08");
+    assert_eq!((&objects[5]["lines"], &objects[5]["message"]), (&json!([1, 3, 5]), &json!("battery")));
+    assert_eq!(objects[5]["data"], "41434D45A00F08070302002504FF");
+    assert_eq!(objects[6]["selectors"]["control"], 19);
+    let (back, complaints) = canspec_with(TRANSPORT, &["encode", "--from", "jsonl"], &lines);
+    assert_eq!((back.as_str(), complaints.as_str()), (TRANSFER, ""));
+}
+
+#[test]
+fn a_long_message_in_a_call_becomes_an_announcement_and_packets() {
+    let battery = ["maker=ACME", "voltage=400V", "capacity=180Ah", "cycles=515"];
+    let to = |mode| ["encode", "--kind", "report", "--to", mode, "battery"];
+    let (frames, _) = canspec_with(TRANSPORT, &[&to("peer")[..], &battery].concat(), "");
+    assert_eq!(frames, "1CEC56F4#100B0002FF000200\n1CEB56F4#0141434D45A00F08\n1CEB56F4#0207030200FFFFFF\n");
+    let (frames, _) =
+        canspec_with(TRANSPORT, &[&to("everybody")[..], &battery, &["year=2022", "month=4"]].concat(), "");
+    assert_eq!(frames, "1CECFFF4#200E0002FF000200\n1CEBFFF4#0141434D45A00F08\n1CEBFFF4#02070302002504FF\n");
+    let (frames, _) = canspec_with(TRANSPORT, &[&to("everybody")[..], &battery, &["month=4"]].concat(), "");
+    assert_eq!(frames.lines().last(), Some("1CEBFFF4#02070302002504FF"), "2022 is the year's default");
+    let few = ["encode", "--kind", "report", "--to", "peer", "cells", "voltage=4.01V,4.02V", "group=0,1"];
+    assert_eq!(canspec_with(TRANSPORT, &few, "").0, "181556F4#91019211\n");
+    let beyond = ["encode", "profile", "current=10A,20A,250.1A,0A,0A"];
+    let (frames, complaints) = canspec_with(TRANSPORT, &beyond, "");
+    assert_eq!(
+        (frames.as_str(), complaints.as_str()),
+        ("", "canspec: profile.current_3: 250.1 A is outside 0..250 A\n")
+    );
 }

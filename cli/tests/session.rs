@@ -21,7 +21,7 @@ struct Session {
     beyond_every_model: &'static [u64],
 }
 
-const SESSIONS: [Session; 8] = [
+const SESSIONS: [Session; 9] = [
     Session {
         name: "infy-session",
         protocol: "infy",
@@ -79,6 +79,14 @@ const SESSIONS: [Session; 8] = [
         model: None,
         commands: &[144, 145, 146, 147, 148, 149, 150, 151, 152],
         out_of_range: &[],
+        beyond_every_model: &[],
+    },
+    Session {
+        name: "gbt27930-session",
+        protocol: "gbt27930",
+        model: None,
+        commands: &[],
+        out_of_range: &[337, 338, 339],
         beyond_every_model: &[],
     },
     Session {
@@ -195,7 +203,10 @@ fn shown(line: &Value) -> String {
     let signals = line["signals"].as_object().expect("signals are an object");
     let signals: Vec<_> = signals.iter().map(|(name, signal)| format!("{name}={}", value(signal))).collect();
     let kind = line["kind"].as_str().expect("a kind");
-    format!("{}\t{message}\t{kind}\t{}", line["line"], signals.join("; ")).trim_end().to_owned()
+    let numbers =
+        line["lines"].as_array().map(|lines| lines.iter().map(Value::to_string).collect::<Vec<_>>().join(","));
+    let number = numbers.unwrap_or_else(|| line["line"].to_string());
+    format!("{number}\t{message}\t{kind}\t{}", signals.join("; ")).trim_end().to_owned()
 }
 
 /// Puts the signals of an expected line into the order of their names.
@@ -246,6 +257,30 @@ fn each_session_decodes_to_the_values_of_the_document() {
         }
         assert_eq!(lines.len(), expected.len(), "{}", session.name);
     }
+}
+
+#[test]
+fn the_transfers_of_a_charging_decode_to_the_values_of_the_document() {
+    let session = Session {
+        name: "gbt27930-transfers",
+        protocol: "gbt27930",
+        model: None,
+        commands: &[],
+        out_of_range: &[],
+        beyond_every_model: &[],
+    };
+    let text = session.decode(&["--format", "jsonl", "--assemble"]);
+    let lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    let expected = session.expected();
+    assert_eq!(lines.len(), expected.len());
+    for (line, expected) in lines.iter().zip(&expected) {
+        let whole = expected.strip_suffix("\tincomplete");
+        assert_eq!(shown(line), sorted(whole.unwrap_or(expected)));
+        assert_eq!(line.get("incomplete").is_some(), whole.is_some(), "{expected}");
+    }
+    let log = fs::read_to_string(session.file("log")).expect("the file ships");
+    let output = session.run("encode", &["--from", "jsonl"], text.as_bytes());
+    assert_eq!(String::from_utf8_lossy(&output.stdout), log, "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn the_environment_names_protocols() {
     assert_refused(
         &output,
         2,
-        "canspec: CANSPEC_PROTOCOL: unknown protocol `ifny`; built in: daly, gcp, huawei, infy, megmeet, mxr, trio; did you mean",
+        "canspec: CANSPEC_PROTOCOL: unknown protocol `ifny`; built in: daly, gbt27930, gcp, huawei, infy, megmeet, mxr, trio; did you mean",
     );
     assert_refused(
         &canspec(folder.path(), Some(""), &["decode", "bus.log"]),

@@ -25,6 +25,7 @@ mod set;
 mod shared_address;
 mod special_value;
 mod stale_allowance;
+mod transport;
 mod unreachable;
 
 pub use example::{Counts, Unproven, unproven};
@@ -40,7 +41,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 27] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 28] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -54,6 +55,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 27] = [
     (&special_value::SPECIAL_VALUE, Some(special_value::check)),
     (&default_value::DEFAULT_VALUE, Some(default_value::check)),
     (&rules::SET, Some(set::check)),
+    (&rules::TRANSPORT, Some(transport::check)),
     (&direction::DIRECTION, Some(direction::check)),
     (&shared_address::SHARED_ADDRESS, Some(shared_address::check)),
     (&ambiguous::AMBIGUOUS, Some(ambiguous::check)),

@@ -8,6 +8,7 @@ mod device;
 mod encode;
 mod long;
 mod request;
+mod transfer;
 mod value;
 
 pub use assembly::{Assembled, Assembly, Taken};
@@ -113,7 +114,7 @@ impl Decoded {
         protocol: &'a Protocol,
         id: u32,
     ) -> impl Iterator<Item = (AddressTypeId, i64)> + Clone + use<'a> {
-        let is_to_module = protocol[self.frame].is_to_module();
+        let is_to_module = self.sender == Side::Controller;
         let pattern = self.addressing.and_then(|travel| protocol[travel.mode].pattern(is_to_module, travel.who));
         pattern.into_iter().flat_map(|pattern| &pattern.addresses).map(move |address| {
             (address.address_type, protocol[address.address_type].number(protocol[address.field].get(id)))

@@ -20,6 +20,7 @@ mod place;
 mod recognition;
 mod set;
 mod signal;
+mod transport;
 mod unit;
 
 pub(crate) use address::exclude;
@@ -30,11 +31,11 @@ pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, LongExample, Meaning, Misfit, Origin, Said, ValueExample};
 pub use id::{
     AccessId, AddressTypeId, ArrayId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, LongMessageId,
-    MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId,
+    MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId, TransportId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use lacking::Lacking;
-pub use long::{LongMessage, Parts};
+pub use long::{Carrier, LongMessage, Parts};
 pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
@@ -43,6 +44,7 @@ pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
+pub use transport::{Transport, TransportFrame};
 pub use unit::{Quantity, Symbol, Unit};
 
 use serde::{Deserialize, Serialize};
@@ -83,7 +85,9 @@ pub struct Protocol {
     pub foreign: Vec<Foreign>,
     /// Messages in the order of the spec.
     pub messages: Table<MessageId, Message>,
-    /// What the numbered parts of messages say together, in the order of the messages.
+    /// Transports of long messages in the order of the spec.
+    pub transports: Table<TransportId, Transport>,
+    /// What several frames of a message say together, in the order of the messages.
     pub long_messages: Table<LongMessageId, LongMessage>,
     /// The frames that exist, message by message.
     pub frames: Table<FrameId, FrameLayout>,
@@ -178,6 +182,7 @@ impl Protocol {
         docs.extend(self.modes.iter().map(|mode| &mode.doc));
         docs.extend(self.accesses.iter().map(|access| &access.doc));
         docs.extend(self.foreign.iter().map(|foreign| &foreign.doc));
+        docs.extend(self.transports.iter().map(|transport| &transport.doc));
         docs.extend(self.messages.iter().map(|message| &message.doc));
         docs.extend(self.contents().flat_map(|message| &message.signals).flat_map(Signal::docs));
         docs.extend(self.models.iter().map(|model| &model.doc));

@@ -25,6 +25,7 @@ mod sides;
 mod signals;
 mod status;
 mod texts;
+mod transports;
 mod types;
 mod units;
 
@@ -35,7 +36,7 @@ use indexmap::IndexSet;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::Words;
 use crate::model::{
-    self, EnumerationId, LongMessageId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table,
+    self, EnumerationId, LongMessageId, ModelId, Protocol, Recognition, SelectorId, StatusWordId, Table, TransportId,
 };
 use crate::rule::Rule;
 use crate::syntax::ast;
@@ -53,6 +54,8 @@ pub fn resolve(
     rules: &[&'static Rule],
     diagnostics: &mut Diagnostics,
 ) -> Option<Protocol> {
+    let with_frames = (!spec.transports.is_empty()).then(|| transports::expanded(spec));
+    let spec = with_frames.as_ref().unwrap_or(spec);
     Resolver { spec, rules, diagnostics, tables: Tables::default() }.protocol(file)
 }
 
@@ -82,6 +85,7 @@ struct Tables {
     /// Types that a field names.
     used_types: HashSet<String>,
     models: Table<ModelId, model::DeviceModel>,
+    transports: Table<TransportId, model::Transport>,
     long_messages: Table<LongMessageId, model::LongMessage>,
     long_examples: Vec<model::LongExample>,
     /// The units that the spec declares, and whether something has them.
@@ -106,6 +110,7 @@ impl Resolver<'_> {
         self.tables.absent_are_ones = self.absent_of_protocol();
         let identifier = self.identifier()?;
         self.header_selectors();
+        self.transports(&identifier);
         let address_types = self.address_types();
         let modes = self.modes(&identifier, &address_types);
         let directions = direction::directions(&identifier, &address_types, &modes);
@@ -131,6 +136,7 @@ impl Resolver<'_> {
             accesses,
             foreign,
             messages,
+            transports: self.tables.transports,
             long_messages: self.tables.long_messages,
             recognition: Recognition::new(directions, &frames, &self.tables.selectors),
             frames,

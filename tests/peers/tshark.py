@@ -199,8 +199,25 @@ def refusal(line):
     return f"{what}, {why[0]}" if what and why else None
 
 
+# The frames of J1939-21's transport by their control byte.
+CONTROLS = {16: "request_to_send", 17: "clear_to_send", 19: "end_of_message", 32: "broadcast", 255: "abort"}
+
+
+def as_message(line):
+    """Returns a line whose frame of a transport has the name and the signals of its message."""
+    transport, _, part = (line["message"] or "").partition(".")
+    if not part:
+        return line
+    selectors = dict(line["selectors"])
+    control = {"control": selectors.pop("control")} if part == "control" else {}
+    name = f"{transport}_{CONTROLS[control['control']] if control else part}"
+    numbers = {name: {"raw": number, "value": number} for name, number in selectors.items()}
+    return line | {"message": name, "selectors": control, "signals": numbers | line["signals"]}
+
+
 def expected(line, dissector):
     """Returns the fields that tshark must show of a decoded line."""
+    line = as_message(line)
     of, groups = f"{dissector.protocol}.", dissector.groups
     numbers = [(groups["identifier"], line["identifier"]), (groups["selector"], line["selectors"])]
     fields = {f"{group}.{name}": str(value) for group, values in numbers for name, value in values.items()}

@@ -3,15 +3,18 @@
 pub mod bare;
 pub mod engines;
 pub mod fuzz;
+pub mod long;
 pub mod prose;
 pub mod random_specs;
 
+use std::fmt::Debug;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Form, Frame};
 use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol, Signal};
 use canspec_codegen::{Outcome, compile, source::Source};
+use canspec_runtime::parts::Parted;
 use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::{Error, Payload, Problem, Received, WriteSignal};
 
@@ -32,6 +35,11 @@ struct Errors;
 #[doc = include_str!("../../docs/how-to/controllers.md")]
 struct Controllers;
 
+/// The Rust of the page on messages in parts compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/parts.md")]
+struct Parts;
+
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
@@ -44,6 +52,12 @@ pub trait SwitchedVisitor {
     fn visit<P>(&mut self, path: &str)
     where
         P: canspec_runtime::Protocol<Identifier: Optional> + Signals + Optional + PartialEq;
+}
+
+/// Runs a test on each message that is longer than a frame.
+pub trait LongVisitor {
+    /// Runs on the message whose struct is `L` and whose spec stands at `path`.
+    fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str);
 }
 
 /// The signals of a protocol's generated code, to be written by tests that do not know their types.

@@ -101,6 +101,7 @@ impl Draft {
             ("addressing", bus.addressing),
             ("access", traffic.access),
             ("foreign", traffic.foreign),
+            ("transports", traffic.transports),
             ("messages", traffic.messages),
             ("models", models),
             ("timing", timing),

@@ -6,6 +6,7 @@ use canspec_codegen::interpret::{Decoded, Frame, Reading, Unrecognised, Value};
 use canspec_codegen::model::{AddressType, FieldId, Protocol, SelectorId, Signal, StatusBit, Table};
 
 use crate::fields::{Field, Read, fields};
+use crate::line::transport;
 use crate::log;
 use crate::severity::Severity;
 
@@ -84,7 +85,8 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     let protocol = outcome.protocol;
     let message = &protocol.messages[decoded.message];
     out.write_all(b"\",\"message\":\"")?;
-    out.write_all(message.name.as_bytes())?;
+    let transport = transport::name(protocol, decoded);
+    out.write_all(transport.as_ref().unwrap_or(&message.name).as_bytes())?;
     out.write_all(b"\",\"access\":\"")?;
     out.write_all(protocol.accesses[decoded.access].name.as_bytes())?;
     out.write_all(b"\",\"kind\":\"")?;
@@ -94,9 +96,17 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     out.write_all(b",\"addresses\":")?;
     let addresses = addresses(outcome, decoded).map(|(kind, number)| (kind.name.as_str(), number));
     object(out, addresses, integer)?;
-    selectors(out, protocol, &decoded.identifier, &decoded.selectors)?;
+    let (content, known) = (decoded.content(protocol), selected(protocol, &decoded.selectors));
+    let is_number = |signal: &Signal| transport.is_some() && transport::is_number(signal);
+    let numbers = decoded.signals.iter().map(|reading| (&content[reading.signal], reading.bits));
+    let numbers = numbers.filter(|(signal, _)| is_number(signal)).map(|(signal, bits)| (signal.name.as_str(), bits));
+    selectors(out, protocol, &decoded.identifier, known.chain(numbers))?;
     out.write_all(b",\"signals\":")?;
-    object(out, fields(decoded.content(protocol), decoded), |out, field| match field {
+    let values = fields(content, decoded).filter(|(_, field)| match field {
+        Field::Signal((signal, _)) => !is_number(signal),
+        Field::Array(_) => true,
+    });
+    object(out, values, |out, field| match field {
         Field::Signal((signal, reading)) => value(out, protocol, signal, reading),
         Field::Array(elements) => array(out, protocol, &elements),
     })?;
@@ -127,21 +137,29 @@ fn unknown(out: &mut impl Write, protocol: &Protocol, unrecognised: &Unrecognise
     out.write_all(b",\"text\":")?;
     text(out, &unrecognised.text)?;
     out.write_all(b"}")?;
-    selectors(out, protocol, &unrecognised.identifier, &unrecognised.selectors)
+    selectors(out, protocol, &unrecognised.identifier, selected(protocol, &unrecognised.selectors))
+}
+
+/// Names selectors.
+fn selected<'a>(
+    protocol: &'a Protocol,
+    selectors: &'a [(SelectorId, u64)],
+) -> impl Iterator<Item = (&'a str, u64)> + Clone {
+    selectors.iter().map(|&(selector, value)| (protocol[selector].name.as_str(), value))
 }
 
 /// Writes the fields of the identifier, and the selectors of the data bytes.
-fn selectors(
+fn selectors<'a>(
     out: &mut impl Write,
     protocol: &Protocol,
     identifier: &Table<FieldId, u32>,
-    selectors: &[(SelectorId, u64)],
+    selectors: impl Iterator<Item = (&'a str, u64)> + Clone,
 ) -> io::Result<()> {
     out.write_all(b",\"identifier\":")?;
     let names = protocol.identifier.fields.iter().map(|field| field.name.as_str());
     members(out, names.zip(identifier.iter().copied()), integer)?;
     out.write_all(b",\"selectors\":")?;
-    object(out, selectors.iter().map(|&(selector, value)| (protocol[selector].name.as_str(), value)), integer)
+    object(out, selectors, integer)
 }
 
 fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &Reading) -> io::Result<()> {

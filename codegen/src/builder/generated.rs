@@ -43,7 +43,7 @@ pub fn generate(source: Source, options: &Options) -> Result<Generated, Diagnost
     }
     match protocol.filter(|_| !diagnostics.has_errors()) {
         Some(protocol) => {
-            let (manual, code) = (emit::manual(&protocol, options), emit::rust(&protocol, options));
+            let (manual, code) = emit::module(&protocol, options);
             Ok(Generated { name: protocol.name, manual, code, warnings: diagnostics })
         }
         None => Err(diagnostics),

@@ -155,8 +155,9 @@ impl<'a> Checker<'a> {
         let Some(message) = self.example.message.map(|index| &self.protocol.messages[index]) else { return Ok(()) };
         let misfit = self.example.means.iter().find_map(|meaning| Some((meaning, meaning.said.as_ref().err()?)));
         misfit.map_or(Ok(()), |(meaning, misfit)| {
-            let field = message.signals[meaning.signal].doc.path.at_key();
-            Err(Box::new(no_value(meaning, misfit).other(field, "the field")))
+            let its = self.protocol.examples.iter().filter(|other| other.message == self.example.message);
+            let means = its.flat_map(|other| &other.means);
+            Err(Box::new(misfitting(means, &message.signals[meaning.signal], meaning, misfit)))
         })
     }
 
@@ -386,6 +387,23 @@ fn wrong(at: At, text: String) -> Box<Diagnostic> {
 
 fn contradicted(at: At, text: String, (other, what): (At, &str)) -> Box<Diagnostic> {
     Box::new(Diagnostic::error(&rules::EXAMPLE, at, text).other(other, what))
+}
+
+/// Says that a text is no value of its signal. If no example has one of several, the field is at fault.
+fn misfitting<'m>(
+    means: impl Iterator<Item = &'m Meaning>,
+    signal: &Signal,
+    meaning: &Meaning,
+    misfit: &Misfit,
+) -> Diagnostic {
+    let field = signal.doc.path.at_key();
+    let said: Vec<_> = means.filter(|other| other.signal == meaning.signal).map(|other| other.said.is_err()).collect();
+    let diagnostic = no_value(meaning, misfit);
+    if said.len() < 2 || said.contains(&false) {
+        return diagnostic.other(field, "the field");
+    }
+    let Misfit { why, help } = misfit.clone();
+    Diagnostic::error(&rules::VALUE, field, why).help_if(help).other(meaning.path.at_value(), "a value")
 }
 
 /// Says that a text is no value of its signal.

@@ -46,7 +46,10 @@ fn check_windows<'a>(content: &'a Message, diagnostics: &mut Diagnostics) {
             if one != two && reported.insert([one, two]) {
                 let text = format!("`{one}` and `{two}` of `{}` share byte {byte}", content.name);
                 let help = "correct one of the two places, or remove one of the two";
-                let [at, other] = [signal, other].map(|known| diagnostics.written(&known.doc.path, &["bytes", "bits"]));
+                // Few fields have a width that is no power of two.
+                let is_rare = |known: &Signal| !known.place.width().is_power_of_two();
+                let accused = if is_rare(other) && !is_rare(signal) { [other, signal] } else { [signal, other] };
+                let [at, other] = accused.map(|known| diagnostics.written(&known.doc.path, &["bytes", "bits"]));
                 diagnostics.push(Diagnostic::error(&OVERLAP, at, text).help(help).other(other, "the other one"));
             }
         }

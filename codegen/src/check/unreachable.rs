@@ -12,7 +12,7 @@ rules! {
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
         let frames: Vec<_> = protocol
-            .frames_of(message)
+            .layouts_of(message)
             .flat_map(|frame| protocol.patterns_of(frame).map(move |(_, pattern)| (frame, pattern)))
             .collect();
         if frames.is_empty() && message.set.is_none() {

@@ -89,8 +89,9 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
 
 /// Returns the device models whose number of the first part is known, unless all have the same.
 fn numbered(protocol: &Protocol, message: &Message) -> Option<Value> {
-    let (_, long) = protocol.long_message(message).filter(|(_, long)| long.parts.first.is_none())?;
-    let known = long.parts.model_firsts.iter().map(|own| (Value::id(own.model), Value::flag(true)));
+    let (_, long) = protocol.long_message(message)?;
+    let parts = long.parts().filter(|parts| parts.first.is_none())?;
+    let known = parts.model_firsts.iter().map(|own| (Value::id(own.model), Value::flag(true)));
     Some(Value::map(known))
 }
 

@@ -1,9 +1,11 @@
 //! Puts the parts of long messages together, for many devices at a time.
 
 use super::long::Joined;
+use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
 use crate::model::{
-    AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Protocol, SelectorPlace, SignalId,
+    AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Parts, Protocol, SelectorPlace,
+    SignalId,
 };
 
 /// The parts that came so far. `M` is what the caller remembers of each frame.
@@ -13,6 +15,7 @@ use crate::model::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {
     transfers: Vec<Transfer<M>>,
+    by_transport: Transfers<M>,
     counts: Vec<Count>,
     /// How many elements every array has that varies, whatever the device says.
     count: Option<usize>,
@@ -20,7 +23,7 @@ pub struct Assembly<M> {
 
 impl<M> Default for Assembly<M> {
     fn default() -> Self {
-        Self { transfers: Vec::new(), counts: Vec::new(), count: None }
+        Self { transfers: Vec::new(), by_transport: Transfers::default(), counts: Vec::new(), count: None }
     }
 }
 
@@ -98,12 +101,19 @@ impl<M: Clone> Assembly<M> {
         frame: &Frame,
         decoded: &Decoded,
     ) -> Taken<M> {
+        if let Some(taken) = self.by_transport.take((protocol, model), mark.clone(), frame, decoded) {
+            return taken;
+        }
         let mut peers: Peers = decoded.addresses(protocol, frame.id).collect();
         peers.sort_unstable();
-        self.keep_counts(protocol, &peers, decoded);
-        let found = protocol.long_message(&protocol[decoded.message]);
-        let Some((id, long)) = found else { return Taken { is_part: false, ended: Vec::new() } };
-        let part = Part::of(protocol, long, model, frame, decoded);
+        if !decoded.is_error_reply() && decoded.addressing.is_some() {
+            self.keep_counts(protocol, &peers, decoded);
+        }
+        // Without an addressing mode nobody knows who sends it.
+        let found = protocol.long_message(&protocol[decoded.message]).filter(|_| decoded.addressing.is_some());
+        let found = found.and_then(|(id, long)| Some((id, long, long.parts()?)));
+        let Some((id, long, parts)) = found else { return Taken { is_part: false, ended: Vec::new() } };
+        let part = Part::of(protocol, (long, parts), model, frame, decoded);
         let mut ended = Vec::new();
         let open = self.transfers.iter().position(|known| (known.long, &known.peers) == (id, &peers));
         let Some(part) = part else {
@@ -137,12 +147,14 @@ impl<M: Clone> Assembly<M> {
 
     /// Ends all messages whose parts have begun to come.
     pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
-        (0..self.transfers.len()).map(|_| self.end(protocol, model, 0, None)).collect()
+        let mut ended: Vec<_> = (0..self.transfers.len()).map(|_| self.end(protocol, model, 0, None)).collect();
+        ended.extend(self.by_transport.finish(protocol, model));
+        ended
     }
 
     /// Remembers how many elements a device says that its arrays have.
     fn keep_counts(&mut self, protocol: &Protocol, node: &Peers, decoded: &Decoded) {
-        let wanted = protocol.long_messages.iter().filter_map(|long| long.parts.count);
+        let wanted = protocol.long_messages.iter().filter_map(|long| long.parts()?.count);
         for signal in wanted.filter(|(message, _)| *message == decoded.message) {
             let Some(reading) = decoded.signals.iter().find(|reading| reading.signal == signal.1) else { continue };
             let (node, value) = (module(protocol, node), usize::try_from(reading.bits).unwrap_or(usize::MAX));
@@ -156,7 +168,7 @@ impl<M: Clone> Assembly<M> {
         if self.count.is_some() {
             return self.count;
         }
-        let signal = protocol[transfer.long].parts.count?;
+        let signal = protocol[transfer.long].parts()?.count?;
         let node = module(protocol, &transfer.peers);
         self.counts.iter().find(|known| (&known.node, known.signal) == (&node, signal)).map(|known| known.value)
     }
@@ -197,7 +209,7 @@ impl<M: Clone> Transfer<M> {
         (expected, count): (Option<usize>, Option<usize>),
     ) -> Assembled<M> {
         let incomplete = self.missing(long, model, expected);
-        let (size, parts) = (usize::from(long.parts.size), self.parts.last().map_or(0, |(index, _, _)| index + 1));
+        let (size, parts) = (long.size(), self.parts.last().map_or(0, |(index, _, _)| index + 1));
         let (data, came) = (vec![0; parts * size], vec![false; parts * size]);
         let mut joined = Joined { data, came, count, is_ended: self.is_ended };
         for (index, data, _) in &self.parts {
@@ -233,7 +245,7 @@ impl Part {
     /// Returns the part that a frame carries, if its number is one of the message's.
     fn of(
         protocol: &Protocol,
-        long: &LongMessage,
+        (long, parts): (&LongMessage, &Parts),
         model: Option<ModelId>,
         frame: &Frame,
         decoded: &Decoded,
@@ -242,10 +254,10 @@ impl Part {
             return None;
         }
         let bits = |signal| decoded.signals.iter().find(|reading| reading.signal == signal).map(|reading| reading.bits);
-        let (number, data) = (bits(long.parts.number)?, bits(long.parts.data)?);
+        let (number, data) = (bits(parts.number)?, bits(parts.data)?);
         let index = number.checked_sub(long.first(model)?.into())?;
         let index = usize::try_from(index).ok().filter(|index| *index < long.parts_of(long.longest()))?;
-        let data = data.to_be_bytes()[8 - usize::from(long.parts.size)..].to_vec();
+        let data = data.to_be_bytes()[8 - long.size()..].to_vec();
         let is_last = protocol.continuation().is_some_and(|continuation| {
             let found = match continuation.place {
                 SelectorPlace::Identifier(field) => u64::from(protocol[field].get(frame.id)),

@@ -8,8 +8,9 @@ use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, h
 use crate::encoding::Words;
 use crate::hex;
 use crate::model::{
-    AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Message, ModelId,
-    NoteRule, Protocol, Range, Recognition, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who, first_bytes,
+    AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Id, Message, ModelId,
+    NoteRule, Protocol, Range, Recognition, Reserved, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
+    first_bytes,
 };
 
 /// Decodes a frame that goes to or comes from a device model.
@@ -23,6 +24,14 @@ use crate::model::{
 /// one exception. Constants in the data bytes are tested after the length.
 pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Result<Decoded, Unrecognised> {
     Decoder { protocol, model, frame, data: frame.padded() }.decode()
+}
+
+/// Decodes the identifier of a long message that came by a transport. `frame` is what it would be if one frame were
+/// enough, without data.
+pub fn transported(protocol: &Protocol, model: Option<ModelId>, layout: &FrameLayout, frame: &Frame) -> Decoded {
+    let decoder = Decoder { protocol, model, frame, data: [0; 8] };
+    let bare = FrameLayout { signals: Vec::new(), covered: u64::MAX, reserved: Reserved::default(), ..layout.clone() };
+    decoder.decoded((FrameId::new(0), &bare))
 }
 
 /// Returns tests of one field that keep a frame from showing a direction. They are those

@@ -3,8 +3,9 @@
 use super::arrays::parted_texts;
 use super::content::blank_data;
 use super::encode::{continue_all_but_last, find_message, frame, length_with, refuse};
-use super::long::typed_parts;
+use super::long::{typed, typed_parts};
 use super::request::{Target, address, put_signals, raw_address, written_address};
+use super::transfer::frames;
 use super::{Frame, Limits, Refusal, decode};
 use crate::model::{
     AddressPattern, AddressType, FrameLayout, Kind, Message, Mode, ModelId, Protocol, SelectorPlace, Side,
@@ -36,7 +37,7 @@ impl Sent<'_> {
     /// There is no such message.
     pub fn is_of_module(&self, protocol: &Protocol) -> Result<bool, Refusal> {
         let (_, message) = find_message(protocol, self.message)?;
-        let mut frames = protocol.frames_of(message).filter(|frame| self.is_by_access(protocol, frame));
+        let mut frames = protocol.layouts_of(message).filter(|frame| self.is_by_access(protocol, frame));
         if let Some(kind) = self.kind {
             return Ok(!frames.any(|frame| frame.kind == kind && frame.sender == Side::Controller));
         }
@@ -70,18 +71,29 @@ pub fn module(protocol: &Protocol, text: &str) -> Result<i64, Refusal> {
 /// kinds of frames, accesses and addressing modes.
 pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Vec<Frame>, Refusal> {
     let (_, message) = find_message(protocol, sent.message)?;
-    let parts = typed_parts(protocol, message, signals, (sent.model, Limits::Bits))?;
-    let Some(parts) = parts else { return Ok(vec![one(protocol, sent, signals)?]) };
-    let mut frames = parts.iter().map(|signals| one(protocol, sent, signals)).collect::<Result<Vec<_>, _>>()?;
+    let layout = layout(protocol, message, sent)?;
+    if let Some((transport, long)) = protocol.carried(layout) {
+        let (mode, pattern) = way(protocol, message, layout, sent.to)?;
+        let id = identifier(protocol, (message, layout), (mode, pattern), sent)?;
+        let data = typed(protocol, long, signals, (sent.model, Limits::Bits))?;
+        return frames(protocol, transport, (layout, id), &data);
+    }
+    let parts = typed_parts(protocol, message, signals, sent.model)?;
+    let Some(parts) = parts else { return Ok(vec![one(protocol, sent, layout, signals)?]) };
+    let mut frames = parts.iter().map(|signals| one(protocol, sent, layout, signals)).collect::<Result<Vec<_>, _>>()?;
     continue_all_but_last(protocol, &mut frames);
     Ok(frames)
 }
 
 /// Makes one frame that a module sends.
-fn one(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -> Result<Frame, Refusal> {
-    let (_, message) = find_message(protocol, sent.message)?;
+fn one(
+    protocol: &Protocol,
+    sent: Sent<'_>,
+    layout: &FrameLayout,
+    signals: &[(String, String)],
+) -> Result<Frame, Refusal> {
+    let message = &protocol[layout.message];
     let signals = &parted_texts(message, signals)?;
-    let layout = layout(protocol, message, sent)?;
     let (mode, pattern) = way(protocol, message, layout, sent.to)?;
     let id = identifier(protocol, (message, layout), (mode, pattern), sent)?;
     let mut data = blank_data(layout);
@@ -103,7 +115,7 @@ fn layout<'a>(protocol: &'a Protocol, message: &'a Message, sent: Sent<'_>) -> R
         let is_kind = sent.kind.is_none_or(|kind| frame.kind == kind);
         frame.sender == Side::Module && is_kind && sent.is_by_access(protocol, frame)
     };
-    let frames: Vec<_> = protocol.frames_of(message).filter(is_meant).collect();
+    let frames: Vec<_> = protocol.layouts_of(message).filter(is_meant).collect();
     let own: Vec<_> = frames.iter().filter(|frame| frame.set.is_none()).copied().collect();
     let kind = sent.kind.unwrap_or(Kind::Report).name();
     let whose = if sent.kind == Some(Kind::Request) {

@@ -1,8 +1,12 @@
 //! Encodes a message with its values to a frame.
 
+use super::decode::transported;
 use super::value::{Limits, raw_of};
-use super::{Content, Decoded, Form, Frame, Input, Refusal, arrays, decode, long, padded};
-use crate::model::{FrameLayout, Message, MessageId, ModelId, NoteRule, Protocol, SelectorPlace, Signal};
+use super::{Content, Decoded, Form, Frame, Input, Refusal, arrays, decode, long, padded, transfer};
+use crate::model::{
+    Carrier, FrameLayout, LongMessage, Message, MessageId, ModelId, NoteRule, Parts, Protocol, SelectorPlace, Signal,
+    Transport,
+};
 use crate::nearest;
 
 /// Notes that no request may get. It is refused instead.
@@ -20,7 +24,7 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
     let (_, message) = find_message(protocol, &content.message)?;
     let content = &*arrays::parted(message, content)?;
     let id = identifier(protocol, content)?;
-    let layout = layout(protocol, message, content, id)?;
+    let layout = layout(protocol, message, protocol.frames_of(message), content, id)?;
     let limits = Limits::of(layout, model);
     let data = payload(protocol, message, layout, content, (model, limits))?;
     let frame = frame(protocol, id, data);
@@ -34,26 +38,55 @@ pub fn encode(protocol: &Protocol, model: Option<ModelId>, content: &Content) ->
 ///
 /// # Errors
 ///
-/// Refuses what [`encode()`] refuses, and a message without parts. Without a model, it refuses parts
+/// Refuses what [`encode()`] refuses, and a message that is never longer than a frame. Without a model, it refuses parts
 /// whose numbers depend on it.
 pub fn encode_long(protocol: &Protocol, model: Option<ModelId>, content: &Content) -> Result<Vec<Frame>, Refusal> {
     let (_, message) = find_message(protocol, &content.message)?;
-    let (_, known) = protocol.long_message(message).ok_or_else(|| refuse(message, "it has no `parts`"))?;
+    let (_, known) =
+        protocol.long_message(message).ok_or_else(|| refuse(message, "it is never longer than a frame"))?;
     let content = &*arrays::parted(&known.content, content)?;
-    let to_module = protocol.frames_of(message).any(|frame| content.kind == Some(frame.kind) && frame.is_to_module());
-    let limits = if to_module { Limits::Range(model) } else { Limits::Bits };
-    let data = long::joined(protocol, known, &content.signals, &content.reserved, (model, limits))?;
+    match &known.carrier {
+        Carrier::Parts(parts) => encode_parts(protocol, model, content, (known, parts)),
+        Carrier::Transport(transport) => encode_transfer(protocol, model, content, (known, &protocol[*transport])),
+    }
+}
+
+fn encode_parts(
+    protocol: &Protocol,
+    model: Option<ModelId>,
+    content: &Content,
+    (known, parts): (&LongMessage, &Parts),
+) -> Result<Vec<Frame>, Refusal> {
+    let message = &protocol[known.message];
+    let limits = (model, Limits::Bits);
+    let data = long::joined(protocol, known, &content.signals, Some(&content.reserved), limits)?;
     let mut frames = Vec::new();
     for (number, data) in long::parts(known, model, &data)? {
         let signals = vec![
-            (message[known.parts.number].name.clone(), Input::Integer(number.into())),
-            (message[known.parts.data].name.clone(), Input::Text(data)),
+            (message[parts.number].name.clone(), Input::Integer(number.into())),
+            (message[parts.data].name.clone(), Input::Text(data)),
         ];
         let part = Content { signals, arrays: Vec::new(), reserved: Vec::new(), ..content.clone() };
         frames.push(encode(protocol, model, &part)?);
     }
     continue_all_but_last(protocol, &mut frames);
     Ok(frames)
+}
+
+fn encode_transfer(
+    protocol: &Protocol,
+    model: Option<ModelId>,
+    content: &Content,
+    (known, transport): (&LongMessage, &Transport),
+) -> Result<Vec<Frame>, Refusal> {
+    let message = &protocol[known.message];
+    let id = identifier(protocol, content)?;
+    let layout = layout(protocol, message, known.frames.iter(), content, id)?;
+    let limits = (model, Limits::of(layout, model));
+    let data = long::joined(protocol, known, &content.signals, Some(&content.reserved), limits)?;
+    let decoded = transported(protocol, model, layout, &frame(protocol, id, Vec::new()));
+    confirm(protocol, message, layout, &decoded, model)?;
+    transfer::frames(protocol, transport, (layout, id), &data)
 }
 
 /// Makes all frames but the last say that more follow.
@@ -137,7 +170,8 @@ fn identifier(protocol: &Protocol, content: &Content) -> Result<u32, Refusal> {
 /// Finds the frame whose constants the identifier and the selectors show.
 fn layout<'a>(
     protocol: &'a Protocol,
-    message: &'a Message,
+    message: &Message,
+    frames: impl Iterator<Item = &'a FrameLayout> + Clone,
     content: &Content,
     id: u32,
 ) -> Result<&'a FrameLayout, Refusal> {
@@ -155,10 +189,10 @@ fn layout<'a>(
             }
         })
     };
-    let mut fitting = protocol.frames_of(message).filter(named).filter(shows);
+    let mut known = frames.clone();
+    let mut fitting = frames.filter(named).filter(shows);
     let first = fitting.next().ok_or_else(|| {
-        let known = |name: &&String| protocol.frames_of(message).any(|frame| access(frame) == *name);
-        let unknown = content.access.as_ref().filter(|name| !known(name));
+        let unknown = content.access.as_ref().filter(|name| !known.any(|frame| access(frame) == *name));
         let other = || "the identifier and the selectors are not those of this message".to_owned();
         refuse(message, &unknown.map_or_else(other, |name| format!("it has no access `{name}`")))
     })?;

@@ -25,7 +25,7 @@ pub struct Joined {
 }
 
 /// What the joined parts say.
-pub struct Said {
+pub struct Values {
     pub signals: Vec<Reading>,
     pub notes: Vec<Note>,
     /// Bits that none of the signals covers.
@@ -34,7 +34,7 @@ pub struct Said {
 
 impl Joined {
     /// Reads the signals whose bytes all came.
-    pub fn read(&self, protocol: &Protocol, long: &LongMessage, model: Option<ModelId>) -> Said {
+    pub fn read(&self, protocol: &Protocol, long: &LongMessage, model: Option<ModelId>) -> Values {
         let content = &long.content;
         let present = content.signals.entries().filter(|(_, signal)| self.has(long, signal));
         let signals: Vec<_> = present
@@ -47,12 +47,8 @@ impl Joined {
         let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
         notes.extend(self.count_note(long));
         let reserved = self.without(signals.iter().map(|reading| &content[reading.signal]));
-        let unnamed = self.without(&content.signals);
-        if unnamed.iter().any(|byte| *byte != 0) {
-            let text = format!("bits are set that no field has: 0x{}", hex::digits(&unnamed));
-            notes.push(Note { rule: NoteRule::ReservedBit, text });
-        }
-        Said { signals, notes, reserved }
+        notes.extend(self.reserved_note(content));
+        Values { signals, notes, reserved }
     }
 
     /// Tests whether a signal came. An element beyond the known number is none.
@@ -66,6 +62,20 @@ impl Joined {
         let array = long.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
         let text = format!("nothing says how many of the elements of `{}` are real", array.name);
         Some(Note { rule: NoteRule::Count, text })
+    }
+
+    /// Notes bits that no signal covers, if they are not as they are sent.
+    fn reserved_note(&self, content: &Message) -> Option<Note> {
+        let mut odd = self.without(&content.signals);
+        if content.reserved.are_ones {
+            let unnamed =
+                Self { data: vec![0xFF; self.data.len()], came: Vec::new(), ..*self }.without(&content.signals);
+            odd.iter_mut().zip(unnamed).for_each(|(byte, unnamed)| *byte ^= unnamed);
+        }
+        let found = if content.reserved.are_ones { "clear" } else { "set" };
+        let text = format!("bits are {found} that no field has: 0x{}", hex::digits(&odd));
+        let is_odd = odd.iter().zip(&self.came).any(|(byte, came)| *came && *byte != 0);
+        (is_odd && !content.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
     }
 
     /// Returns the bits that none of these signals covers.
@@ -86,12 +96,14 @@ fn window(data: &[u8], signal: &Signal) -> [u8; 8] {
     window
 }
 
-/// Makes the data of a long message. Elements of the array of varying length may be missing at its end.
+/// Makes the data of a long message. Elements of the array of varying length may be missing at its end, and so may what
+/// lies beyond the shortest length. Without `reserved`, bits that no signal covers are as they are sent, and a signal that
+/// is left out takes its default.
 pub fn joined(
     protocol: &Protocol,
     long: &LongMessage,
     given: &[(String, Input)],
-    reserved: &[u8],
+    reserved: Option<&[u8]>,
     (model, limits): (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
     let content = &long.content;
@@ -103,19 +115,19 @@ pub fn joined(
         let given = content.signals.iter().filter(|signal| is_given(signal)).filter_map(|signal| long.counted(signal));
         given.map(|index| index + 1).max().unwrap_or(0).max(array.least.unwrap_or(0))
     });
-    let mut data = vec![0; long.bytes_with(count).max(reserved.len())];
-    if data.len() > long.parts_of(long.longest()) * usize::from(long.parts.size) {
-        return Err(refuse(
-            content,
-            &format!("`reserved` has {} bytes, which are more than the parts have", reserved.len()),
-        ));
+    let mut data = vec![0; length(long, count, reserved.unwrap_or_default().len(), is_given)?];
+    if reserved.is_none() && content.reserved.are_ones {
+        data.fill(0xFF);
     }
-    data.iter_mut().zip(reserved).for_each(|(byte, given)| *byte = *given);
-    for signal in content.signals.iter().filter(|signal| long.is_among(count, signal)) {
+    data.iter_mut().zip(reserved.unwrap_or_default()).for_each(|(byte, given)| *byte = *given);
+    let is_there = |signal: &&Signal| long.is_among(count, signal) && signal.reach() <= data.len();
+    for signal in content.signals.iter().filter(is_there).collect::<Vec<_>>() {
         let input = given.iter().find(|(name, _)| *name == signal.name).map(|(_, input)| input.clone());
-        let otherwise = || signal.default_for(model).filter(|_| limits != Limits::Bits).map(Input::Raw);
-        let input = input.or_else(otherwise);
-        let input = input.ok_or_else(|| refuse(content, &format!("the signal `{}` is missing", signal.name)))?;
+        let has_default = reserved.is_none() && long.counted(signal).is_none();
+        let default = || signal.default_for(model).filter(|_| has_default).map(Input::Raw);
+        let input = input
+            .or_else(default)
+            .ok_or_else(|| refuse(content, &format!("the signal `{}` is missing", signal.name)))?;
         let bits = raw_of(protocol, content, signal.on(model), &input, limits)?;
         let mut bytes = window(&data, signal);
         signal.place.put(&mut bytes, bits);
@@ -124,13 +136,38 @@ pub fn joined(
     Ok(data)
 }
 
+/// Returns how many bytes a long message has with these signals, or at least these reserved bytes.
+fn length(
+    long: &LongMessage,
+    count: Option<usize>,
+    reserved: usize,
+    is_given: impl Fn(&Signal) -> bool,
+) -> Result<usize, Refusal> {
+    let content = &long.content;
+    let too_long = |most: usize| {
+        let text = format!("`reserved` has {reserved} bytes, which are more than {most}");
+        refuse(content, &text)
+    };
+    if long.lengths.is_empty() {
+        let length = long.bytes_with(count).max(reserved);
+        let most = match long.parts() {
+            Some(_) => long.parts_of(long.longest()) * long.size(),
+            None => long.bytes_with(count),
+        };
+        return if length > most { Err(too_long(most)) } else { Ok(length) };
+    }
+    let given = content.signals.iter().filter(|signal| is_given(signal)).map(Signal::reach).max().unwrap_or(0);
+    let mut lengths = long.lengths.iter().map(|length| usize::from(*length));
+    lengths.find(|length| *length >= given.max(reserved)).ok_or_else(|| too_long(long.longest()))
+}
+
 /// Returns the number of each part, and its data in hexadecimal.
 pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<Vec<(u16, String)>, Refusal> {
     let first = long.first(model).ok_or_else(|| {
         let text = "the first part has another number on each model; choose a model";
         refuse(&long.content, text)
     })?;
-    let size = usize::from(long.parts.size);
+    let size = long.size();
     let chunks = data.chunks(size).map(|chunk| {
         let mut whole = chunk.to_vec();
         whole.resize(size, 0);
@@ -139,18 +176,32 @@ pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<
     Ok((first..).zip(chunks).collect())
 }
 
-/// Returns the texts for the signals of each frame, if what is given are signals of a long message.
+/// Returns the texts for the signals of each frame, if what is given are signals of a message in parts.
 pub fn typed_parts(
     protocol: &Protocol,
     message: &Message,
     given: &[(String, String)],
-    (model, limits): (Option<ModelId>, Limits),
+    model: Option<ModelId>,
 ) -> Result<Option<Vec<Texts>>, Refusal> {
     let Some((_, long)) = protocol.long_message(message) else { return Ok(None) };
-    let [number, data] = [long.parts.number, long.parts.data].map(|id| &message[id].name);
+    let Some(carried) = long.parts() else { return Ok(None) };
+    let [number, data] = [carried.number, carried.data].map(|id| &message[id].name);
     if given.is_empty() || given.iter().any(|(name, _)| name == number || name == data) {
         return Ok(None);
     }
+    let joined = typed(protocol, long, given, (model, Limits::Bits))?;
+    let parts = parts(long, model, &joined)?.into_iter();
+    let texts = parts.map(|(part, text)| vec![(number.clone(), part.to_string()), (data.clone(), text)]);
+    Ok(Some(texts.collect()))
+}
+
+/// Makes the data of a long message of what a call writes. A signal that is left out takes its default, if it has one.
+pub fn typed(
+    protocol: &Protocol,
+    long: &LongMessage,
+    given: &[(String, String)],
+    (model, limits): (Option<ModelId>, Limits),
+) -> Result<Vec<u8>, Refusal> {
     let mut inputs = Vec::new();
     for (name, text) in parted_texts(&long.content, given)? {
         let signal = long.content.signals.iter().find(|signal| signal.name == name);
@@ -158,10 +209,7 @@ pub fn typed_parts(
         inputs.push((name, typed.unwrap_or(Input::Text(text))));
     }
     if let Some(name) = twice(&inputs) {
-        return Err(refuse(message, &format!("the signal `{name}` is given twice")));
+        return Err(refuse(&long.content, &format!("the signal `{name}` is given twice")));
     }
-    let joined = joined(protocol, long, &inputs, &[], (model, limits))?;
-    let parts = parts(long, model, &joined)?.into_iter();
-    let texts = parts.map(|(part, text)| vec![(number.clone(), part.to_string()), (data.clone(), text)]);
-    Ok(Some(texts.collect()))
+    joined(protocol, long, &inputs, None, (model, limits))
 }

@@ -3,7 +3,8 @@
 use super::arrays::parted_texts;
 use super::content::blank_data;
 use super::encode::{continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
-use super::long::typed_parts;
+use super::long::typed;
+use super::transfer::frames;
 use super::value::{Limits, raw_of};
 use super::{Frame, Input, Refusal, decode};
 use crate::encoding::Words;
@@ -140,7 +141,7 @@ fn requests_of<'a>(
     message: &'a Message,
     is_meant: impl Fn(&FrameLayout) -> bool,
 ) -> Vec<&'a FrameLayout> {
-    let requests = protocol.frames_of(message).filter(|frame| frame.is_to_module());
+    let requests = protocol.layouts_of(message).filter(|frame| frame.is_to_module());
     let has_own = requests.clone().any(|frame| frame.set.is_none() && is_meant(frame));
     requests.filter(|frame| frame.set.is_none() || !has_own).collect()
 }
@@ -155,12 +156,12 @@ fn layout_of_member<'a>(
     protocol.frames_of(member).find(is_of_set).ok_or_else(|| refuse(member, "nobody requests it"))
 }
 
-/// Makes the frames of a request to a device model or to any. It is one frame, or one for each member of a set or each
-/// part of a long message. A signal that is left out takes its default.
+/// Makes the frames of a request to a device model or to any. It is one frame, one for each member of a set, or those of a
+/// transport. A signal that is left out takes its default.
 ///
 /// # Errors
 ///
-/// The same as [`request`].
+/// Refuses what [`super::encode()`] refuses in requests, and a signal that has neither a value nor a default.
 pub fn requests(
     protocol: &Protocol,
     model: Option<ModelId>,
@@ -174,12 +175,17 @@ pub fn requests(
     if let Some(set) = known.set.as_ref().filter(|set| set.kinds.contains(&Kind::Request)) {
         return of_members(protocol, model, (id, set), access, (target, source), signals);
     }
-    let one = |signals: &[_]| request(protocol, model, access, message, target, source, signals);
-    let parts = typed_parts(protocol, known, signals, (model, Limits::Range(model)))?;
-    let Some(parts) = parts else { return Ok(vec![one(signals)?]) };
-    let mut frames = parts.iter().map(|signals| one(signals)).collect::<Result<Vec<_>, _>>()?;
-    continue_all_but_last(protocol, &mut frames);
-    Ok(frames)
+    let layout = request_layout(protocol, known, access)?;
+    let Some((transport, long)) = protocol.carried(layout) else {
+        return Ok(vec![made(protocol, model, (known, layout), (target, source), signals)?]);
+    };
+    if let Some(model) = model.filter(|model| !known.is_of(*model)) {
+        return Err(not_of(protocol, known, model));
+    }
+    let mode = mode(protocol, known, layout, target)?;
+    let id = identifier(protocol, known, layout, mode, target, source)?;
+    let data = typed(protocol, long, signals, (model, Limits::Range(model)))?;
+    frames(protocol, transport, (layout, id), &data)
 }
 
 /// Makes one request for each member of a set. All but the last say that more follow.
@@ -213,7 +219,8 @@ fn of_members(
 ///
 /// # Errors
 ///
-/// Refuses what [`super::encode()`] refuses in requests, and a signal that has neither a value nor a default.
+/// Refuses what [`super::encode()`] refuses in requests, and a signal that has neither a value nor a default. Also
+/// refuses a message that can be longer than a frame.
 pub fn request(
     protocol: &Protocol,
     model: Option<ModelId>,
@@ -225,6 +232,9 @@ pub fn request(
 ) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, message)?;
     let layout = request_layout(protocol, message, access)?;
+    if protocol.carried(layout).is_some() {
+        return Err(refuse(message, "it can be longer than a frame"));
+    }
     made(protocol, model, (message, layout), (target, source), signals)
 }
 

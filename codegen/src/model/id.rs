@@ -11,7 +11,7 @@ use std::slice;
 
 use super::{
     Access, AddressType, Array, DeviceModel, Enumeration, Exchange, FrameLayout, IdentifierField, LongMessage, Message,
-    Mode, Protocol, Selector, Signal, StatusWord, Timing,
+    Mode, Protocol, Selector, Signal, StatusWord, Timing, Transport,
 };
 
 /// The place of a row in its table.
@@ -74,6 +74,8 @@ define_ids! {
     FrameId;
     /// What the parts of a message say together, of [`Protocol::long_messages`].
     LongMessageId;
+    /// A transport of [`Protocol::transports`].
+    TransportId;
 }
 
 macro_rules! impl_index {
@@ -101,6 +103,7 @@ impl_index! {
     TimingId: timing of Protocol is Timing;
     FrameId: frames of Protocol is FrameLayout;
     LongMessageId: long_messages of Protocol is LongMessage;
+    TransportId: transports of Protocol is Transport;
     SignalId: signals of Message is Signal;
     ArrayId: arrays of Message is Array;
     ExchangeId: exchanges of Message is Exchange;

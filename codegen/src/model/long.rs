@@ -2,18 +2,35 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Array, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId};
+use crate::model::{
+    Array, FrameLayout, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId, Transport,
+    TransportId,
+};
 
 /// What the data of several frames say together.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct LongMessage {
-    /// The message whose frames carry the parts.
+    /// The message in the spec.
     pub message: MessageId,
-    /// What the parts carry together. Its signals have windows; it has no frames of its own.
+    /// What the frames carry together. Its signals have windows; it has no frames of its own.
     pub content: Message,
     /// How the frames carry it.
-    pub parts: Parts,
+    pub carrier: Carrier,
+    /// The numbers of data bytes that it can have, the least first; empty if its signals decide.
+    pub lengths: Vec<u16>,
+    /// What its frames would be if one were enough, for a message by a transport.
+    pub frames: Vec<FrameLayout>,
+}
+
+/// How frames carry a long message.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Carrier {
+    /// The frames of the message itself have numbers.
+    Parts(Parts),
+    /// The frames are those of a transport.
+    Transport(TransportId),
 }
 
 /// How the parts of a long message are numbered and joined.
@@ -35,14 +52,51 @@ pub struct Parts {
 }
 
 impl LongMessage {
+    /// Returns its numbered parts, if it travels in them.
+    pub fn parts(&self) -> Option<&Parts> {
+        match &self.carrier {
+            Carrier::Parts(parts) => Some(parts),
+            Carrier::Transport(_) => None,
+        }
+    }
+
+    /// Returns the transport by which it travels.
+    pub fn transport(&self) -> Option<TransportId> {
+        match self.carrier {
+            Carrier::Parts(_) => None,
+            Carrier::Transport(transport) => Some(transport),
+        }
+    }
+
+    /// Returns how many of its data bytes a frame carries.
+    pub fn size(&self) -> usize {
+        self.parts().map_or(Transport::PACKET, |parts| parts.size.into())
+    }
+
     /// Returns the greatest number of data bytes.
     pub fn longest(&self) -> usize {
-        self.bytes_with(None)
+        self.lengths.last().map_or_else(|| self.bytes_with(None), |length| usize::from(*length))
     }
 
     /// Returns the least number of data bytes.
     pub fn shortest(&self) -> usize {
-        self.bytes_with(self.varying().and_then(|array| array.least))
+        let of_signals = || self.bytes_with(self.varying().and_then(|array| array.least));
+        self.lengths.first().map_or_else(of_signals, |length| usize::from(*length))
+    }
+
+    /// Tests whether it can have some number of data bytes.
+    pub fn has_length(&self, length: usize) -> bool {
+        if !self.lengths.is_empty() {
+            return self.lengths.iter().any(|known| usize::from(*known) == length);
+        }
+        let Some(array) = self.varying() else { return length == self.longest() };
+        (array.least.unwrap_or(0)..=array.elements.len()).any(|count| self.bytes_with(Some(count)) == length)
+    }
+
+    /// Returns how many elements an array of varying length has in some number of data bytes.
+    pub fn elements_in(&self, length: usize) -> Option<usize> {
+        let array = self.varying()?;
+        (0..=array.elements.len()).rev().find(|count| self.bytes_with(Some(*count)) <= length)
     }
 
     /// Returns how many data bytes it has with some number of elements in arrays of varying length, or with all.
@@ -68,15 +122,16 @@ impl LongMessage {
         self.content.arrays.iter().find(|array| array.least.is_some())
     }
 
-    /// Returns how many parts carry some number of bytes.
+    /// Returns how many frames carry some number of bytes.
     pub fn parts_of(&self, bytes: usize) -> usize {
-        bytes.div_ceil(self.parts.size.into()).max(1)
+        bytes.div_ceil(self.size()).max(1)
     }
 
     /// Returns the number of the first part, if that is known of the device model.
     pub fn first(&self, model: Option<ModelId>) -> Option<u16> {
-        let own = self.parts.model_firsts.iter().find(|own| Some(own.model) == model);
-        own.map(|own| own.value).or(self.parts.first)
+        let Some(parts) = self.parts() else { return Some(1) };
+        let own = parts.model_firsts.iter().find(|own| Some(own.model) == model);
+        own.map(|own| own.value).or(parts.first)
     }
 }
 
@@ -85,6 +140,26 @@ impl Protocol {
     pub fn long_message(&self, message: &Message) -> Option<(LongMessageId, &LongMessage)> {
         let id = message.long?;
         Some((id, &self[id]))
+    }
+
+    /// Returns the long message whose numbered parts a message's frames carry.
+    pub fn in_parts(&self, message: &Message) -> Option<LongMessageId> {
+        message.long.filter(|long| self[*long].parts().is_some())
+    }
+
+    /// Returns the frames of a message. Of a message by a transport, they are what its frames would be if one were
+    /// enough.
+    pub fn layouts_of<'a>(&'a self, message: &'a Message) -> impl Iterator<Item = &'a FrameLayout> + Clone {
+        let whole = self.long_message(message).map_or(&[][..], |(_, long)| &long.frames);
+        let is_whole = |frame: &&FrameLayout| !whole.iter().any(|known| known.is_kind_of(frame));
+        whole.iter().chain(self.frames_of(message).filter(is_whole))
+    }
+
+    /// Returns the transport that carries a frame, and the long message.
+    pub fn carried<'a>(&'a self, frame: &FrameLayout) -> Option<(&'a Transport, &'a LongMessage)> {
+        let (_, long) = self.long_message(&self[frame.message])?;
+        let transport = &self[long.transport()?];
+        long.frames.iter().any(|known| known.is_kind_of(frame)).then_some((transport, long))
     }
 
     /// Returns what the frames of each message carry, then what the parts of each long message carry

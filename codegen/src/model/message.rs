@@ -294,6 +294,11 @@ impl FrameLayout {
         if self.reserved.are_ones { self.uncovered() } else { 0 }
     }
 
+    /// Tests whether another frame is the same kind of frame of the same message.
+    pub fn is_kind_of(&self, other: &Self) -> bool {
+        (self.message, self.exchange, self.kind) == (other.message, other.exchange, other.kind)
+    }
+
     /// Tests whether another frame belongs to the same access, alone or of the same set.
     pub fn is_exchanged_with(&self, other: &Self) -> bool {
         (self.access, self.set) == (other.access, other.set)

@@ -1,4 +1,4 @@
-//! Resolves messages longer than a frame, which travel in numbered parts.
+//! Resolves messages longer than a frame, which travel in numbered parts or by a transport.
 
 use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
@@ -8,11 +8,12 @@ use super::arrays::Windowed;
 use super::fields::Leaves;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Array, ArrayId, Doc, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, ModelId, Numeral, OfModel,
-    Parts, Range, Reserved, Signal, SignalId, Table,
+    Array, ArrayId, Carrier, Doc, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, ModelId, Numeral,
+    OfModel, Parts, Range, Reserved, Signal, SignalId, Table, TransportId,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
+use crate::rule::Rule;
 use crate::syntax::ast::{self, ByModel};
 use crate::syntax::tree::Path;
 
@@ -25,8 +26,19 @@ pub const DATA: &str = "data";
 /// Most data bytes of a long message. ISO 15765-2 has no more, either.
 pub const MOST_BYTES: u16 = 4095;
 
-/// The name of a long message, its remarks, and the only models that have it.
-type Head<'a> = (&'a str, &'a Doc, &'a [ModelId]);
+/// Most data bytes of a message of J1939: 255 packets of seven.
+const MOST_J1939_BYTES: u16 = 1785;
+
+/// What a long message is, whatever carries it.
+#[derive(Clone, Copy)]
+pub struct Head<'a> {
+    pub name: &'a str,
+    pub doc: &'a Doc,
+    /// The only models that have it.
+    pub models: &'a [ModelId],
+    /// What the bits are that nothing names.
+    pub reserved: Reserved,
+}
 
 impl Resolver<'_> {
     /// Reads `bytes` that count in the data of several frames.
@@ -62,16 +74,17 @@ impl Resolver<'_> {
         (parts, whole): (&ast::Parts, Leaves),
         head: Head,
     ) -> (Leaves, Option<LongMessageId>) {
-        let (name, doc, _) = head;
-        let mut frame = self.part_leaves(&path.key("parts"), parts, doc, name);
+        let mut frame = self.part_leaves(&path.key("parts"), parts, head.doc, head.name);
         frame.replies.extend(whole.replies);
         frame.given_up.extend(whole.given_up);
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
         let arrays = self.arrays(whole.arrays, &signals);
         let content = content(head, signals, arrays);
         let path = path.key("parts");
-        let long = self.parts(&path, parts, &frame).map(|parts| LongMessage { message, content, parts });
-        let long = long.filter(|long| self.check_long(&path, long, frame.given_up.is_empty()).is_some());
+        let carrier = self.parts(&path, parts, &frame).map(Carrier::Parts);
+        let long =
+            carrier.map(|carrier| LongMessage { message, content, carrier, lengths: Vec::new(), frames: Vec::new() });
+        let long = long.filter(|long| self.check_long(&rules::PARTS, &path, long, frame.given_up.is_empty()).is_some());
         let id = long.map(|long| {
             let numbers = numbers(&long);
             if let Some(signal) = frame.signals.iter_mut().find(|signal| signal.name == PART) {
@@ -121,17 +134,80 @@ impl Resolver<'_> {
         firsts
     }
 
-    /// Tests what the parts carry together. `is_sound` tells that no field has an error of its own.
-    fn check_long(&mut self, path: &Path, long: &LongMessage, is_sound: bool) -> Option<()> {
+    /// Makes a long message of what a transport carries. It returns the fields of the message if it is one frame.
+    pub fn transported(
+        &mut self,
+        message: MessageId,
+        path: &Path,
+        (transport, lengths): (TransportId, Vec<u16>),
+        whole: Leaves,
+        head: Head,
+    ) -> (Leaves, Option<LongMessageId>) {
+        let is_sound = whole.given_up.is_empty();
+        let plain = Leaves {
+            signals: whole.signals.iter().filter_map(in_frame).collect(),
+            arrays: whole.arrays.map(|array| Array { least: None, ..array.clone() }),
+            constants: Vec::new(),
+            replies: whole.replies,
+            given_up: whole.given_up,
+        };
+        let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
+        let arrays = self.arrays(whole.arrays, &signals);
+        let (content, carrier) = (content(head, signals, arrays), Carrier::Transport(transport));
+        let long = LongMessage { message, content, carrier, lengths, frames: Vec::new() };
+        let at = path.key("via");
+        let is_right = self.check_long(&rules::TRANSPORT, &at, &long, is_sound).is_some()
+            && self.check_lengths(path, &long).is_some();
+        let plain = if long.shortest() <= 8 {
+            plain
+        } else {
+            Leaves { replies: plain.replies, given_up: plain.given_up, ..Leaves::default() }
+        };
+        (plain, is_right.then(|| self.tables.long_messages.push(long)))
+    }
+
+    /// Tests that a transport can carry a message of these lengths, and that none of them cuts a field.
+    fn check_lengths(&mut self, path: &Path, long: &LongMessage) -> Option<()> {
+        let most = usize::from(MOST_J1939_BYTES);
+        if long.longest() > most {
+            let text =
+                format!("`{}` has up to {} bytes, and a transport carries {most}", long.content.name, long.longest());
+            let help = "take fields out, or make `repeat` smaller";
+            self.error_with_help(&rules::TRANSPORT, path.key("via").at_value(), text, help);
+            return None;
+        }
+        let at = path.key("length");
+        if let (Some(_), Some(array)) = (long.lengths.first(), long.varying()) {
+            let text = format!("the length follows from the elements of `{}`", array.name);
+            self.error_with_help(&rules::TRANSPORT, at.at_key(), text, "take `length` out");
+            return None;
+        }
+        let cut = long.lengths.iter().find_map(|length| {
+            let is_cut = |signal: &&Signal| (signal.bytes().start + 1..signal.reach()).contains(&usize::from(*length));
+            Some((length, long.content.signals.iter().find(is_cut)?))
+        });
+        let beyond = || {
+            let last = long.lengths.last()?;
+            Some((last, long.content.signals.iter().find(|signal| signal.reach() > usize::from(*last))?))
+        };
+        let Some((length, signal)) = cut.or_else(beyond) else { return Some(()) };
+        let text = format!("`{}` does not end within {length} bytes", signal.name);
+        let help = "correct the lengths or the places; a field may lie behind a length, but not across it";
+        self.error_with_help(&rules::TRANSPORT, at.at_key(), text, help);
+        None
+    }
+
+    /// Tests what the frames carry together. `is_sound` tells that no field has an error of its own.
+    fn check_long(&mut self, rule: &'static Rule, path: &Path, long: &LongMessage, is_sound: bool) -> Option<()> {
         let content = &long.content;
         let mut refuse = |path: &Path, text: String, help: &str| {
-            self.error_with_help(&rules::PARTS, path.at_key(), text, help);
+            self.error_with_help(rule, path.at_key(), text, help);
             None
         };
         if content.signals.is_empty() {
-            let text = format!("the parts of `{}` carry no field", content.name);
+            let text = format!("the frames of `{}` carry no field", content.name);
             return if is_sound {
-                refuse(path, text, "write its `fields`; their bytes count through all parts")
+                refuse(path, text, "write its `fields`; their bytes count through all frames")
             } else {
                 None
             };
@@ -187,7 +263,10 @@ impl Resolver<'_> {
             let written = self.spec.messages.get(&long.content.name).and_then(|message| message.parts.as_ref());
             let Some(text) = written.and_then(|parts| parts.count.clone()) else { continue };
             if is_varying {
-                self.tables.long_messages[id].parts.count = self.counting(&path, &text, messages);
+                let count = self.counting(&path, &text, messages);
+                if let Carrier::Parts(parts) = &mut self.tables.long_messages[id].carrier {
+                    parts.count = count;
+                }
             } else {
                 let text = "`count` means nothing here: no array of the message varies".to_owned();
                 let help = "take it out, or write the least and the greatest number: `repeat: 1..48`";
@@ -221,6 +300,17 @@ impl Resolver<'_> {
     }
 }
 
+/// Returns a signal with its place in a frame, if it ends there.
+fn in_frame(signal: &Signal) -> Option<Signal> {
+    let moved = 8 * u8::try_from(signal.window).ok().filter(|_| signal.reach() <= 8)?;
+    let (low, width) = (signal.place.bits_of_payload().shift(), signal.place.width());
+    let (payload, low) = match signal.place.order() {
+        ByteOrder::Big => (Place::bytes(0, 7), low - moved),
+        ByteOrder::Little => (Place::bytes(7, 0), low + moved),
+    };
+    Some(Signal { window: 0, place: payload.bits(low + width - 1, low), ..signal.clone() })
+}
+
 /// Tests whether the bits of a signal are its value.
 fn is_plain(signal: &Signal) -> bool {
     signal.encoding.is_unscaled() && signal.encoding.numeral() == Numeral::Unsigned
@@ -228,16 +318,17 @@ fn is_plain(signal: &Signal) -> bool {
 
 /// Returns the least and the greatest number that a part can have.
 fn numbers(long: &LongMessage) -> Option<(u16, u16)> {
-    let firsts = long.parts.model_firsts.iter().map(|own| own.value).chain(long.parts.first);
+    let parts = long.parts()?;
+    let firsts = parts.model_firsts.iter().map(|own| own.value).chain(parts.first);
     let others = u16::try_from(long.parts_of(long.longest())).unwrap_or(u16::MAX) - 1;
     Some((firsts.clone().min()?, firsts.max()? + others))
 }
 
 /// Makes the message that the parts carry together.
-fn content((name, doc, models): Head, signals: Table<SignalId, Signal>, arrays: Table<ArrayId, Array>) -> Message {
+fn content(head: Head, signals: Table<SignalId, Signal>, arrays: Table<ArrayId, Array>) -> Message {
     Message {
-        name: name.to_owned(),
-        doc: doc.clone(),
+        name: head.name.to_owned(),
+        doc: head.doc.clone(),
         lengths: Vec::new(),
         signals,
         arrays,
@@ -246,10 +337,10 @@ fn content((name, doc, models): Head, signals: Table<SignalId, Signal>, arrays: 
         frames: Vec::new(),
         refusals: Vec::new(),
         every: None,
-        models: models.to_vec(),
+        models: head.models.to_vec(),
         set: None,
         long: None,
         sends: Vec::new(),
-        reserved: Reserved::default(),
+        reserved: head.reserved,
     }
 }

@@ -1,14 +1,17 @@
 //! Resolves messages: their signals and their frames.
 
+use std::fmt::Display;
+
 use super::Resolver;
 use super::access::{Modes, Times, pattern_of};
 use super::fields::Leaves;
+use super::long::{Head, MOST_BYTES};
 use super::sets::distinct;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
+    LongMessageId, Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -42,6 +45,14 @@ pub struct Owner<'a> {
     pub exchange: &'a Exchange,
     pub lengths: &'a [u8],
     pub signals: &'a Table<SignalId, Signal>,
+}
+
+/// The fields of a message's frames, and what several frames carry together.
+struct Carried {
+    leaves: Leaves,
+    long: Option<LongMessageId>,
+    /// The numbers of data bytes that a frame can have; empty if none carries the fields.
+    lengths: Vec<u8>,
 }
 
 /// The constants that choose the frames of a message, whatever the access.
@@ -122,13 +133,11 @@ impl Resolver<'_> {
         self.check_not_empty(path, &["answers", "models", "members", "in"]);
         let doc = remarks!(message).doc(path, None);
         let contents = self.contents(path, name, message, &doc);
-        let lengths = self.lengths(&path.key("length"), &message.length.0, surroundings.length);
         let exchanges = self.exchanges(path, message, surroundings);
         let models = self.models_named(&path.key("models"), &message.models);
-        let (leaves, long) = match &message.parts {
-            Some(parts) => self.long_message(id, path, (parts, contents), (name, &doc, &models)),
-            None => (contents, None),
-        };
+        let reserved = self.reserved(path, message.reserved.as_ref(), surroundings.reserved);
+        let head = Head { name, doc: &doc, models: &models, reserved };
+        let Carried { leaves, long, lengths } = self.carried(id, path, message, contents, head, surroundings);
         let choice = self.choice(path, message, leaves.constants, &leaves.replies, surroundings.identifier);
         let set = self.set(path, message);
         self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
@@ -138,11 +147,19 @@ impl Resolver<'_> {
         let (mut frames, mut refusals) = (Vec::new(), Vec::new());
         for (exchange_id, exchange) in exchanges.entries() {
             let owner = Owner { message: id, id: exchange_id, exchange, lengths: &lengths, signals: &signals };
+            let bare = Owner { lengths: &[surroundings.length], ..owner };
             for kind in surroundings.accesses[exchange.access].kinds.iter().filter(|kind| !split.contains(kind)) {
                 let travel = self.access_constants(exchange.access, *kind, surroundings);
-                let frame = self.layout(&owner, *kind, &choice, &travel, surroundings);
+                let carries = surroundings.accesses[exchange.access].carries.contains(kind);
+                let is_bare = message.via.is_some() && !carries;
+                let frame = self.layout(if is_bare { &bare } else { &owner }, *kind, &choice, &travel, surroundings);
                 self.check_constants(&frame, kind.name(), &choice);
-                frames.push(frame);
+                if let Some(long) = long.filter(|_| carries && message.via.is_some()) {
+                    self.tables.long_messages[long].frames.push(frame.clone());
+                }
+                if !(carries && lengths.is_empty()) {
+                    frames.push(frame);
+                }
             }
             refusals.extend(self.refusal(&owner, &choice, surroundings));
         }
@@ -157,7 +174,6 @@ impl Resolver<'_> {
             self.misplaced_every(path, "a message", "name an access that has a `report`");
         }
         let sends = self.own_sends(&path.key("send"), &message.send, &frames, surroundings);
-        let reserved = self.reserved(path, message.reserved.as_ref(), surroundings.reserved);
         let name = name.to_owned();
         let message = Message {
             name,
@@ -181,7 +197,7 @@ impl Resolver<'_> {
 
     /// Numbers the frames, and adds what depends on all of them.
     fn complete(
-        &self,
+        &mut self,
         drafts: Table<MessageId, Draft>,
         modes: &Modes,
     ) -> (Table<MessageId, Message>, Table<FrameId, FrameLayout>) {
@@ -193,11 +209,16 @@ impl Resolver<'_> {
                 travels: travels(modes, frame.is_to_module(), &message[frame.exchange].answers),
                 ..frame
             };
+            let whole = message.long.map(|long| (long, &self.tables.long_messages[long].frames));
+            let whole = whole.map(|(long, frames)| (long, frames.iter().cloned().map(complete).collect::<Vec<_>>()));
             let refusals = message.refusals.iter().cloned().map(complete).collect();
             let drafted: Vec<_> = drafted.into_iter().map(complete).collect();
             message.refusals = refusals;
             message.frames = drafted.into_iter().map(|frame| frames.push(frame)).collect();
             messages.push(message);
+            if let Some((long, frames)) = whole {
+                self.tables.long_messages[long].frames = frames;
+            }
         }
         (messages, frames)
     }
@@ -273,9 +294,44 @@ impl Resolver<'_> {
         constants.into_iter().map(|constant| Written { constant, at: at(&constant), part }).collect()
     }
 
+    /// Takes the fields of a message apart: into those of its frames, and those of all frames together.
+    fn carried(
+        &mut self,
+        id: MessageId,
+        path: &Path,
+        message: &ast::Message,
+        contents: Leaves,
+        head: Head,
+        surroundings: &Surroundings,
+    ) -> Carried {
+        let at = path.key("length");
+        if let (Some(_), Some(_)) = (&message.parts, &message.via) {
+            let text = format!("`{}` has both `parts` and `via`", head.name);
+            let help = "numbered parts need no transport; write one of the two";
+            self.error_with_help(&rules::TRANSPORT, path.key("via").at_key(), text, help);
+        }
+        if let Some(name) = &message.via {
+            let lengths = self.long_lengths(&at, &message.length.0);
+            let Some(transport) = self.transport(&path.key("via"), name) else {
+                let given_up = contents.names().collect();
+                return Carried { leaves: Leaves { given_up, ..Leaves::default() }, long: None, lengths: Vec::new() };
+            };
+            let (leaves, long) = self.transported(id, path, (transport, lengths), contents, head);
+            let known = long.map(|long| &self.tables.long_messages[long]);
+            let lengths = known.map(|long| (0..=8).filter(|length| long.has_length(usize::from(*length))).collect());
+            return Carried { leaves, long, lengths: lengths.unwrap_or_default() };
+        }
+        let lengths = self.lengths(&at, &message.length.0, surroundings.length);
+        let (leaves, long) = match &message.parts {
+            Some(parts) => self.long_message(id, path, (parts, contents), head),
+            None => (contents, None),
+        };
+        Carried { leaves, long, lengths }
+    }
+
     /// Resolves `fields` or `value`.
     fn contents(&mut self, path: &Path, name: &str, message: &ast::Message, doc: &Doc) -> Leaves {
-        let is_long = message.parts.is_some();
+        let is_long = message.parts.is_some() || message.via.is_some();
         match &message.value {
             Some(value) if !message.fields.is_empty() => {
                 let text = format!("`{name}` has both `fields` and `value`");
@@ -361,10 +417,26 @@ impl Resolver<'_> {
 
     /// Reads the numbers of data bytes that frames of a message can have, the least first.
     fn lengths(&mut self, path: &Path, written: &[String], otherwise: u8) -> Vec<u8> {
-        let mut lengths: Vec<u8> = Vec::new();
+        let lengths = self.rising(path, written, Self::length);
+        if lengths.is_empty() { vec![otherwise] } else { lengths }
+    }
+
+    /// Reads the numbers of data bytes that a long message can have, the least first.
+    fn long_lengths(&mut self, path: &Path, written: &[String]) -> Vec<u16> {
+        self.rising(path, written, |resolver, at, text| resolver.integer(at, text, 1, MOST_BYTES))
+    }
+
+    /// Reads numbers in rising order.
+    fn rising<N: Copy + PartialOrd + Display>(
+        &mut self,
+        path: &Path,
+        written: &[String],
+        read: impl Fn(&mut Self, &Path, &str) -> Option<N>,
+    ) -> Vec<N> {
+        let mut lengths: Vec<N> = Vec::new();
         for (index, text) in written.iter().enumerate() {
             let at = if self.diagnostics.has(&path.index(index)) { path.index(index) } else { path.clone() };
-            let Some(length) = self.length(&at, text) else { continue };
+            let Some(length) = read(self, &at, text) else { continue };
             match lengths.last().filter(|shorter| **shorter >= length) {
                 None => lengths.push(length),
                 Some(shorter) => {
@@ -378,7 +450,7 @@ impl Resolver<'_> {
                 }
             }
         }
-        if lengths.is_empty() { vec![otherwise] } else { lengths }
+        lengths
     }
 
     /// Makes the frame of one kind of a message. `travel` has the constants of its access.

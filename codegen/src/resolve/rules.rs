@@ -20,6 +20,7 @@ rules! {
     STATUS_BIT "status_bit" Resolve ERROR;
     ARRAY "array" Resolve ERROR;
     PARTS "parts" Resolve ERROR;
+    TRANSPORT "transport" Check ERROR;
     VALUE "value" Resolve ERROR;
     ADDRESSING "addressing" Resolve EITHER;
     ACCESS "access" Resolve ERROR;

@@ -6,6 +6,7 @@ use super::Resolver;
 use super::texts::remarks;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Doc, Enumeration, EnumerationId, NamedValue, Numeral};
+use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
@@ -166,13 +167,48 @@ impl Resolver<'_> {
             known.width = known.width.max(width);
             return Some(index);
         }
-        let mut values =
-            self.values(&merged.path(self.diagnostics, Key::Values), &merged.field.values, width, Numeral::Unsigned);
+        let at = merged.path(self.diagnostics, Key::Values);
+        let widest = self.widest_use(&name).max(width);
+        if widest > width && self.check_room(merged, &name, width).is_none() {
+            self.values(&at, &merged.field.values, widest, Numeral::Unsigned);
+            return None;
+        }
+        let mut values = self.values(&at, &merged.field.values, width, Numeral::Unsigned);
         let absent = self.absent(merged, Numeral::Unsigned, width, &values);
         let has_absent = absent.is_some();
         values.extend(absent);
         let doc = self.type_doc(&name, &source, doc);
         Some(self.tables.enumerations.push(Enumeration { name, doc, width, values, has_absent }))
+    }
+
+    /// Tests that a field has room for the values of its type, which other fields have.
+    fn check_room(&mut self, merged: &Merged, name: &str, width: u8) -> Option<()> {
+        let greatest = Rational::integer((u64::MAX >> (64 - width)).into());
+        let mut numbers = merged.field.values.keys().filter_map(|raw| Rational::parse(raw));
+        let Some(beyond) = numbers.find(|raw| *raw > greatest) else { return Some(()) };
+        let key = if merged.field.bits.is_some() { Key::Bits } else { Key::Bytes };
+        let at = merged.path(self.diagnostics, key).at_value();
+        let text = format!("{width} bits have no room for the value {beyond} of the type `{name}`");
+        self.error_with_help(
+            &rules::VALUE_WIDTH,
+            at,
+            text,
+            "other fields of the type have more bits; correct the place",
+        );
+        None
+    }
+
+    /// Returns the greatest number of bits of a field that names a type, as far as it is written plainly.
+    fn widest_use(&self, name: &str) -> u8 {
+        let mut open: Vec<&Field> = self.spec.messages.values().flat_map(|message| message.fields.values()).collect();
+        let mut widest = 0;
+        while let Some(field) = open.pop() {
+            open.extend(field.fields.values());
+            if field.types.0.iter().any(|known| known == name) {
+                widest = widest.max(written_width(field).unwrap_or(0));
+            }
+        }
+        widest
     }
 
     /// Tests that named values with one for "not available" have one width, since it has all ones.
@@ -218,7 +254,7 @@ impl Resolver<'_> {
     }
 
     fn raw_key(&mut self, path: &Path, text: &str, first: i128, last: i128) -> Option<i128> {
-        let whole = crate::number::Rational::parse(text).and_then(crate::number::Rational::to_integer);
+        let whole = Rational::parse(text).and_then(Rational::to_integer);
         let fitting = whole.filter(|whole| (first..=last).contains(whole));
         if fitting.is_none() {
             let (message, help) = match whole {
@@ -247,4 +283,12 @@ impl Resolver<'_> {
             );
         }
     }
+}
+
+/// Returns the number of bits of a field, if it is written plainly and at most 64.
+fn written_width(field: &Field) -> Option<u8> {
+    let (text, unit) = field.bits.as_ref().map(|text| (text, 1)).or_else(|| Some((field.bytes.as_ref()?, 8)))?;
+    let (first, last) = text.split_once("..").unwrap_or((text, text));
+    let (first, last): (u8, u8) = (first.trim().parse().ok()?, last.trim().parse().ok()?);
+    first.abs_diff(last).checked_add(1)?.checked_mul(unit).filter(|width| *width <= 64)
 }

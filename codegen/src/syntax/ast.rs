@@ -69,6 +69,10 @@ pub struct Spec {
     /// receipt: `{others: {match: {identifier: 0x100..0x1FF}}}`; none if absent.
     #[serde(default)]
     pub foreign: Map<Foreign>,
+    /// Standards by which messages longer than a frame travel, by name:
+    /// `{tp: {kind: j1939, group: [page, format, target], target: target, source: source}}`; none if absent.
+    #[serde(default)]
+    pub transports: Map<Transport>,
     /// Messages by name. A register is a message too:
     /// `{fan_speed: {match: {command: 0x03}, access: [read], value: {bytes: 0..1, unit: rpm}}}`;
     /// none if absent.
@@ -232,7 +236,7 @@ pub struct Mode {
 }
 
 /// How a message travels.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Access {
@@ -268,6 +272,35 @@ pub struct Access {
     /// What else a reader must know, in one sentence: `the reply carries the values now in effect`.
     pub note: Option<String>,
     /// Section of the document that says so, in quotes; what is inside inherits it: `"2.4"`.
+    pub section: Option<String>,
+    /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
+    #[serde(default)]
+    pub erratum: Names,
+}
+
+/// A standard by which messages longer than a frame travel. Its frames are messages of the protocol.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Transport {
+    /// The standard: `j1939`.
+    pub kind: String,
+    /// Fields of the identifier that are the number of a message, highest bits first, the receiver last:
+    /// `[page, format, target]`.
+    pub group: Names,
+    /// Field of the identifier with the address of the receiver: `target`.
+    pub target: String,
+    /// Field of the identifier with the address of the sender: `source`.
+    pub source: String,
+    /// Raw values that fields of the identifier have in its frames, in place of their own `send`:
+    /// `{priority: 7}`. Received frames may have any. None if absent.
+    #[serde(default)]
+    pub send: Pattern,
+    /// What it is, in a few words without a full stop: `Transport of long messages`.
+    pub title: Option<String>,
+    /// What else a reader must know, in one sentence: `only the vehicle uses it`.
+    pub note: Option<String>,
+    /// Section of the document that says so, in quotes; its frames inherit it: `"2.4"`.
     pub section: Option<String>,
     /// Names of entries of `errata` that are about it, one or a list: `E1` or `[E1, E2]`.
     #[serde(default)]

@@ -44,7 +44,8 @@ impl Module {
             function.signature.ident != "fmt" && function.signature.generics.params.is_empty()
         };
         let functions = self.functions().filter(is_called).map(Function::call);
-        functions.chain(self.signals()).chain(self.blocks().map(provided)).collect()
+        let transport = quote!(calls::transport(););
+        functions.chain(self.signals()).chain(self.blocks().map(provided)).chain([transport]).collect()
     }
 
     /// Returns calls that recognise frames, encode others, build the requests of every message and read their replies.
@@ -169,6 +170,8 @@ fn provided(block: &ItemImpl) -> TokenStream {
     let owner = &block.self_ty;
     match trait_name(block).map(|name| name.ident.to_string()).as_deref() {
         Some("Layout") => quote!(calls::layout::<#owner>();),
+        Some("LongLayout") => quote!(calls::long_layout::<#owner>();),
+        Some("Parted") => quote!(calls::parted::<#owner>();),
         Some("Destination") => quote!(calls::questions::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
         Some("FrameSet") => quote!(calls::assembler::<#owner>();),

@@ -1,9 +1,10 @@
 //! Examples of frames: random frames, and what the interpreter decodes them to.
 
 use canspec_codegen::interpret::{
-    Assembly, Content, Decoded, Frame, Problem, Reading, Unrecognised, Value as Meaning, decode, encode, encode_long,
+    Assembled, Assembly, Content, Decoded, Frame, Input, Problem, Reading, Unrecognised, Value as Meaning, decode,
+    encode, encode_long, physical,
 };
-use canspec_codegen::model::{Encoding, Kind, Message, ModelId, Protocol, Signal};
+use canspec_codegen::model::{Encoding, Kind, LongMessage, Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
 use serde_yaml::Value;
 
@@ -32,7 +33,13 @@ impl Draft {
             return;
         }
         let examples = self.examples(protocol);
-        let (in_sequence, in_messages): (Vec<_>, Vec<_>) = examples.into_iter().partition(|_| self.chance(35));
+        let is_of_transport = |example: &Example| {
+            let messages =
+                protocol.messages.entries().filter(|(_, known)| example.message.as_ref() == Some(&known.name));
+            messages.into_iter().any(|(id, _)| protocol.transport_frame(id).is_some())
+        };
+        let (in_sequence, in_messages): (Vec<_>, Vec<_>) =
+            examples.into_iter().partition(|example| is_of_transport(example) || self.chance(35));
         Self::add_to_messages(root, in_messages);
         self.add_sequence(root, in_sequence);
     }
@@ -54,6 +61,12 @@ impl Draft {
             let (model, frame) = (self.one(&models), frames.next_frame());
             let decoded = decode(protocol, model, &frame).ok();
             examples.extend(decoded.and_then(|decoded| self.of_all_parts(protocol, model, &frame, &decoded)));
+        }
+        for long in &protocol.long_messages {
+            for _ in 0..FRAMES {
+                let model = self.one(&models);
+                examples.extend(self.of_transfer(protocol, model, long));
+            }
         }
         examples.sort_by_key(|example| example.kind == Kind::Request);
         examples
@@ -111,7 +124,8 @@ impl Draft {
     ) -> Option<Example> {
         let message = &protocol[decoded.message];
         let (_, long) = protocol.long_message(message).filter(|_| !decoded.signals.is_empty())?;
-        let (number, data) = (message[long.parts.number].place, message[long.parts.data].place);
+        let parts = long.parts()?;
+        let (number, data) = (message[parts.number].place, message[parts.data].place);
         let varying = long.varying().and_then(|array| Some(array.least?..=array.elements.len()));
         let count = varying.map(|counts| self.random.usize(counts));
         let mut assembly = Assembly::default();
@@ -131,9 +145,21 @@ impl Draft {
         if made != printed || model.is_none() && !message.models.is_empty() {
             return None;
         }
-        let mut map = Map::of([(decoded.kind.name(), list(printed.iter().map(written)))]);
+        self.of_whole(protocol, (model, count), (&whole, long), &printed)
+    }
+
+    /// Returns an example of all frames of a long message, which mean a whole.
+    fn of_whole(
+        &mut self,
+        protocol: &Protocol,
+        (model, count): (Option<ModelId>, Option<usize>),
+        (whole, long): (&Assembled<()>, &LongMessage),
+        frames: &[Frame],
+    ) -> Option<Example> {
+        let kind = whole.decoded.kind;
+        let mut map = Map::of([(kind.name(), list(frames.iter().map(written)))]);
         let said = whole.decoded.signals.iter().map(|reading| {
-            let signal = &long.content[reading.signal];
+            let signal = long.content[reading.signal].on(model);
             Some((signal.name.clone(), means(protocol, signal, reading)?))
         });
         map.put("means", Map::of(said.collect::<Option<Vec<_>>>()?));
@@ -146,8 +172,55 @@ impl Draft {
         if !whole.decoded.notes.is_empty() {
             map.put("notes", list(whole.decoded.notes.iter().map(|note| note.rule.name())));
         }
-        let name = message.name.clone();
-        Some(Example { map, kind: decoded.kind, of: Some((name.clone(), None)), message: Some(name) })
+        self.say_more(&mut map);
+        let name = long.content.name.clone();
+        Some(Example { map, kind, of: Some((name.clone(), None)), message: Some(name) })
+    }
+
+    /// Returns an example of all frames of a message that a transport carries, with random bits.
+    fn of_transfer(&mut self, protocol: &Protocol, model: Option<ModelId>, long: &LongMessage) -> Option<Example> {
+        let ways = long.frames.iter().flat_map(|layout| protocol.patterns_of(layout).map(move |way| (layout, way.1)));
+        let ways: Vec<_> = ways.collect();
+        let (layout, pattern) = ways.get(self.random.usize(..=ways.len()))?;
+        let id = pattern.addresses.iter().fold(protocol.base_identifier(layout, pattern), |id, address| {
+            let raws = protocol[address.address_type].raw_ranges();
+            protocol[address.field].put(id, raws.first().map_or(0, |(first, _)| *first))
+        });
+        let least = long.varying().and_then(|array| Some((array.least?, array.elements.len())));
+        let count = least.map(|(least, most)| self.random.usize(least..=most));
+        let signals = long.content.signals.iter().filter(|signal| long.is_among(count, signal));
+        let content = Content {
+            message: long.content.name.clone(),
+            access: Some(protocol[layout.access].name.clone()),
+            kind: Some(layout.kind),
+            identifier: protocol
+                .identifier
+                .fields
+                .iter()
+                .map(|field| (field.name.clone(), field.get(id).into()))
+                .collect(),
+            signals: signals.map(|signal| (signal.name.clone(), self.input(protocol, signal))).collect(),
+            ..Content::default()
+        };
+        let frames = encode_long(protocol, model, &content).ok().filter(|frames| frames.len() > 1)?;
+        let mut assembly = Assembly::default();
+        let mut ended = Vec::new();
+        for frame in &frames {
+            let decoded = decode(protocol, model, frame).ok()?;
+            ended.extend(assembly.take(protocol, model, (), frame, &decoded).ended);
+        }
+        let whole = ended.pop()?;
+        assert_eq!((whole.incomplete.as_ref(), ended.len()), (None, 0), "a message that was made is whole");
+        if model.is_none() && !long.content.models.is_empty() {
+            return None;
+        }
+        self.of_whole(protocol, (model, None), (&whole, long), &frames)
+    }
+
+    /// Returns random bits of a signal.
+    fn input(&mut self, protocol: &Protocol, signal: &Signal) -> Input {
+        let bits = self.random.u64(..) & signal.place.max();
+        Input::of(protocol, signal, &physical(protocol, signal, bits), bits)
     }
 
     /// Writes some numbers as rounded ones.

@@ -28,6 +28,8 @@ pub struct Bus {
     pub spare: Option<String>,
     /// A field that messages can send with a value of their own.
     pub priority: Option<String>,
+    /// How a transport uses the identifier.
+    pub transport: Option<Map>,
     /// Whether a field says that more frames of a set follow.
     pub continues: bool,
     /// Data bytes that the header takes.
@@ -120,6 +122,21 @@ impl Draft {
         bus.command = Some(Chooser { name, bits });
     }
 
+    /// Adds the fields above the addresses as a transport needs them. It returns the name of the page.
+    fn of_transport(&mut self, bus: &mut Bus, filling: &mut Filling) -> String {
+        self.priority(bus, filling);
+        let page = self.field_name(filling);
+        let mut field = self.selector(2);
+        if self.random.bool() {
+            field.put("const", "0");
+        }
+        filling.add(&page, field, 2);
+        let (name, field) = (self.field_name(filling), self.selector(8));
+        filling.add(&name, field, 8);
+        bus.command = Some(Chooser { name, bits: 8 });
+        page
+    }
+
     /// Adds bits without a name, and a constant.
     fn fixed(&mut self, filling: &mut Filling) {
         for key in ["ones", "zeros"] {
@@ -171,8 +188,18 @@ impl Draft {
 
     /// Lets the controller's addresses show the direction.
     fn by_addresses(&mut self, bus: &mut Bus, filling: &mut Filling) {
-        self.above(bus, filling, 16);
+        let page = if self.chance(30) { Some(self.of_transport(bus, filling)) } else { None };
+        if page.is_none() {
+            self.above(bus, filling, 16);
+        }
         let (target, source) = (self.field_name(filling), self.field_name(filling));
+        if let (Some(page), Some(command)) = (page, &bus.command) {
+            let mut transport = Map::of([("kind", "j1939")]);
+            transport.put("group", list([page, command.name.clone(), target.clone()]));
+            transport.put("target", target.clone());
+            transport.put("source", source.clone());
+            bus.transport = Some(transport);
+        }
         for name in [&target, &source] {
             let field = self.selector(8);
             filling.add(name, field, 8);

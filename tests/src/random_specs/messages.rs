@@ -8,6 +8,9 @@ use super::identifier::{Bus, Chooser, Mode};
 use super::names::Scope;
 use super::yaml::{Map, list};
 
+/// The name of a transport.
+const TRANSPORT: &str = "zz_transport";
+
 /// How messages travel.
 #[derive(Clone)]
 struct Access {
@@ -42,6 +45,7 @@ pub struct Traffic {
     pub access: Map,
     pub messages: Map,
     pub foreign: Map,
+    pub transports: Map,
     accesses: Vec<Access>,
     names: Scope,
     access_names: Scope,
@@ -55,6 +59,7 @@ impl Draft {
     /// Chooses what travels, and how.
     pub fn traffic(&mut self, bus: &Bus) -> Traffic {
         let mut traffic = Traffic::default();
+        self.transport(bus, &mut traffic);
         self.accesses(bus, &mut traffic);
         for _ in 0..self.random.u8(1..=3) {
             self.message(bus, &mut traffic);
@@ -70,6 +75,17 @@ impl Draft {
             self.foreign(bus, &mut traffic);
         }
         traffic
+    }
+
+    /// Adds the transport of the identifier, if there is one.
+    fn transport(&mut self, bus: &Bus, traffic: &mut Traffic) {
+        let Some(mut transport) = bus.transport.clone() else { return };
+        if let Some(priority) = bus.priority.as_ref().filter(|_| self.random.bool()) {
+            let value = self.random.u8(..8);
+            transport.put("send", Map::of([(priority.clone(), self.number(value))]));
+        }
+        self.remark(&mut transport);
+        traffic.transports.put(TRANSPORT, transport);
     }
 
     fn accesses(&mut self, bus: &Bus, traffic: &mut Traffic) {
@@ -190,6 +206,7 @@ impl Draft {
                 pattern.put(name, value);
             }
         }
+        let has_register = pattern.0.len() > 1;
         let mut message = Map::of([("match", pattern)]);
         message.put("access", list(accesses.iter().map(|access| access.name.clone())));
         let kinds: std::collections::BTreeSet<_> = accesses.iter().flat_map(|access| &access.kinds).copied().collect();
@@ -214,7 +231,12 @@ impl Draft {
             message.put("reserved", reserved);
         }
         let is_sent = accesses.iter().any(|access| access.sends);
-        if bus.header_bytes < 5 && !is_sent && self.chance(25) {
+        let is_by_command = !first.has_command && !has_register;
+        if bus.transport.is_some() && is_by_command && self.chance(50) {
+            let (fields, _) = self.long_fields();
+            message.put("via", TRANSPORT);
+            message.put("fields", fields);
+        } else if bus.header_bytes < 5 && !is_sent && self.chance(25) {
             self.in_parts(bus, traffic, &mut message);
         } else {
             self.content(bus, &mut message, &kinds, false);

@@ -1,10 +1,11 @@
 //! Runs the examples of long messages: all frames together must say what the example says.
 
-use super::{Checked, no_value, shown, wrong};
-use crate::diagnostic::At;
+use super::{Checked, misfitting, shown, wrong};
+use crate::diagnostic::{At, Diagnostic};
 use crate::hex;
-use crate::interpret::{Assembled, Assembly, Content, Form, Frame, decode, encode_long};
-use crate::model::{LongExample, LongMessage, Protocol};
+use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, decode, encode_long};
+use crate::model::{LongExample, LongMessage, Protocol, TransportFrame, TransportId};
+use crate::resolve::rules;
 
 /// Decodes the frames, joins their parts, compares the values, and makes the frames again.
 pub fn check(protocol: &Protocol, example: &LongExample) -> Checked {
@@ -40,7 +41,7 @@ impl Checker<'_> {
     }
 
     /// Joins the parts, which must be one whole message.
-    fn assembled(&self) -> Result<Assembled<usize>, Box<crate::diagnostic::Diagnostic>> {
+    fn assembled(&self) -> Result<Assembled<usize>, Box<Diagnostic>> {
         let (protocol, model) = (self.protocol, self.example.model);
         let mut assembly = Assembly::default();
         assembly.count_as(self.example.count.map(usize::from));
@@ -48,11 +49,18 @@ impl Checker<'_> {
         for (index, frame) in self.frames().iter().enumerate() {
             let decoded =
                 decode(protocol, model, frame).map_err(|problem| wrong(self.frame_at(index), problem.text))?;
-            if (decoded.message, decoded.kind) != (self.long.message, self.example.kind) {
+            if !self.is_its(&decoded) {
                 let text = format!("this frame is a {} of `{}`", decoded.kind.name(), protocol[decoded.message].name);
                 return Err(wrong(self.frame_at(index), text));
             }
             let taken = assembly.take(protocol, model, index, frame, &decoded);
+            if !taken.is_part && protocol.transport_frame(decoded.message).is_some() {
+                let path = self.long.content.doc.path.key("match");
+                let text = format!("the frames announce another group than that of `{}`", self.long.content.name);
+                return Err(Box::new(
+                    Diagnostic::error(&rules::EXAMPLE, path.at_value(), text).other(self.frame_at(index), "the frame"),
+                ));
+            }
             if !taken.is_part {
                 let notes: Vec<_> = decoded.notes.into_iter().map(|note| note.text).collect();
                 return Err(wrong(self.frame_at(index), format!("this frame carries no part: {}", notes.join("; "))));
@@ -62,6 +70,14 @@ impl Checker<'_> {
         ended.extend(assembly.finish(protocol, model));
         let messages = ended.len();
         match <[Assembled<usize>; 1]>::try_from(ended) {
+            Ok([whole]) if whole.decoded.message != self.long.message => {
+                let text = format!(
+                    "these frames are a {} of `{}`",
+                    whole.decoded.kind.name(),
+                    protocol[whole.decoded.message].name
+                );
+                Err(wrong(self.frames_at(), text))
+            }
             Ok([whole]) if whole.incomplete.is_none() => Ok(whole),
             Ok([whole]) => Err(wrong(
                 self.frames_at(),
@@ -71,10 +87,22 @@ impl Checker<'_> {
         }
     }
 
+    /// Tests whether a frame is one of the message, or of the transport that carries it.
+    fn is_its(&self, decoded: &Decoded) -> bool {
+        match self.protocol.transport_frame(decoded.message) {
+            Some((transport, _, _)) => self.long.transport() == Some(transport),
+            None => (decoded.message, decoded.kind) == (self.long.message, self.example.kind),
+        }
+    }
+
     fn has_values(&self, assembled: &Assembled<usize>) -> Checked {
         let content = &self.long.content;
         for meaning in &self.example.means {
-            meaning.said.as_ref().map_err(|misfit| Box::new(no_value(meaning, misfit)))?;
+            meaning.said.as_ref().map_err(|misfit| {
+                let its = self.protocol.long_examples.iter().filter(|other| other.long == self.example.long);
+                let means = its.flat_map(|other| &other.means);
+                Box::new(misfitting(means, &content[meaning.signal], meaning, misfit))
+            })?;
             let signal = content[meaning.signal].on(self.example.model);
             let reading = assembled.decoded.signals.iter().find(|reading| reading.signal == meaning.signal);
             let Some(reading) = reading else {
@@ -109,10 +137,18 @@ impl Checker<'_> {
     }
 
     fn encodes_back(&self, assembled: &Assembled<usize>) -> Checked {
+        if assembled.decoded.kind != self.example.kind {
+            let text = format!("these frames are a {}", assembled.decoded.kind.name());
+            return Err(wrong(self.frames_at(), text));
+        }
         let content = Content::of_long(self.protocol, assembled);
-        let frames = self.frames();
-        let made = encode_long(self.protocol, self.example.model, &content)
+        let all = self.frames();
+        let frames: Vec<_> = assembled.marks.iter().map(|mark| all[*mark].clone()).collect();
+        let mut made = encode_long(self.protocol, self.example.model, &content)
             .map_err(|refusal| wrong(self.frames_at(), format!("it does not encode back: {refusal}")))?;
+        if let (Some(transport), Some(made), Some(frame)) = (self.long.transport(), made.first_mut(), frames.first()) {
+            keep_free_number(self.protocol, transport, frame, made);
+        }
         let differing = made.iter().zip(&frames).position(|(made, frame)| made != frame);
         match differing.or_else(|| (made.len() != frames.len()).then_some(made.len().min(frames.len()))) {
             None => Ok(()),
@@ -124,5 +160,17 @@ impl Checker<'_> {
                 Err(wrong(self.frames_at(), text))
             }
         }
+    }
+}
+
+/// Takes over how many packets may come at once. Every sender chooses that for itself.
+fn keep_free_number(protocol: &Protocol, transport: TransportId, frame: &Frame, made: &mut Frame) {
+    let announcement = protocol[transport].message(TransportFrame::RequestToSend).map(|id| &protocol[id]);
+    let most = announcement.and_then(|message| message.signals.iter().find(|signal| signal.name == "most"));
+    let is_announced = |frame: &Frame| frame.data.first() == Some(&0x10);
+    if let Some(most) = most.filter(|_| is_announced(frame) && is_announced(made)) {
+        let mut data = made.padded();
+        most.place.put(&mut data, most.place.get(&frame.padded()));
+        made.data = data.to_vec();
     }
 }

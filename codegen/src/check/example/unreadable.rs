@@ -14,7 +14,10 @@ pub fn report(protocol: &Protocol, example: &Example, problem: &Unrecognised) ->
         (Problem::Length, Some(data)) => {
             let length = data.len();
             let help = format!("if the message has {length} data bytes, write `length: {length}` in it; {wrongly}");
-            Diagnostic::error(&rules::EXAMPLE, at, text).help(help)
+            match other_length(protocol, example, length) {
+                None => Diagnostic::error(&rules::EXAMPLE, at, text).help(help),
+                Some((place, text)) => Diagnostic::error(&rules::EXAMPLE, place, text).other(at, "a frame").help(help),
+            }
         }
         (Problem::Identifier, _) => undirected(protocol, example, at.clone(), &wrongly)
             .unwrap_or_else(|| Diagnostic::error(&rules::EXAMPLE, at, text).help(otherwise(problem))),
@@ -27,6 +30,18 @@ pub fn report(protocol: &Protocol, example: &Example, problem: &Unrecognised) ->
         }
         _ => Diagnostic::error(&rules::EXAMPLE, at, text).help(otherwise(problem)),
     }
+}
+
+/// Finds the length of a message if no frame of its examples has it, or several have another one.
+fn other_length(protocol: &Protocol, example: &Example, length: usize) -> Option<(At, String)> {
+    let message = &protocol[example.message?];
+    let its = protocol.examples.iter().filter(|other| other.message == example.message && other.fails.is_none());
+    let its: Vec<_> = its.filter_map(|other| other.data.as_ref()).map(Vec::len).collect();
+    let others = its.iter().filter(|other| **other == length).count();
+    let bytes = if length == 1 { "byte" } else { "bytes" };
+    let which = if others == its.len() { "all" } else { "several" };
+    let text = format!("{which} examples of `{}` have {length} data {bytes}", message.name);
+    (others == its.len() || others > 1).then(|| (message.doc.path.key("length").at_value(), text))
 }
 
 fn otherwise(problem: &Unrecognised) -> String {

@@ -28,7 +28,7 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     losses.extend(protocol.messages.iter().filter_map(lengths));
     losses.extend(
         protocol.long_messages.iter().map(|long| {
-            format!("what the parts of `{}` say together; it has their numbers and data", long.content.name)
+            format!("what the frames of `{}` say together; it has their numbers and data", long.content.name)
         }),
     );
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {

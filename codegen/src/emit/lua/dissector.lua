@@ -261,7 +261,8 @@ function proto.dissector(tvb, pinfo, tree)
   local frame = read_frame(tvb, pinfo)
   if not frame then return 0 end
   show(frame, decode(frame), tvb, pinfo, tree)
-  return tvb:len()
+  -- 0 would mean that the frame is another dissector's.
+  return math.max(tvb:len(), 1)
 end
 
 DissectorTable.get("can.subdissector"):add_for_decode_as(proto)

@@ -53,6 +53,9 @@ pub struct Message {
     /// it is one frame if absent. The bytes of its fields then count in the data of all parts
     /// together.
     pub parts: Option<Parts>,
+    /// Entry of `transports` that carries the message if it is longer than a frame: `tp`; it is one
+    /// frame if absent. Its `length` can then be up to 1785.
+    pub via: Option<String>,
     /// Kinds of frames that each of the `members` has, out of `request` and `reply`:
     /// `[request, reply]`; `[reply]` if absent.
     #[serde(rename = "in", default)]
@@ -95,15 +98,15 @@ pub struct Parts {
 pub struct Example {
     /// A frame to a module, in hexadecimal: `000302F0#0000000000000000`, or `000302F0` if the
     /// document prints no data. `0x000302F0 00 00` and `000302F0: 00 00` are read, too. An example
-    /// has one of `request`, `reply` and `report`. A list has all frames of a message in `parts`.
+    /// has one of `request`, `reply` and `report`. A list has all frames of a message that is longer than one.
     #[serde(default)]
     pub request: Names,
     /// An answer, in hexadecimal: `0003F002#1388000000000000`, or `0003F002` if the document prints
-    /// no data. A list has all frames of a message in `parts`.
+    /// no data. A list has all frames of a message that is longer than one.
     #[serde(default)]
     pub reply: Names,
     /// A frame sent unasked, in hexadecimal: `185#E803CEFF`, or `185` if the document prints no
-    /// data. A list has all frames of a message in `parts`.
+    /// data. A list has all frames of a message that is longer than one.
     #[serde(default)]
     pub report: Names,
     /// Message of the frame, only in a sequence or a set of frames: `output`. If absent, a frame of

@@ -1,0 +1,146 @@
+//! What several frames carry together, in both engines: the values that documents print, and the same bytes back.
+
+use std::fmt::Debug;
+
+use canspec_codegen::interpret::{self, Assembly, Form, decode};
+use canspec_codegen::model::{LongExample, LongMessage, Protocol};
+use canspec_runtime::parts::{Assembler, Outcome, Parted};
+use canspec_runtime::{Elements, Frame, Kind, LongLayout, Text};
+use canspec_tests::features_parts_by_model::{self as by_model, Model};
+use canspec_tests::features_parts_until_marker::{self as until_marker, LabelPart};
+use canspec_tests::long::{is_same, long, member};
+use canspec_tests::{LongVisitor, Optional, protocol, visit_long};
+use fastrand::Rng;
+
+/// How many random data each message sees.
+const DATA: usize = 2_000;
+
+/// Returns how many elements data of some length hold whole, if that varies.
+fn elements(long: &LongMessage, length: usize) -> Option<usize> {
+    let most = long.varying()?.elements.len();
+    Some((0..most).take_while(|count| long.bytes_with(Some(count + 1)) <= length).count())
+}
+
+/// Returns the bits of data that some signal has.
+fn covered(long: &LongMessage, data: &[u8], count: Option<usize>) -> Vec<u8> {
+    let mut mask = vec![0; long.bytes_with(count)];
+    for signal in long.content.signals.iter().filter(|signal| long.is_among(count, signal)) {
+        let bytes = mask.iter_mut().skip(signal.window.into());
+        bytes.zip(signal.place.mask()).for_each(|(byte, own)| *byte |= own);
+    }
+    mask.iter().zip(data).map(|(mask, byte)| mask & byte).collect()
+}
+
+struct Random {
+    whole: usize,
+}
+
+impl LongVisitor for Random {
+    fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str) {
+        let protocol = protocol(path);
+        let long = long::<L>(&protocol);
+        assert_eq!((L::SHORTEST, L::LONGEST), (long.bytes_with(Some(0)), long.longest()), "{path}");
+        let mut rng = Rng::with_seed(0x10E6);
+        for _ in 0..DATA {
+            let length = rng.usize(..L::LONGEST + 8);
+            let data: Vec<_> = std::iter::repeat_with(|| rng.u8(..)).take(length).collect();
+            let Some(values) = L::decode(&data) else {
+                assert!(data.len() < L::SHORTEST, "{path}: {data:X?}");
+                continue;
+            };
+            let count = elements(long, data.len());
+            let mut buffer = vec![0xFF; L::LONGEST];
+            match values.encode(&mut buffer) {
+                Ok(bytes) => assert_eq!(bytes, covered(long, &data, count), "{path}: {values:?}"),
+                Err(error) => {
+                    assert!(count < long.varying().and_then(|array| array.least), "{path}: {error}");
+                    continue;
+                }
+            }
+            self.whole += 1;
+        }
+    }
+}
+
+#[test]
+fn random_data_are_read_and_come_back_where_the_spec_says() {
+    let mut random = Random { whole: 0 };
+    visit_long(&mut random);
+    assert!(random.whole > 2_000, "{} messages", random.whole);
+}
+
+struct Examples {
+    values: usize,
+}
+
+impl Examples {
+    fn holds<L: LongLayout + Optional>(&mut self, protocol: &Protocol, example: &LongExample) {
+        let content = &protocol[example.long].content;
+        let mut assembly = Assembly::default();
+        assembly.count_as(example.count.map(usize::from));
+        let mut ended = Vec::new();
+        for (id, data) in &example.frames {
+            let extended = protocol.identifier.extended;
+            let frame = interpret::Frame { id: *id, extended, data: data.clone(), form: Form::Data };
+            let decoded = decode(protocol, example.model, &frame).expect("a frame of the protocol");
+            ended.extend(assembly.take(protocol, example.model, (), &frame, &decoded).ended);
+        }
+        ended.extend(assembly.finish(protocol, example.model));
+        let [message] = ended.as_slice() else { panic!("{}: {} messages", example.doc.path, ended.len()) };
+        let Some(mut data) = message.data.clone() else { return };
+        let count = example.count.map(usize::from);
+        data.truncate(protocol[example.long].bytes_with(count));
+        let values = serde_json::to_value(L::decode(&data).expect("whole data")).expect("every value has JSON");
+        for reading in &message.decoded.signals {
+            let signal = &content[reading.signal];
+            let json = member(&values, content, signal);
+            assert!(is_same(&reading.value, json), "{}: {json} is not {:?}", signal.name, reading.value);
+            self.values += 1;
+        }
+    }
+}
+
+impl LongVisitor for Examples {
+    fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str) {
+        let protocol = protocol(path);
+        let of_message = |example: &&LongExample| protocol[example.long].content.name == L::MESSAGE;
+        protocol.long_examples.iter().filter(of_message).for_each(|example| self.holds::<L>(&protocol, example));
+    }
+}
+
+#[test]
+fn what_documents_print_in_several_frames_means_the_same_to_both_engines() {
+    let mut examples = Examples { values: 0 };
+    visit_long(&mut examples);
+    assert!(examples.values > 70, "{} values", examples.values);
+}
+
+#[test]
+fn a_message_is_sent_in_the_frames_that_the_document_prints() {
+    let reply = LabelPart::READ.filter(Kind::Reply).expect("it is a reply");
+    let blank = reply.id(until_marker::Identifier::TO_HOST, 1).id(until_marker::Identifier::DEVICE, 1).frame(8);
+    let texts = ["BOARD=", "7"].map(|text| Text::new(text).expect("six letters"));
+    let text = Elements::from_slice(&texts).expect("two of 64");
+    let frames: Vec<_> = until_marker::Label { text }.frames(&blank).expect("it fits").collect();
+    assert_eq!(
+        frames.iter().map(Frame::to_string).collect::<Vec<_>>(),
+        ["059#0001424F4152443D", "051#0002370000000000"]
+    );
+    let mut assembler = Assembler::<until_marker::Label, 1>::new(100);
+    let ended: Vec<_> = frames.iter().flat_map(|frame| assembler.receive(frame, 0)).collect();
+    let [Outcome::Whole(whole)] = ended.as_slice() else { panic!("{ended:?}") };
+    assert_eq!((&*whole.values.text, whole.is_counted), (&texts[..], true));
+}
+
+#[test]
+fn each_model_numbers_the_parts_in_its_own_way() {
+    let serial = Text::new("AB123456").expect("eight letters");
+    let label = by_model::Label { serial, hours_h: 1000 };
+    let blank = Frame::new_raw(0x071, false, [0; 8], 4);
+    let frames = |model| label.frames_for(model, &blank).expect("it fits").map(|frame| frame.to_string());
+    let of_a = ["071#00414231", "071#01323334", "071#02353600", "071#030003E8"];
+    let of_b = ["071#01414231", "071#02323334", "071#03353600", "071#040003E8"];
+    assert_eq!(frames(Model::A).collect::<Vec<_>>(), of_a);
+    assert_eq!(frames(Model::B).collect::<Vec<_>>(), of_b);
+    assert!(label.frames(&blank).is_err() && label.parts().is_err(), "the first number is not known");
+}
