@@ -42,6 +42,7 @@ fn main() {
             list.visits.push_str(&visit(&module, &path));
             list.switched.push_str(&visit(&switched, &path));
             list.in_steps.push_str(&visit(&in_steps, &path));
+            list.long_messages(&switched, &path, &generate(&path, &every_option(scaled)).code);
         }
     }
     fs::write(out.join("protocols.rs"), list.finish()).expect("OUT_DIR can be written");
@@ -87,6 +88,7 @@ struct Protocols {
     switched: String,
     in_steps: String,
     signals: String,
+    long: String,
 }
 
 impl Protocols {
@@ -124,6 +126,14 @@ impl Protocols {
         self.signals.push_str("];\n}\n");
     }
 
+    /// Lists the long messages of a module.
+    fn long_messages(&mut self, module: &str, path: &Path, code: &str) {
+        let blocks = code.lines().filter_map(|line| line.strip_prefix("impl LongLayout for "));
+        for name in blocks.filter_map(|rest| rest.strip_suffix(" {")) {
+            let _ = writeln!(self.long, "    visitor.visit::<{module}::{name}>(\"{}\");", path.display());
+        }
+    }
+
     fn finish(self) -> String {
         format!(
             "{}\n{}\n/// Shows every protocol to a visitor, with the path of its spec.\n\
@@ -131,8 +141,10 @@ impl Protocols {
              \n/// Shows every protocol that has the optional traits to a visitor, with the path of its spec.\n\
              pub fn visit_switched(visitor: &mut impl SwitchedVisitor) {{\n{}}}\n\
              \n/// Shows every protocol in whole steps to a visitor, with the path of its spec.\n\
-             pub fn visit_in_steps(visitor: &mut impl Visitor) {{\n{}}}\n",
-            self.modules, self.signals, self.visits, self.switched, self.in_steps
+             pub fn visit_in_steps(visitor: &mut impl Visitor) {{\n{}}}\n\
+             \n/// Shows every message that is longer than a frame to a visitor, with the path of its spec.\n\
+             pub fn visit_long(visitor: &mut impl LongVisitor) {{\n{}}}\n",
+            self.modules, self.signals, self.visits, self.switched, self.in_steps, self.long
         )
     }
 }

@@ -9,4 +9,4 @@ pub use dbc::{Dbc, Dropped, dbc};
 pub use lua::wireshark;
 pub use options::{Options, Scaled, Switch};
 pub(crate) use rust::{camel_case, member};
-pub use rust::{is_word_of_rust, manual, rust, tokens};
+pub use rust::{is_word_of_rust, manual, module, rust, tokens};

@@ -91,6 +91,11 @@ impl AddressType {
         }
     }
 
+    /// Tests whether such an address is sent unless the caller says otherwise, as that of a controller.
+    pub(crate) const fn is_sent(&self) -> bool {
+        self.default.is_some()
+    }
+
     /// Tests whether this is the same kind of address.
     pub(crate) fn is(&self, other: &Self) -> bool {
         ptr::eq(self, other) || self == other
@@ -139,7 +144,12 @@ impl Address {
         Self { excluded, ..self }
     }
 
-    fn number(&self, id: u32) -> i32 {
+    /// Returns the kind of address.
+    pub(crate) const fn kind(&self) -> &'static AddressType {
+        self.kind
+    }
+
+    pub(crate) fn number(&self, id: u32) -> i32 {
         self.kind.number(self.bits.of(id))
     }
 
@@ -275,6 +285,11 @@ impl Addressing {
     /// Returns the number of a kind of address, if the mode shows one.
     pub(crate) fn number(&self, kind: &AddressType, id: u32) -> Option<i32> {
         self.pattern.addresses.iter().find(|address| address.kind.is(kind)).map(|address| address.number(id))
+    }
+
+    /// Returns where the identifier has addresses.
+    pub(crate) const fn addresses(&self) -> &'static [Address] {
+        self.pattern.addresses
     }
 
     /// Returns the mode.

@@ -334,6 +334,6 @@ fn bit(position: usize) -> u64 {
 
 /// Returns the milliseconds since a time, or `None` if it lies ahead. Times wrap, so half of them
 /// count as ahead.
-fn elapsed(since: u32, now: u32) -> Option<u32> {
+pub(crate) fn elapsed(since: u32, now: u32) -> Option<u32> {
     u32::try_from(now.wrapping_sub(since) as i32).ok()
 }

@@ -60,6 +60,29 @@ pub enum Error {
         /// Name of the signal.
         signal: &'static str,
     },
+    /// An array of a long message has too few elements or too many, or not as many as the others
+    /// that vary with it.
+    Elements {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the array.
+        signal: &'static str,
+        /// The number of its elements.
+        count: usize,
+        /// The least number of elements.
+        minimum: usize,
+        /// The greatest number of elements.
+        maximum: usize,
+    },
+    /// The buffer has too few bytes for a long message.
+    Room {
+        /// Name of the message.
+        message: &'static str,
+        /// The number of data bytes.
+        length: usize,
+        /// The number of bytes in the buffer.
+        room: usize,
+    },
     /// The device model does not have the message.
     Model {
         /// Name of the message.
@@ -119,6 +142,15 @@ impl fmt::Display for Error {
             Self::Meaning { message, signal } => write!(formatter, "`{signal}` of `{message}` has no such value"),
             Self::Missing { message, signal } => {
                 write!(formatter, "`{signal}` of `{message}` is left out, but what stands behind it is not")
+            }
+            Self::Elements { message, signal, count, minimum, maximum } => {
+                write!(
+                    formatter,
+                    "`{signal}` of `{message}` has {count} elements, but its limits are {minimum} and {maximum}"
+                )
+            }
+            Self::Room { message, length, room } => {
+                write!(formatter, "`{message}` has {length} data bytes, and the buffer has room for {room}")
             }
             Self::Model { message } => write!(formatter, "the device model has no `{message}`"),
             Self::Mode { message, access, mode: Some(mode) } => {

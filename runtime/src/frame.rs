@@ -146,8 +146,14 @@ pub fn raw_id(id: Id) -> (u32, bool) {
 
 /// Copies a classic data frame.
 pub fn classic(frame: &impl embedded_can::Frame) -> Option<Frame> {
+    Some(Frame { data: padded(frame.data()), ..without_data(frame)? })
+}
+
+/// Copies a classic data frame with zeros for its data.
+pub fn without_data(frame: &impl embedded_can::Frame) -> Option<Frame> {
     let (id, extended) = raw_id(frame.id());
-    Frame::copied(id, extended, None, frame)
+    let length = u8::try_from(frame.data().len()).ok().filter(|length| *length <= 8 && frame.is_data_frame())?;
+    Some(Frame { id, extended, length, data: [0; 8] })
 }
 
 /// Returns the first eight of `bytes`, filled up with zeros.

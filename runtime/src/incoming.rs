@@ -2,7 +2,7 @@
 
 use crate::address::Rank;
 use crate::protocol::{Direction, direction, own_id};
-use crate::{Bits, Exchange, Frame, IdentifierFields, Kind, Layout, Place, Problem, Protocol, Received};
+use crate::{Bits, Data, Exchange, Frame, IdentifierFields, Kind, Layout, Place, Problem, Protocol, Received};
 
 /// A frame of a protocol while it is recognised, and the number of the device model that it should be of.
 ///
@@ -115,32 +115,36 @@ impl Incoming {
     /// Always.
     #[inline(always)]
     pub fn unknown<P: Protocol>(&self) -> Result<Received<P>, Problem> {
-        unknown(self.frame)
+        let data = if P::DATA_SELECTORS { self.frame.bytes() } else { Data::default() };
+        Err(unrecognised::<P>(self.frame.raw_id(), self.frame.byte_count(), data))
     }
-}
-
-/// The same as [`Incoming::unknown`]. It takes the frame by value, or there would have to be a copy in memory.
-#[cold]
-#[inline(never)]
-fn unknown<P: Protocol>(frame: Frame) -> Result<Received<P>, Problem> {
-    Err(problem::<P>(Some(frame)))
 }
 
 /// Says why a frame is not recognised, by the same tests.
 #[cold]
 pub fn problem<P: Protocol>(classic: Option<Frame>) -> Problem {
-    let Some(frame) = classic else { return Problem::Frame };
-    let Some(id) = own_id::<P>(&frame) else { return Problem::Identifier };
+    match classic.map(|frame| (own_id::<P>(&frame), frame)) {
+        None => Problem::Frame,
+        Some((None, _)) => Problem::Identifier,
+        Some((Some(id), frame)) => unrecognised::<P>(id, frame.byte_count(), frame.bytes()),
+    }
+}
+
+/// Says why a data frame is not recognised whose identifier has the right width.
+///
+/// It takes the parts of the frame, or there would have to be a frame in memory.
+#[cold]
+#[inline(never)]
+fn unrecognised<P: Protocol>(id: u32, length: u8, data: Data) -> Problem {
     if P::Identifier::is_foreign(id) {
         return Problem::Foreign;
     }
-    let incoming = Incoming::new(frame, None);
+    let incoming = Incoming::new(Frame::new_raw(id, P::FRAME.is_extended(), data, length), None);
     let lengths = match direction::<P>(id) {
         None => return Problem::Identifier,
         Some(Direction::Module) => P::request_lengths(&incoming),
         Some(Direction::Controller) => P::reply_lengths(&incoming),
         Some(Direction::Either) => P::either_lengths(&incoming),
     };
-    let is_right = lengths.iter().any(|length| usize::from(*length) == frame.length());
-    if lengths.is_empty() || is_right { Problem::UnknownMessage } else { Problem::Length }
+    if lengths.is_empty() || lengths.contains(&length) { Problem::UnknownMessage } else { Problem::Length }
 }

@@ -32,6 +32,7 @@ mod filter;
 mod frame;
 mod incoming;
 mod layout;
+mod long;
 mod number;
 mod packed;
 mod payload;
@@ -52,6 +53,7 @@ mod status;
 #[cfg(test)]
 mod tests;
 mod text;
+pub mod tp;
 #[cfg(feature = "arbitrary")]
 pub mod with_arbitrary;
 #[cfg(feature = "defmt")]
@@ -69,6 +71,7 @@ pub use error::Error;
 pub use filter::{Filter, Selector};
 pub use frame::Frame;
 pub use layout::Layout;
+pub use long::{Elements, LongLayout, LongSignal, parts};
 pub use number::Number;
 pub use packed::PackedText;
 pub use payload::Payload;

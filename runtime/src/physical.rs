@@ -68,12 +68,22 @@ impl<R: Raw + 'static> Physical<R> for R {
 ///
 /// Each calculates only in its own precision.
 pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
-    /// Returns the physical value of `raw`.
-    fn scaled(raw: i64, scale: Scale) -> Self;
+    /// Returns the physical value of `raw`. A constant scale folds.
+    fn decoded(raw: i64, scale: Scale) -> Self;
+
+    /// Returns the physical value of `raw`, as [`decoded`](Self::decoded) does. Small programs have the code once.
+    #[inline]
+    #[must_use]
+    fn scaled(raw: i64, scale: Scale) -> Self {
+        Self::decoded(raw, scale)
+    }
 
     /// Returns the raw value nearest to this physical value, with ties away from zero. It is `None`
     /// if 64 bits cannot hold it.
     fn raw(self, scale: Scale) -> Option<i64>;
+
+    /// Tests whether a raw value has exactly this physical value.
+    fn is_step(self, scale: Scale) -> bool;
 
     /// Returns the value of this type nearest to a number.
     fn nearest(number: Number) -> Self;
@@ -97,14 +107,23 @@ impl Sealed for f32 {}
 impl Sealed for f64 {}
 
 impl Scaled for f64 {
-    #[inline]
-    fn scaled(raw: i64, scale: Scale) -> Self {
+    #[inline(always)]
+    fn decoded(raw: i64, scale: Scale) -> Self {
         scale.physical(raw)
     }
 
     #[inline]
     fn raw(self, scale: Scale) -> Option<i64> {
         scale.raw(self)
+    }
+
+    #[inline(always)]
+    #[expect(clippy::float_cmp, reason = "a step is met exactly")]
+    fn is_step(self, scale: Scale) -> bool {
+        match scale.raw(self) {
+            Some(raw) => scale.physical(raw) == self,
+            None => false,
+        }
     }
 
     #[inline]
@@ -129,14 +148,23 @@ impl Scaled for f64 {
 }
 
 impl Scaled for f32 {
-    #[inline]
-    fn scaled(raw: i64, scale: Scale) -> Self {
+    #[inline(always)]
+    fn decoded(raw: i64, scale: Scale) -> Self {
         scale.physical_f32(raw)
     }
 
     #[inline]
     fn raw(self, scale: Scale) -> Option<i64> {
         scale.raw_f32(self)
+    }
+
+    #[inline(always)]
+    #[expect(clippy::float_cmp, reason = "a step is met exactly")]
+    fn is_step(self, scale: Scale) -> bool {
+        match scale.raw_f32(self) {
+            Some(raw) => scale.physical_f32(raw) == self,
+            None => false,
+        }
     }
 
     #[inline]

@@ -193,6 +193,12 @@ impl Place {
         self.bits.width
     }
 
+    /// Returns the bits, sign-extended if they are `signed`. All types of signals share the code.
+    #[inline(never)]
+    pub(crate) const fn any_bits(self, data: Data, signed: bool) -> u64 {
+        if signed { self.get_signed(&data) as u64 } else { self.get(&data) }
+    }
+
     /// Returns the largest number that fits.
     #[inline(always)]
     pub const fn max(self) -> u64 {

@@ -12,6 +12,8 @@ pub use crate::address::{Address, Pattern, Who};
 pub use crate::filter::IdFilter;
 pub use crate::incoming::Incoming;
 pub use crate::layout::{Decode, Encode, Signals, Task};
+pub use crate::long::LongPayload;
+pub use crate::long::parts::Said;
 pub use crate::packed::{Piece, left_aligned, right_aligned};
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
@@ -23,8 +25,8 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, Continuation, Decode, Encode, IdFilter, Incoming, Legend, Pattern, Piece, Task, Who, Word,
-        left_aligned, right_aligned,
+        Address, Continuation, Decode, Encode, IdFilter, Incoming, Legend, LongPayload, Pattern, Piece, Said, Task,
+        Who, Word, left_aligned, right_aligned,
     };
     pub use crate::{Destination, Protocol};
 }

@@ -1,7 +1,8 @@
 //! Items that users of a generated module need to name. Every such module re-exports them.
 
 pub use crate::{
-    AddressType, AnySignal, Bcd, Bits, Bytes, Data, Entry, Error, Exchange, Failure, Filter, Frame, FrameSet,
-    IdentifierFields, Kind, Layout, Meaning, Mode, Number, PackedText, Payload, Place, Problem, Reading, Replies,
-    Route, Selector, Severity, Signal, StatusBit, Text, assembler, embedded_can,
+    AddressType, AnySignal, Bcd, Bits, Bytes, Data, Elements, Entry, Error, Exchange, Failure, Filter, Frame, FrameSet,
+    IdentifierFields, Kind, Layout, LongLayout, LongSignal, Meaning, Mode, Number, PackedText, Payload, Place, Problem,
+    Reading, Replies, Route, Selector, Severity, Signal, StatusBit, Text, assembler, embedded_can, parts,
+    parts::Parted,
 };

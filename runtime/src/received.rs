@@ -2,7 +2,7 @@
 
 use core::mem::discriminant;
 
-use crate::frame::classic;
+use crate::frame::{classic, without_data};
 use crate::incoming::{Incoming, problem};
 use crate::layout::Signals;
 use crate::protocol::{Direction, direction, own_id};
@@ -18,11 +18,9 @@ pub struct Received<P: Protocol> {
     content: P,
     exchange: &'static Exchange,
     frame: Frame,
-    /// The identifier to encode.
-    id: u32,
     model: Option<u8>,
     kind: Kind,
-    /// Whether the content belongs to another message than the frame.
+    /// Whether the content or the identifier is another than that of the received frame.
     is_other: bool,
 }
 
@@ -69,7 +67,7 @@ impl<P: Protocol> Received<P> {
 
     #[inline(always)]
     pub(crate) fn new(content: P, exchange: &'static Exchange, kind: Kind, frame: Frame, model: Option<u8>) -> Self {
-        Self { content, exchange, frame, id: frame.raw_id(), model, kind, is_other: false }
+        Self { content, exchange, frame, model, kind, is_other: false }
     }
 
     /// Returns what a request asks for.
@@ -101,13 +99,14 @@ impl<P: Protocol> Received<P> {
     /// Returns the identifier.
     #[inline]
     pub fn identifier(&self) -> P::Identifier {
-        P::Identifier::FROM_RAW(self.id)
+        P::Identifier::FROM_RAW(self.frame.raw_id())
     }
 
     /// Returns the same message under another identifier. [`encode`](Self::encode) makes its frame.
     #[must_use]
     pub fn with_identifier(self, identifier: P::Identifier) -> Self {
-        Self { id: P::Identifier::TO_RAW(identifier), ..self }
+        let frame = self.frame.with_id(P::Identifier::TO_RAW(identifier).into());
+        Self { is_other: self.is_other || frame != self.frame, frame, ..self }
     }
 
     /// Returns other values under the same identifier. [`encode`](Self::encode) makes their frame.
@@ -117,7 +116,7 @@ impl<P: Protocol> Received<P> {
         Self { content, is_other, ..self }
     }
 
-    /// Returns the frame as it was received.
+    /// Returns the frame as it was received, or under the identifier that it was given since.
     pub const fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -140,7 +139,7 @@ impl<P: Protocol> Received<P> {
 
     /// Returns the addressing mode that the identifier shows.
     pub fn addressing(&self) -> Option<Addressing> {
-        self.exchange.addressing::<P>(self.kind, self.id)
+        self.exchange.addressing::<P>(self.kind, self.frame.raw_id())
     }
 
     /// Tests whether the frame goes to the controller and shows an error code.
@@ -193,8 +192,8 @@ impl<P: Protocol> Received<P> {
     pub fn encode(&self) -> Result<Frame, Error> {
         let payload = self.payload()?;
         let length = P::LENGTH.or(payload.length()).unwrap_or(self.exchange.data_length());
-        let frame = Frame::new_raw(self.id, P::FRAME.is_extended(), *payload.data(), length);
-        if self.is_other || self.id != self.frame.raw_id() {
+        let frame = Frame::new_raw(self.frame.raw_id(), P::FRAME.is_extended(), *payload.data(), length);
+        if self.is_other {
             self.check_recognised(&frame)?;
         }
         self.check_request().map(|()| frame)
@@ -208,7 +207,7 @@ impl<P: Protocol> Received<P> {
     fn check_recognised(&self, frame: &Frame) -> Result<(), Error> {
         match Self::decode_by(self.model, frame) {
             Ok(again) if again.is_like(self) => Ok(()),
-            _ => Err(Error::Identifier { message: self.exchange.message(), id: self.id }),
+            _ => Err(Error::Identifier { message: self.exchange.message(), id: self.frame.raw_id() }),
         }
     }
 
@@ -234,7 +233,7 @@ impl<P: Protocol> Received<P> {
         if !self.is_to_module() {
             return Ok(());
         }
-        if !self.exchange.is_offered(P::Identifier::documented_modes(self.id)) {
+        if !self.exchange.is_offered(P::Identifier::documented_modes(self.frame.raw_id())) {
             self.check_addressing()?;
         }
         let is_of_model = self.exchange.is_of(self.model);
@@ -244,7 +243,7 @@ impl<P: Protocol> Received<P> {
     #[cold]
     fn check_addressing(&self) -> Result<(), Error> {
         match self.addressing() {
-            Some(addressing) if addressing.is_offered() => addressing.documented(self.id),
+            Some(addressing) if addressing.is_offered() => addressing.documented(self.frame.raw_id()),
             other => Err(self.exchange.no_mode(other.map(|addressing| addressing.mode()))),
         }
     }
@@ -253,7 +252,7 @@ impl<P: Protocol> Received<P> {
 /// Says why a frame is none of the protocol.
 #[cold]
 fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Result<Received<P>, Problem> {
-    Err(problem::<P>(classic(frame)))
+    Err(problem::<P>(if P::DATA_SELECTORS { classic(frame) } else { without_data(frame) }))
 }
 
 fn cleared(mut data: Data, place: Place) -> Data {

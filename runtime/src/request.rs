@@ -218,6 +218,7 @@ impl Exchange {
     }
 
     /// Tests whether a device model has the message. An unknown model has every message.
+    #[inline]
     pub(crate) fn is_of(&self, model: Option<u8>) -> bool {
         self.models.is_empty() || model.is_none_or(|model| self.models.contains(&model))
     }

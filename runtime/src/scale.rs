@@ -99,12 +99,12 @@ impl Scale {
     /// Returns the physical value of `raw` as numerator over the common denominator.
     #[inline(always)]
     const fn sum(self, raw: i64) -> i64 {
-        raw.saturating_mul(self.numerator).saturating_mul(self.factor).saturating_add(self.offset)
+        raw.wrapping_mul(self.numerator.wrapping_mul(self.factor)).wrapping_add(self.offset)
     }
 
     #[inline(always)]
     const fn common_denominator(self) -> i64 {
-        self.denominator.saturating_mul(self.factor)
+        self.denominator.wrapping_mul(self.factor)
     }
 }
 

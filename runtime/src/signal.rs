@@ -156,6 +156,11 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         Signal { specials, has_absent, ..Signal::new(name, place) }
     }
 
+    /// Returns the name.
+    pub(crate) const fn own_name(&self) -> &'static str {
+        self.name
+    }
+
     /// Returns the place in the data.
     pub const fn place(&self) -> Place {
         self.place
@@ -227,6 +232,9 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns the bits that the device model does not have, if there are any.
     #[inline(always)]
     fn lacking_on(&self, payload: &Payload) -> Option<&(u8, u64, u64)> {
+        if self.lacking.is_empty() {
+            return None;
+        }
         self.lacking.iter().find(|(model, ..)| Some(*model) == payload.model())
     }
 
@@ -236,9 +244,21 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         F::of(raw, self.scale)
     }
 
-    /// Tests a physical value against the limits.
+    /// Tests the value that limits apply to.
     #[inline(always)]
     fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
+        if F::IS_RAW { self.check_limits(value, payload) } else { self.check_physical(value, payload) }
+    }
+
+    /// Tests a physical value against the limits. Small programs have the code once for all signals of a type, because
+    /// comparing doubles is large where the processor does not do it.
+    #[inline]
+    fn check_physical(&self, value: F, payload: &Payload) -> Result<(), Error> {
+        self.check_limits(value, payload)
+    }
+
+    #[inline(always)]
+    fn check_limits(&self, value: F, payload: &Payload) -> Result<(), Error> {
         match self.limits_in(payload) {
             _ if !value.is_finite() => Err(self.not_finite(payload)),
             Some((minimum, maximum)) if !value.is_within(minimum, maximum) => {
@@ -250,7 +270,10 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     #[inline(always)]
     fn limits_in(&self, payload: &Payload) -> Option<(F, F)> {
-        payload.model().map_or(self.limits, |model| self.limits_for(model))
+        match payload.model() {
+            Some(model) if !self.model_limits.is_empty() => self.limits_for(model),
+            _ => self.limits,
+        }
     }
 
     #[cold]
@@ -317,7 +340,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns the name of a special raw value.
     #[inline(always)]
     fn special(&self, bits: u64) -> Option<&'static str> {
-        self.specials.iter().find(|(raw, _)| *raw as u64 == bits).map(|(_, name)| *name)
+        if self.specials.is_empty() { None } else { named(self.specials, bits) }
     }
 
     #[inline(always)]
@@ -327,6 +350,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             None => Scale::ONE,
         }
     }
+}
+
+/// Returns the name of a raw value. All types of signals share the code.
+#[inline]
+fn named(specials: &[(i64, &'static str)], bits: u64) -> Option<&'static str> {
+    specials.iter().find(|(raw, _)| *raw as u64 == bits).map(|(_, name)| *name)
 }
 
 impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
@@ -363,7 +392,7 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// Returns the physical value: the number of type `F` nearest to the exact one.
     #[inline(always)]
     pub fn decode(&self, data: &Data) -> F {
-        F::scaled(self.bits(*data) as i64, self.exact_scale())
+        F::decoded(self.bits(*data) as i64, self.exact_scale())
     }
 
     /// Writes the raw value nearest to a physical value, with ties away from zero.
@@ -415,10 +444,11 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// compiler answers.
     #[inline(always)]
     fn has_limits_on_steps(&self, payload: &Payload) -> bool {
-        let is_step = |limit: F| {
-            let raw = limit.raw(self.exact_scale());
-            raw.is_some_and(|raw| F::scaled(raw, self.exact_scale()) == limit)
-        };
-        payload.model().is_none() && self.limits.is_none_or(|(minimum, maximum)| is_step(minimum) && is_step(maximum))
+        let is_general = self.model_limits.is_empty() || payload.model().is_none();
+        is_general
+            && match self.limits {
+                Some((minimum, maximum)) => minimum.is_step(self.exact_scale()) && maximum.is_step(self.exact_scale()),
+                None => true,
+            }
     }
 }

@@ -312,6 +312,15 @@ fn a_message_is_not_built_under_the_identifier_of_another() {
 }
 
 #[test]
+fn another_identifier_is_that_of_the_frame_too() {
+    let received = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
+    let failed = received.with_identifier(Identifier(0x1107_F004));
+    assert_eq!((failed.identifier(), failed.frame().raw_id()), (Identifier(0x1107_F004), 0x1107_F004));
+    assert_eq!((received.is_error_reply(), failed.is_error_reply()), (false, true));
+    assert_eq!(failed.frame().bytes(), received.frame().bytes());
+}
+
+#[test]
 fn a_frame_takes_other_values_but_not_another_message() {
     let received = decode(&frame(0x0107_F003, [2, 0xF0, 0x00, 0x96])).expect("a known frame");
     let other = received.with_content(Message::Heat(Heat { power_w: 1000.0 })).encode().expect("a legal reply");

@@ -1,9 +1,9 @@
-//! `defmt` for words, texts and frames, behind the feature `defmt`. Generated code calls it.
+//! `defmt` for words, texts, elements and frames, behind the feature `defmt`. Generated code calls it.
 
 use defmt::{Display2Format, Format, Formatter, write};
 
 use crate::plumbing::{Integer, Raw, Word};
-use crate::{Bcd, Bytes, Frame, Meaning, StatusBit, Text, status};
+use crate::{Bcd, Bytes, Elements, Frame, Meaning, StatusBit, Text, status};
 
 /// Writes a named value by its name, a status word by the names of its set bits, and a packed value
 /// by its text.
@@ -59,6 +59,12 @@ impl<R: Integer> Format for Bcd<R> {
         } else {
             write!(formatter, "{=u64:#X}", self.to_bits());
         }
+    }
+}
+
+impl<T: Format, const N: usize> Format for Elements<T, N> {
+    fn format(&self, formatter: Formatter<'_>) {
+        (**self).format(formatter);
     }
 }
 

@@ -15,13 +15,11 @@
 //!
 //! A format for people must be self-describing, as JSON is.
 
+pub mod array;
 mod bcd;
 mod bytes;
 pub mod float;
-pub mod floats;
 mod frame;
-pub mod optional_float;
-pub mod optional_floats;
 mod text;
 
 use core::fmt;

@@ -191,14 +191,18 @@ fn the_example_of_a_module_has_printed_frames_and_their_values() {
         let protocol = protocol(path);
         let manual = emit::manual(&protocol, &Options::default());
         let all = || protocol.messages.ids();
-        let request = all().flat_map(|id| printed(&protocol, id, Kind::Request));
+        // What the controller sends is a request, or a report.
+        let request = all().flat_map(|id| [Kind::Request, Kind::Report].map(|kind| printed(&protocol, id, kind)));
+        let request = request.flatten();
         let built = |example: &&Example| {
             manual.contains(&format!("assert_eq!(request.frame().to_string(), \"{}\");", frame(example)))
         };
         assert!(request.filter(built).count() > 0, "{manual}");
         let others = all().flat_map(|id| [Kind::Reply, Kind::Report].map(|kind| printed(&protocol, id, kind)));
-        let data =
-            |example: &Example| example.data.iter().flatten().map(|byte| format!("0x{byte:02X}")).collect::<Vec<_>>();
+        let data = |example: &Example| {
+            let bytes = example.data.iter().flatten().chain(&[0; 8]).take(8);
+            bytes.map(|byte| format!("0x{byte:02X}")).collect::<Vec<_>>()
+        };
         let decoded = |example: &&Example| manual.contains(&format!(", [{}], ", data(example).join(", ")));
         assert!(others.flatten().any(|example| decoded(&example)), "{manual}");
     }

@@ -7,8 +7,8 @@ use canspec_codegen::interpret;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
 use canspec_runtime::plumbing::Raw;
-use canspec_runtime::with_serde::{floats, optional_floats};
-use canspec_runtime::{Bcd, Bytes, Frame, Layout, Payload, Protocol, Text};
+use canspec_runtime::with_serde::{array, float};
+use canspec_runtime::{Bcd, Bytes, Elements, Frame, Layout, Payload, Protocol, Text};
 use canspec_tests::features_status_word_switched::State;
 use canspec_tests::{Frames, Optional, SwitchedVisitor, models, protocol, received, visit_switched};
 use serde::de::DeserializeOwned;
@@ -144,15 +144,37 @@ fn a_float_that_is_no_number_is_the_text_of_its_bits() {
 #[test]
 fn an_array_of_floats_has_an_item_for_each() {
     let values = [f32::from_bits(0x7FC0_1234), 2.5];
-    let written = floats::serialize(&values, Serializer).expect("every float has JSON");
+    let written = float::serialize(&values, Serializer).expect("every float has JSON");
     assert_eq!(written, json!(["0x7FC01234", 2.5]));
-    let back = floats::deserialize(written).expect("what was written");
+    let back: [f32; 2] = float::deserialize(written).expect("what was written");
     assert_eq!(back.map(f32::to_bits), values.map(f32::to_bits));
-    let written = optional_floats::serialize(&[None, Some(values[0])], Serializer).expect("every float has JSON");
+    let written = float::serialize(&[None, Some(values[0])], Serializer).expect("every float has JSON");
     assert_eq!(written, json!([null, "0x7FC01234"]));
-    let back = optional_floats::deserialize(written).expect("what was written");
+    let back: [Option<f32>; 2] = float::deserialize(written).expect("what was written");
     assert_eq!(back.map(|value| value.map(f32::to_bits)), [None, Some(0x7FC0_1234)]);
-    assert!(floats::deserialize(json!([1.0])).is_err());
+    assert!(float::deserialize::<[f32; 2], _>(json!([1.0])).is_err());
+}
+
+#[test]
+fn elements_are_a_list_of_any_length_that_there_is_room_for() {
+    let some = Elements::<u8, 40>::from_slice(&[3, 4]).expect("two of forty");
+    assert_eq!(shown(some), json!([3, 4]));
+    assert_eq!(both_ways(&some), [some; 2]);
+    let floats = Elements::<f32, 40>::from_slice(&[f32::INFINITY, 0.5]).expect("two of forty");
+    let written = float::serialize(&floats, Serializer).expect("every float has JSON");
+    assert_eq!(written, json!(["0x7F800000", 0.5]));
+    assert_eq!(float::deserialize::<Elements<f32, 40>, _>(written).expect("what was written"), floats);
+    refused::<Elements<u8, 2>>(json!([]));
+    assert!(serde_json::from_str::<Elements<u8, 2>>("[1, 2, 3]").is_err());
+}
+
+#[test]
+fn a_long_array_has_all_its_elements() {
+    let values: [u8; 40] = std::array::from_fn(|index| index.try_into().expect("forty numbers"));
+    let written = array::serialize(&values, Serializer).expect("every number has JSON");
+    assert_eq!(written.as_array().map(Vec::len), Some(40));
+    assert_eq!(array::deserialize::<u8, _, 40>(written).expect("what was written"), values);
+    assert!(array::deserialize::<u8, _, 40>(json!([1, 2])).is_err());
 }
 
 #[test]

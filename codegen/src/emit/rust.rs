@@ -1,6 +1,7 @@
 //! Emits Rust: a `no_std` codec on the runtime.
 
 mod address;
+mod carrier;
 mod choice;
 mod derives;
 mod dispatch;
@@ -9,6 +10,7 @@ mod exchange;
 mod filter;
 mod identifier;
 mod layout;
+mod long;
 mod manual;
 mod message;
 mod model;
@@ -36,13 +38,27 @@ pub(crate) use plan::naming::{camel_case, member};
 
 /// Returns the content of a module that encodes and decodes the protocol, as text to include.
 pub fn rust(protocol: &Protocol, options: &Options) -> String {
-    let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file.for_people());
-    header + &formatted(items(&Plan::new(protocol, options), Derives::new(options)))
+    content(protocol, options, &Plan::new(protocol, options))
 }
 
 /// Returns the documentation of that module, as inner doc comments to stand before its content.
 pub fn manual(protocol: &Protocol, options: &Options) -> String {
-    manual::Manual { protocol, plan: &Plan::new(protocol, options), scaled: options.scaled }.text()
+    documentation(protocol, options, &Plan::new(protocol, options))
+}
+
+/// Returns both, the documentation first. They share a plan, which takes long to make for many messages.
+pub fn module(protocol: &Protocol, options: &Options) -> (String, String) {
+    let plan = Plan::new(protocol, options);
+    (documentation(protocol, options, &plan), content(protocol, options, &plan))
+}
+
+fn content(protocol: &Protocol, options: &Options, plan: &Plan) -> String {
+    let header = format!("{MARK} from {}; do not edit.\n\n", protocol.file.for_people());
+    header + &formatted(items(plan, Derives::new(options)))
+}
+
+fn documentation(protocol: &Protocol, options: &Options, plan: &Plan) -> String {
+    manual::Manual { protocol, plan, scaled: options.scaled }.text()
 }
 
 /// Returns the same content as tokens, for macros and for build scripts that go on with it.
@@ -56,7 +72,11 @@ fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
     let status_words = plan.status_words.iter().map(move |known| word::status_word(known, derives));
     let packed = plan.packed.iter().map(move |known| word::packed(known, derives));
     let messages = plan.messages.iter().zip(&plan.sets).map(move |(message, set)| match set {
-        None => message::message(message, derives),
+        None => {
+            let carrier = message.long.as_ref().and_then(|long| plan.carriers[long.id].as_ref()).map(carrier::carrier);
+            let message = message::message(message, derives);
+            quote!(#message #carrier)
+        }
         Some(set) => set::set(message, set, derives),
     });
     let types = enumerations.chain(status_words).chain(packed);

@@ -5,6 +5,7 @@ use core::fmt;
 
 use crate::physical::Physical;
 use crate::raw::Raw;
+use crate::signal::named;
 use crate::{Data, Error, Meaning, Number, Payload, Place, Signal};
 
 /// What a signal says in one frame, for code that does not know the message.
@@ -75,9 +76,9 @@ impl<R: Raw, F: Physical<R>> AnySignal for Signal<R, F> {
     }
 
     fn read(&self, data: &Data, visitor: &mut dyn FnMut(Reading<'_>)) {
-        let value = self.get(data);
-        let bits = self.bits(*data);
-        let meaning = match (self.special(bits), self.scale) {
+        let bits = self.place.any_bits(*data, R::SIGNED);
+        let value = R::from_bits(bits);
+        let meaning = match (named(self.specials, bits), self.scale) {
             (Some(name), _) => Meaning::Name(name),
             (None, _) if self.is_by_model => Meaning::None,
             (None, Some(_)) if R::IS_NUMBER => Meaning::Number(self.physical(value).number(self.scale)),

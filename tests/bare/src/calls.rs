@@ -4,10 +4,11 @@ use core::fmt::{self, Display, Write};
 use core::hint::black_box;
 
 use canspec_runtime::assembler::{Assembler, Partial};
+use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::{
-    AnySignal, Destination, Error, FrameSet, Layout, Meaning, Problem, Protocol, Reading, Received, Request, Route,
-    Signal, WriteSignal,
+    AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading, Received,
+    Request, Route, Signal, WriteSignal, tp,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -96,6 +97,82 @@ pub fn questions<T: Destination + Unknown>() {
 /// Decodes and encodes what a message carries.
 pub fn layout<T: Layout + Unknown>() {
     sink((T::decode(&unknown()), unknown::<T>().encode(&mut unknown()), T::SIGNALS));
+}
+
+/// Decodes and encodes what several frames carry together.
+pub fn long_layout<L: LongLayout + Unknown>() {
+    let mut data: [u8; 64] = unknown();
+    sink(L::decode(&data));
+    match unknown::<L>().encode(&mut data) {
+        Ok(bytes) => sink(bytes),
+        Err(error) => sink(error),
+    }
+}
+
+/// Puts parts together, takes a message apart, and asks for all that is known of it.
+pub fn parted<L: Parted<Protocol: Protocol<Identifier: Unknown> + Unknown> + Unknown>() {
+    let mut assembler = parts::Assembler::<L, 3>::new(unknown());
+    if unknown() {
+        assembler = assembler.for_model(unknown::<u8>());
+    }
+    for _ in 0..unknown::<u8>() {
+        assembler.receive(&unknown_frame(), unknown()).for_each(outcome);
+    }
+    assembler.timed_out(unknown()).into_iter().for_each(outcome);
+    assembler.finish().into_iter().for_each(outcome);
+    sink(assembler);
+    match unknown::<L>().frames(&unknown_frame()) {
+        Ok(frames) => frames.for_each(sink),
+        Err(error) => sink(error),
+    }
+    if let Ok(frames) = unknown::<L>().frames_for(unknown::<u8>(), &unknown_frame()) {
+        frames.for_each(sink);
+    }
+    if let Ok(parts) = unknown::<L>().parts() {
+        parts.for_each(sink);
+    }
+}
+
+fn outcome<L: Parted>(outcome: Outcome<L>) {
+    match outcome {
+        Outcome::Whole(whole) => sink((whole.values, whole.is_counted, whole.identifier(), whole.frame())),
+        Outcome::Incomplete(partial) => {
+            partial.missing().for_each(sink);
+            sink((partial.part(unknown()), partial.data(), partial.identifier(), partial.frame()));
+        }
+        Outcome::Full(frame) => sink(frame),
+    }
+}
+
+/// Puts packets of J1939 together, and takes a message apart.
+pub fn transport() {
+    let mut assembler = tp::Assembler::<[u8; tp::memory(40)], 3>::new();
+    for _ in 0..unknown::<u8>() {
+        let link = tp::Link { source: unknown(), target: unknown() };
+        packets(&assembler.control(link, &unknown(), unknown()));
+        packets(&assembler.packet(link, &unknown(), unknown()));
+        assembler.timed_out(unknown()).iter().for_each(packets);
+    }
+    let data: [u8; 40] = unknown();
+    let Some(mut sender) = data.get(..unknown()).and_then(|data| tp::Sender::new(unknown(), data, unknown())) else {
+        return;
+    };
+    sink((sender.rts(), sender.abort(tp::Reason::OTHER)));
+    for _ in 0..unknown::<u8>() {
+        sink(sender.control(&unknown()));
+        (&mut sender).for_each(sink);
+    }
+    sink(sender.bam());
+    sender.for_each(sink);
+}
+
+fn packets<M: tp::Memory>(event: &tp::Event<M>) {
+    let broken = event.broken.iter().chain(&event.refused).map(|broken| &broken.transfer);
+    for transfer in broken.chain(&event.whole) {
+        sink((transfer.data(), transfer.link, transfer.group));
+        transfer.missing().for_each(sink);
+    }
+    sink(event.answer);
 }
 
 fn unknown_frame() -> canspec_runtime::Frame {

@@ -1,7 +1,7 @@
 //! Values that the compiler cannot foresee.
 
 use canspec_runtime::plumbing::{Incoming, Raw, Who};
-use canspec_runtime::{Bcd, Bytes, Destination, Frame, Meaning, Number, Payload, Route, Text};
+use canspec_runtime::{Bcd, Bytes, Destination, Elements, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
 pub trait Unknown: Sized {
@@ -76,6 +76,12 @@ impl Unknown for f64 {
 impl<T: Unknown, const N: usize> Unknown for [T; N] {
     fn unknown() -> Self {
         [(); N].map(|()| unknown())
+    }
+}
+
+impl<T: Unknown, const N: usize> Unknown for Elements<T, N> {
+    fn unknown() -> Self {
+        Self::from_fn(unknown(), |_| unknown())
     }
 }
 

@@ -159,15 +159,65 @@ impl Layout for State {
 /// Voltages and groups of cells: `command` 0x02. Section 2.1.
 /// - [`read`](READ_ACCESS): the module answers (`single`).
 /// - Request `041#0000000000000000`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cells {
+    /// Cycles: bytes 1..0.
+    pub cycles: u16,
+    /// Voltage in V: bytes 3..2, bits 11..0 to bytes 17..16, bits 11..0, 2 to 8 elements, steps of 0.01 V.
+    pub voltage_v: Elements<f64, 8>,
+    /// Group: byte 3, bits 7..4 to byte 17, bits 7..4, 2 to 8 elements.
+    pub group: Elements<u8, 8>,
+}
+
+impl Cells {
+    /// The signal `cycles`, to read or write it alone, or to ask for its limits.
+    pub const CYCLES: LongSignal<u16> = LongSignal::new(0, Signal::new("cycles", Place::bytes(1, 0)));
+    /// The elements of `voltage`, to read or write one alone, or to ask for their limits.
+    pub const VOLTAGE: LongSignal<u16, f64> =
+        LongSignal::new(2, Signal::new("voltage", Place::bytes(1, 0).bits(11, 0)).unit("V").scale(1, 100)).every(2);
+    /// The elements of `group`, to read or write one alone, or to ask for their limits.
+    pub const GROUP: LongSignal<u8> = LongSignal::new(2, Signal::new("group", Place::byte(1).bits(7, 4))).every(2);
+
+    /// Builds the request [`read`](READ_ACCESS).
+    ///
+    /// # Errors
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<CellsPart>, Error> {
+        CellsPart::READ.request_to(route, &())
+    }
+}
+
+impl LongLayout for Cells {
+    const MESSAGE: &'static str = "cells";
+    const SHORTEST: usize = 2;
+    const LONGEST: usize = 18;
+    const ELEMENTS: Option<(usize, usize)> = Some((2, 8));
+    const BYTES: fn(usize) -> usize = |elements| Self::VOLTAGE.reach(elements).max(Self::GROUP.reach(elements)).max(2);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::VOLTAGE.fitting(data.len()).min(Self::GROUP.fitting(data.len()));
+        Self {
+            cycles: Self::CYCLES.read(data, Signal::get),
+            voltage_v: Self::VOLTAGE.read_some(data, count, Signal::decode),
+            group: Self::GROUP.read_some(data, count, Signal::get),
+        }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::CYCLES.write(message.cycles, payload, Signal::put)?;
+        Self::VOLTAGE.write_some(&message.voltage_v, payload, Signal::encode)?;
+        Self::GROUP.write_some(&message.group, payload, Signal::put)
+    };
+}
+
+/// A part of [`Cells`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CellsPart {
     /// Part: byte 0, `1..=3`.
     pub part: u8,
     /// Data: bytes 1..6.
     pub data: Bytes<6>,
 }
 
-impl Cells {
+impl CellsPart {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(1, 3);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
@@ -176,22 +226,28 @@ impl Cells {
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("cells", FRAME.id(Identifier::COMMAND, 0x02));
-
-    /// Builds the request [`read`](READ_ACCESS).
-    ///
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
-    }
 }
 
-impl Layout for Cells {
+impl Layout for CellsPart {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
         Self::DATA.put(message.data, payload)
+    };
+}
+
+impl Parted for Cells {
+    type Protocol = Message;
+    type Part = CellsPart;
+    type Memory = [u8; 19];
+    const NUMBER: Place = CellsPart::PART.place();
+    const DATA: Place = CellsPart::DATA.place();
+    const FIRST: Option<u16> = Some(1);
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::CellsPart(_) => Said::Part,
+        Message::State(_) => Said::Count(State::CELLS.place()),
+        _ => Said::Nothing,
     };
 }
 
@@ -205,7 +261,7 @@ pub enum Message {
     /// The request of `cells` by `read`.
     ReadCells,
     /// Voltages and groups of cells.
-    Cells(Cells),
+    CellsPart(CellsPart),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -240,7 +296,7 @@ impl Protocol for Message {
     fn request(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
             0x01 => frame.request(&State::READ, Self::ReadState),
-            0x02 => frame.request(&Cells::READ, Self::ReadCells),
+            0x02 => frame.request(&CellsPart::READ, Self::ReadCells),
             _ => frame.unknown(),
         }
     }
@@ -249,7 +305,7 @@ impl Protocol for Message {
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
             0x01 => frame.reply(&State::READ, Self::State(frame.values())),
-            0x02 => frame.reply(&Cells::READ, Self::Cells(frame.values())),
+            0x02 => frame.reply(&CellsPart::READ, Self::CellsPart(frame.values())),
             _ => frame.unknown(),
         }
     }
@@ -271,7 +327,7 @@ impl Protocol for Message {
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::State(message) => task.run(message),
-            Self::Cells(message) => task.run(message),
+            Self::CellsPart(message) => task.run(message),
             _ => task.run(&()),
         }
     }
@@ -280,5 +336,5 @@ impl Protocol for Message {
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::of::<State>("How many cells a battery has", &[("command", 0x01)], &[&State::READ]),
-    Entry::of::<Cells>("Voltages and groups of cells", &[("command", 0x02)], &[&Cells::READ]),
+    Entry::of::<CellsPart>("Voltages and groups of cells", &[("command", 0x02)], &[&CellsPart::READ]),
 ];

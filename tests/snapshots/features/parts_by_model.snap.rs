@@ -158,13 +158,49 @@ impl From<Model> for u8 {
 /// - Request of `A` `061#00000000`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Label {
+    /// Serial: bytes 0..7.
+    pub serial: Text<8>,
+    /// Hours in h: bytes 8..11.
+    pub hours_h: u32,
+}
+
+impl Label {
+    /// The signal `serial`, to read or write it alone, or to ask for its limits.
+    pub const SERIAL: LongSignal<Text<8>> = LongSignal::new(0, Signal::new("serial", Place::bytes(0, 7)));
+    /// The signal `hours`, to read or write it alone, or to ask for its limits.
+    pub const HOURS: LongSignal<u32> = LongSignal::new(8, Signal::new("hours", Place::bytes(0, 3)).unit("h"));
+
+    /// Builds the request [`read`](READ_ACCESS).
+    ///
+    /// # Errors
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
+        LabelPart::READ.request_to(route, &())
+    }
+}
+
+impl LongLayout for Label {
+    const MESSAGE: &'static str = "label";
+    const SHORTEST: usize = 12;
+    const LONGEST: usize = 12;
+    const DECODE: fn(&[u8]) -> Self =
+        |data| Self { serial: Self::SERIAL.read(data, Signal::get), hours_h: Self::HOURS.read(data, Signal::get) };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::SERIAL.write(message.serial, payload, Signal::put)?;
+        Self::HOURS.write(message.hours_h, payload, Signal::put)
+    };
+}
+
+/// A part of [`Label`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LabelPart {
     /// Part: byte 0, `0..=4`.
     pub part: u8,
     /// Data: bytes 1..3.
     pub data: Bytes<3>,
 }
 
-impl Label {
+impl LabelPart {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 4);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
@@ -176,22 +212,28 @@ impl Label {
         .of("label", FRAME.id(Identifier::COMMAND, 0x03))
         .length(4)
         .models(&[Model::A as u8, Model::B as u8]);
-
-    /// Builds the request [`read`](READ_ACCESS).
-    ///
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
-    }
 }
 
-impl Layout for Label {
+impl Layout for LabelPart {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
         Self::DATA.put(message.data, payload)
+    };
+}
+
+impl Parted for Label {
+    type Protocol = Message;
+    type Part = LabelPart;
+    type Memory = [u8; 13];
+    const NUMBER: Place = LabelPart::PART.place();
+    const DATA: Place = LabelPart::DATA.place();
+    const FIRST: Option<u16> = None;
+    const MODEL_FIRSTS: &'static [(u8, u16)] = &[(Model::A as u8, 0), (Model::B as u8, 1)];
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::LabelPart(_) => Said::Part,
+        Message::ReadLabel => Said::Nothing,
     };
 }
 
@@ -201,7 +243,7 @@ pub enum Message {
     /// The request of `label` by `read`.
     ReadLabel,
     /// Serial number and hours of use.
-    Label(Label),
+    LabelPart(LabelPart),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -243,7 +285,7 @@ impl Protocol for Message {
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x03 => frame.request(&Label::READ, Self::ReadLabel),
+            0x03 => frame.request(&LabelPart::READ, Self::ReadLabel),
             _ => frame.unknown(),
         }
     }
@@ -251,7 +293,7 @@ impl Protocol for Message {
     #[inline(always)]
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x03 => frame.reply(&Label::READ, Self::Label(frame.values())),
+            0x03 => frame.reply(&LabelPart::READ, Self::LabelPart(frame.values())),
             _ => frame.unknown(),
         }
     }
@@ -266,7 +308,7 @@ impl Protocol for Message {
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
-            Self::Label(message) => task.run(message),
+            Self::LabelPart(message) => task.run(message),
             Self::ReadLabel => task.run(&()),
         }
     }
@@ -274,4 +316,4 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::of::<Label>("Serial number and hours of use", &[("command", 0x03)], &[&Label::READ])];
+    &[Entry::of::<LabelPart>("Serial number and hours of use", &[("command", 0x03)], &[&LabelPart::READ])];

@@ -74,6 +74,9 @@ impl IdentifierFields for Identifier {
     }
 }
 
+/// The field that says whether more frames follow.
+pub const CONTINUATION: Continuation = Continuation::identifier(Identifier::MORE, 0x1);
+
 /// Whom a request addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
@@ -140,13 +143,47 @@ pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).reque
 /// - Request `041#0000000000000000`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Label {
+    /// Text: bytes 0..5 to bytes 378..383, 1 to 64 elements.
+    pub text: Elements<Text<6>, 64>,
+}
+
+impl Label {
+    /// The elements of `text`, to read or write one alone, or to ask for their limits.
+    pub const TEXT: LongSignal<Text<6>> = LongSignal::new(0, Signal::new("text", Place::bytes(0, 5))).every(6);
+
+    /// Builds the request [`read`](READ_ACCESS).
+    ///
+    /// # Errors
+    /// Refuses other addressing modes, and undocumented addresses.
+    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
+        LabelPart::READ.request_to(route, &())
+    }
+}
+
+impl LongLayout for Label {
+    const MESSAGE: &'static str = "label";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 384;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 64));
+    const BYTES: fn(usize) -> usize = |elements| Self::TEXT.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::TEXT.fitting(data.len());
+        Self { text: Self::TEXT.read_some(data, count, Signal::get) }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::TEXT.write_some(&message.text, payload, Signal::put);
+}
+
+/// A part of [`Label`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LabelPart {
     /// Part: bytes 0..1, `1..=64`.
     pub part: u16,
     /// Data: bytes 2..7.
     pub data: Bytes<6>,
 }
 
-impl Label {
+impl LabelPart {
     /// The signal `part`, to read or write it alone, or to ask for its limits.
     pub const PART: Signal<u16> = Signal::new("part", Place::bytes(0, 1)).limits(1, 64);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
@@ -155,22 +192,28 @@ impl Label {
     pub const RESERVED: Data = [0x00; 8];
     /// The access `read`, for filters and blank frames of it.
     pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x02));
-
-    /// Builds the request [`read`](READ_ACCESS).
-    ///
-    /// # Errors
-    /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ.request_to(route, &())
-    }
 }
 
-impl Layout for Label {
+impl Layout for LabelPart {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
         Self::DATA.put(message.data, payload)
+    };
+}
+
+impl Parted for Label {
+    type Protocol = Message;
+    type Part = LabelPart;
+    type Memory = [u8; 392];
+    const NUMBER: Place = LabelPart::PART.place();
+    const DATA: Place = LabelPart::DATA.place();
+    const FIRST: Option<u16> = Some(1);
+    const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::LabelPart(_) => Said::Part,
+        Message::ReadLabel => Said::Nothing,
     };
 }
 
@@ -180,7 +223,7 @@ pub enum Message {
     /// The request of `label` by `read`.
     ReadLabel,
     /// A label, six letters in each frame.
-    Label(Label),
+    LabelPart(LabelPart),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -214,7 +257,7 @@ impl Protocol for Message {
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x02 => frame.request(&Label::READ, Self::ReadLabel),
+            0x02 => frame.request(&LabelPart::READ, Self::ReadLabel),
             _ => frame.unknown(),
         }
     }
@@ -222,7 +265,7 @@ impl Protocol for Message {
     #[inline(always)]
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {
-            0x02 => frame.reply(&Label::READ, Self::Label(frame.values())),
+            0x02 => frame.reply(&LabelPart::READ, Self::LabelPart(frame.values())),
             _ => frame.unknown(),
         }
     }
@@ -237,7 +280,7 @@ impl Protocol for Message {
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
-            Self::Label(message) => task.run(message),
+            Self::LabelPart(message) => task.run(message),
             Self::ReadLabel => task.run(&()),
         }
     }
@@ -245,4 +288,4 @@ impl Protocol for Message {
 
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] =
-    &[Entry::of::<Label>("A label, six letters in each frame", &[("command", 0x02)], &[&Label::READ])];
+    &[Entry::of::<LabelPart>("A label, six letters in each frame", &[("command", 0x02)], &[&LabelPart::READ])];

@@ -65,15 +65,14 @@ impl<'a> Derives<'a> {
         name.map(|name| self.variant(name))
     }
 
-    /// Emits the attribute of a field that can hold infinities and what is no number. It can also be missing, or an array.
-    pub fn float(self, is_optional: bool, is_array: bool) -> TokenStream {
-        let with = match (is_optional, is_array) {
-            (false, false) => "canspec_runtime::with_serde::float",
-            (true, false) => "canspec_runtime::with_serde::optional_float",
-            (false, true) => "canspec_runtime::with_serde::floats",
-            (true, true) => "canspec_runtime::with_serde::optional_floats",
-        };
-        attributes(&self.options.serde, &[&quote!(serde(with = #with))])
+    /// Emits the attribute of a field that can hold infinities and what is no number.
+    pub fn float(self) -> TokenStream {
+        attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::float"))])
+    }
+
+    /// Emits the attribute of an array that is too long for `serde`.
+    pub fn array(self) -> TokenStream {
+        attributes(&self.options.serde, &[&quote!(serde(with = "canspec_runtime::with_serde::array"))])
     }
 
     /// Emits the traits of a word, by its legend.
@@ -107,11 +106,20 @@ impl<'a> Derives<'a> {
 
     /// Emits the traits of a message's struct that no derive can give it.
     pub fn message(self, name: &Ident, is_empty: bool) -> TokenStream {
-        let (unstructured, value) = if is_empty {
-            (quote!(_), quote!(Ok(Self)))
+        if is_empty {
+            self.arbitrary(name, &quote!(_), &quote!(Ok(Self)))
         } else {
-            (quote!(unstructured), quote!(canspec_runtime::with_arbitrary::layout(unstructured)))
-        };
+            self.arbitrary(name, &quote!(unstructured), &quote!(canspec_runtime::with_arbitrary::layout(unstructured)))
+        }
+    }
+
+    /// Emits the traits of a long message's struct that no derive can give it.
+    pub fn long_message(self, name: &Ident) -> TokenStream {
+        let value = quote!(canspec_runtime::with_arbitrary::long_layout(unstructured));
+        self.arbitrary(name, &quote!(unstructured), &value)
+    }
+
+    fn arbitrary(self, name: &Ident, unstructured: &TokenStream, value: &TokenStream) -> TokenStream {
         let arbitrary = quote! {
             impl<'a> arbitrary::Arbitrary<'a> for #name {
                 fn arbitrary(#unstructured: &mut arbitrary::Unstructured<'a>) -> arbitrary::Result<Self> {

@@ -30,14 +30,14 @@ pub fn in_data(InData { constant, comment, name, place, normal }: &InData) -> To
     quote!(#comment pub const #constant: Selector = Selector::new(#name, #place) #(#normal)*;)
 }
 
-/// Emits the field that says whether more frames of a set follow.
+/// Emits the field that says whether more frames follow.
 pub fn continuation((source, raw): &(Source, TokenStream)) -> TokenStream {
     let value = match source {
         Source::Identifier(place) => quote!(Continuation::identifier(Identifier::#place, #raw)),
         Source::Data(selector) => quote!(Continuation::data(#selector.place, #raw)),
     };
     quote! {
-        /// The field that says whether more frames of a set follow.
+        /// The field that says whether more frames follow.
         pub const CONTINUATION: Continuation = #value;
     }
 }

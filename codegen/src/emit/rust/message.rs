@@ -5,6 +5,7 @@ use quote::{ToTokens, quote};
 
 use super::derives::Derives;
 use super::exchange::exchange;
+use super::long::long;
 use super::plan::message::{Length, Message, Request, Struct, Within};
 use super::plan::signal::{Member, Signal, Special};
 use super::scales;
@@ -17,7 +18,8 @@ pub fn message(message: &Message, derives: Derives) -> TokenStream {
         let optional = derives.message(&own.name, own.signals.is_empty());
         quote!(#definition #constants #layout #optional)
     });
-    quote!(#(#structs)*)
+    let whole = message.long.as_ref().map(|whole| long(whole, derives));
+    quote!(#whole #(#structs)*)
 }
 
 fn definition(message: &Message, own: &Struct, derives: Derives) -> TokenStream {
@@ -31,7 +33,7 @@ fn definition(message: &Message, own: &Struct, derives: Derives) -> TokenStream 
 
 fn member(Signal { coding, member, .. }: &Signal, count: usize, derives: Derives) -> TokenStream {
     let Member { name, index, comment, kind, is_optional, .. } = member;
-    let float = coding.is_float.then(|| derives.float(*is_optional, index.is_some()));
+    let float = coding.is_float.then(|| derives.float());
     let kind = if *is_optional { quote!(Option<#kind>) } else { kind.clone() };
     let count = Literal::usize_unsuffixed(count);
     let kind = if index.is_some() { quote!([#kind; #count]) } else { kind };
@@ -55,23 +57,22 @@ fn constants(message: &Message, own: &Struct) -> TokenStream {
 }
 
 fn signal(signal: &Signal) -> TokenStream {
-    let Signal {
-        constant,
-        comment,
-        name,
-        place,
-        unit,
-        coding,
-        physical,
-        limits,
-        model_limits,
-        specials,
-        has_absent,
-        lacking,
-        values,
-        ..
-    } = signal;
+    let Signal { constant, comment, .. } = signal;
+    let (kinds, value) = (kinds(signal), value(signal));
+    let values = signal.values.iter().map(|special| special_value(special, signal));
+    let on_model = scales::on_model(signal, &quote!(Self::#constant));
+    quote!(#comment pub const #constant: Signal<#kinds> = #value; #(#values)* #on_model)
+}
+
+/// Emits the types of a signal: that of its raw value, and that of its limits if it is another.
+pub fn kinds(Signal { coding, physical, .. }: &Signal) -> TokenStream {
     let (raw, physical) = (&coding.raw, physical.iter());
+    quote!(#raw #(, #physical)*)
+}
+
+/// Emits the value of a signal's constant.
+pub fn value(signal: &Signal) -> TokenStream {
+    let Signal { name, place, unit, coding, limits, model_limits, specials, has_absent, lacking, .. } = signal;
     let unit = unit.iter().map(|unit| quote!(.unit(#unit)));
     let offset = coding.offset.iter().map(|[above, below]| quote!(.offset(#above, #below)));
     let scale = coding.scale.iter().map(|[numerator, denominator]| quote!(.scale(#numerator, #denominator)));
@@ -80,22 +81,17 @@ fn signal(signal: &Signal) -> TokenStream {
     let rows = specials.iter().map(|(raw, name)| quote!((#raw, #name)));
     let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
     let absent = has_absent.then(|| quote!(.absent()));
-    let values = values.iter().map(|special| special_value(special, signal));
     let lacking = lacking.iter().map(|(model, [bits, blank])| quote!((Model::#model as u8, #bits, #blank)));
     let lacking = (!signal.lacking.is_empty()).then(|| quote!(.lacking(&[#(#lacking),*])));
     let depends = signal.is_by_model.then(|| quote!(.by_model()));
-    let on_model = scales::on_model(signal);
     quote! {
-        #comment
-        pub const #constant: Signal<#raw #(, #physical)*> = Signal::new(#name, #place)
-            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent #lacking #depends;
-        #(#values)*
-        #on_model
+        Signal::new(#name, #place)
+            #(#unit)* #(#scale)* #(#offset)* #(#limits)* #(#model_limits)* #listed #absent #lacking #depends
     }
 }
 
 /// Emits the value that stands for a special raw value.
-fn special_value(Special { constant, comment, value }: &Special, signal: &Signal) -> TokenStream {
+pub fn special_value(Special { constant, comment, value }: &Special, signal: &Signal) -> TokenStream {
     let kind = &signal.member.kind;
     quote!(#comment pub const #constant: #kind = #value;)
 }

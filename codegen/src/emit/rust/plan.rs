@@ -1,12 +1,14 @@
 //! The plan of generated Rust: every item with its names, types, comments and relations.
 
 pub mod address;
+pub mod carrier;
 pub mod doc;
 mod encoding;
 pub mod exchange;
 pub mod identifier;
 mod limits;
 pub mod literal;
+pub mod long;
 pub mod message;
 pub mod models;
 pub mod naming;
@@ -26,8 +28,9 @@ pub mod word;
 use proc_macro2::TokenStream;
 
 use crate::emit::Options;
-use crate::model::{MessageId, Protocol, SelectorPlace, Table};
+use crate::model::{LongMessageId, MessageId, Protocol, SelectorPlace, Table};
 use address::{AddressType, Mode, Targets};
+use carrier::Carrier;
 use exchange::{Access, Accesses};
 use identifier::{Base, Identifier};
 use message::Message;
@@ -51,7 +54,7 @@ pub struct Plan {
     pub in_data: Vec<InData>,
     /// The identifier.
     pub identifier: Identifier,
-    /// The field that says whether more frames of a set follow, and the value that says so, if there are sets.
+    /// The field that says whether more frames of a set or parts of a message follow, and the value that says so.
     pub continuation: Option<(Source, TokenStream)>,
     /// The targets of requests.
     pub targets: Option<Targets>,
@@ -73,6 +76,8 @@ pub struct Plan {
     pub messages: Table<MessageId, Message>,
     /// The messages that are sets.
     pub sets: Table<MessageId, Option<Set>>,
+    /// How frames carry long messages.
+    pub carriers: Table<LongMessageId, Option<Carrier>>,
     /// The variants of the enum of all messages.
     pub variants: Vec<Variant>,
     /// How requests are recognised, if there are any.
@@ -103,6 +108,9 @@ impl Plan {
         let variants = variant::variants(protocol, types);
         let set = |id| Set::new(protocol, types, &messages, addresses, &variants, id);
         let sets = protocol.messages.ids().map(set).collect();
+        let planner_of_parts =
+            carrier::Planner { protocol, types, models: &models, messages: &messages, variants: &variants };
+        let carriers = protocol.long_messages.ids().map(|id| planner_of_parts.carrier(id)).collect();
         let address_types = protocol.address_types.iter().zip(addresses);
         Self {
             base: Base::new(&protocol.identifier),
@@ -118,6 +126,7 @@ impl Plan {
             status_words: StatusWord::all(protocol, types),
             packed: Packed::all(protocol, types),
             sets,
+            carriers,
             variants,
             requests: planner.direction(&course.requests),
             replies: planner.direction(&course.replies),
@@ -131,9 +140,9 @@ impl Plan {
     }
 }
 
-/// Finds the field that says whether more frames of a set follow, if there are sets.
+/// Finds the field that says whether more frames follow, if there are sets or messages in parts.
 fn continuation(protocol: &Protocol, selectors: &Selectors) -> Option<(Source, TokenStream)> {
-    protocol.messages.iter().find(|message| message.set.is_some())?;
+    protocol.messages.iter().find(|message| message.set.is_some() || protocol.in_parts(message).is_some())?;
     let continuation = protocol.continuation()?;
     let raw = |width| literal::hexadecimal(continuation.raw, width);
     match continuation.place {

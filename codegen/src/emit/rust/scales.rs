@@ -6,9 +6,10 @@ use quote::quote;
 use super::plan::scales::{Row, Scales};
 use super::plan::signal::Signal;
 
-/// Emits the method that returns the signal of a device model. It stands beside the signal's constant.
-pub fn on_model(signal: &Signal) -> Option<TokenStream> {
-    let Signal { constant, coding, name, scales, .. } = signal;
+/// Emits the method that returns the signal of a device model. It stands beside the constant of the signal, which `any`
+/// returns.
+pub fn on_model(signal: &Signal, any: &TokenStream) -> Option<TokenStream> {
+    let Signal { coding, name, scales, .. } = signal;
     let Scales { on, kind, rows, has_others, .. } = scales.as_ref()?;
     let raw = &coding.raw;
     let scaled = |Row { unit, scale, offset, limits, .. }: &Row| {
@@ -16,7 +17,7 @@ pub fn on_model(signal: &Signal) -> Option<TokenStream> {
         let scale = scale.iter().map(|[numerator, denominator]| quote!(.scale(#numerator, #denominator)));
         let offset = offset.iter().map(|[above, below]| quote!(.offset(#above, #below)));
         let limits = limits.iter().map(|[minimum, maximum]| quote!(.limits(#minimum, #maximum)));
-        quote!(Self::#constant.on_model() #(#unit)* #(#scale)* #(#offset)* #(#limits)*)
+        quote!(#any.on_model() #(#unit)* #(#scale)* #(#offset)* #(#limits)*)
     };
     // Models with the same signal share an arm.
     let mut groups: Vec<(Vec<&Ident>, TokenStream)> = Vec::new();

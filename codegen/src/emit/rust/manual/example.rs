@@ -52,9 +52,9 @@ impl Manual<'_> {
             return None;
         }
         let (message, layout) = (&self.plan.messages[decoded.message], &protocol[decoded.frame]);
-        // A request that carries nothing is a method of the message's own struct.
+        // A request that carries nothing is a method of the whole message's struct.
         let carried = message.structs.iter().find(|own| own.signals == layout.signals);
-        let name = carried.map_or(&message.home, |own| &own.name).to_string();
+        let name = carried.map_or(message.whole(), |own| &own.name).to_string();
         let (mut names, mut values) = (vec![name.clone(), "Target".to_owned()], Vec::new());
         for ids in carried.iter().flat_map(|own| &own.members) {
             let elements = ids.iter().map(|id| self.element(printed, *id)).collect::<Option<Vec<_>>>()?;

@@ -40,14 +40,14 @@ impl Manual<'_> {
             let constant = known.constants.iter().find(|constant| is_named(constant, name));
             constant.map(value).unwrap_or_default()
         });
-        let home = &message.home;
+        let whole = message.whole();
         let title = known.doc.title.as_ref().map_or_else(|| doc::title(&known.doc, &known.name), Text::in_rust_table);
         let accesses = known.exchanges.iter().zip(&message.exchanges);
         let mut accesses: Vec<_> =
             accesses.map(|(own, way)| format!("[`{}`]({})", self.protocol[own.access].name, way.shared)).collect();
         accesses.dedup();
         let section = known.doc.section.as_ref().map_or_else(String::new, Text::in_rust_table);
-        let cells = [format!("[`{home}`](struct@{home})"), title, accesses.join(", "), section];
+        let cells = [format!("[`{whole}`](struct@{whole})"), title, accesses.join(", "), section];
         values.chain(cells).collect()
     }
 }

@@ -6,12 +6,13 @@ use quote::quote;
 use super::doc::{self, Comment};
 use super::exchange::{Accesses, Exchange, exchange_name};
 use super::literal;
+use super::long::Long;
 use super::models::depends_on_model;
 use super::naming::Pool;
 use super::selector::Selectors;
 use super::signal::{Context, Signal};
 use super::{types, usage};
-use crate::model::{self, ExchangeId, FrameLayout, Kind, MessageId, SignalId, Table};
+use crate::model::{self, ExchangeId, FrameLayout, Kind, LongMessageId, MessageId, SignalId, Table};
 
 /// A message.
 pub struct Message {
@@ -31,6 +32,15 @@ pub struct Message {
     pub methods: Table<ExchangeId, Ident>,
     /// Its structs.
     pub structs: Vec<Struct>,
+    /// What its frames carry together, if each carries a part.
+    pub long: Option<Long>,
+}
+
+impl Message {
+    /// Returns the struct that stands for the whole message, and has the requests that carry nothing.
+    pub fn whole(&self) -> &Ident {
+        self.long.as_ref().map_or(&self.home, |long| &long.name)
+    }
 }
 
 /// A struct of a message.
@@ -109,6 +119,7 @@ impl Planner<'_> {
         let methods = names.map(|name| members.take(name.clone(), "_request"));
         let ways = Ways { constants: &constants, methods: &methods };
         let structs = types.structs[id].iter().map(|own| self.structure(id, &signals, &ways, own)).collect();
+        let long = protocol.in_parts(known).map(|long| self.long(id, long, &ways));
         Message {
             home: home.clone(),
             paragraphs: usage::paragraphs(protocol, self.accesses, id),
@@ -118,6 +129,7 @@ impl Planner<'_> {
             signals,
             structs,
             methods,
+            long,
         }
     }
 
@@ -136,7 +148,9 @@ impl Planner<'_> {
     fn structure(&self, id: MessageId, signals: &Table<SignalId, Signal>, ways: &Ways, own: &types::Struct) -> Struct {
         let Context { protocol, types, .. } = *self.context;
         let home = types.home(id);
-        let host = Host { id, name: &own.name, is_home: own.name == *home };
+        let is_home = own.name == *home;
+        let host =
+            Host { id, name: &own.name, is_home, is_whole: is_home && protocol.in_parts(&protocol[id]).is_none() };
         let hosted: Vec<_> = self.hosted(&host).collect();
         let dependent: Vec<_> = hosted.iter().filter(|frame| depends_on_model(protocol, frame)).copied().collect();
         let frame = protocol.frames_of(&protocol[id]).find(|frame| frame.signals == own.signals);
@@ -161,6 +175,9 @@ impl Planner<'_> {
     /// Describes a struct; what holds for the whole message stands at its own.
     fn comment(&self, host: &Host, own: &types::Struct) -> Comment {
         let Context { protocol, types, .. } = *self.context;
+        if let Some(long) = protocol.in_parts(&protocol[host.id]) {
+            return Comment::line(format!("A part of [`{}`], as a frame carries it.", types.long[&long]));
+        }
         if host.is_home {
             return Comment::new(usage::paragraphs(protocol, self.accesses, host.id));
         }
@@ -178,9 +195,20 @@ impl Planner<'_> {
         let frames = protocol[host.id].frames.iter().filter(|id| {
             let frame = &protocol[**id];
             let carried = types.frames[**id].carried.as_ref();
-            frame.is_to_module() && frame.set.is_none() && carried.map_or(host.is_home, |carried| carried == host.name)
+            frame.is_to_module() && frame.set.is_none() && carried.map_or(host.is_whole, |carried| carried == host.name)
         });
         frames.map(|id| &protocol[*id])
+    }
+
+    /// Plans what the frames of a message carry together.
+    fn long(&self, id: MessageId, long: LongMessageId, ways: &Ways) -> Long {
+        let Context { protocol, types, .. } = *self.context;
+        let mut members = Pool::with_members(ways.methods.iter().map(Ident::to_string));
+        let host = Host { id, name: &types.long[&long], is_home: false, is_whole: true };
+        let comment = Comment::new(usage::paragraphs(protocol, self.accesses, id));
+        let requests = self.hosted(&host).map(|frame| self.request(&host, ways, frame)).collect();
+        let signals = self.context.long_signals(&protocol[long].content, &mut members);
+        Long::new((long, &protocol[long]), host.name, (comment, requests), signals)
     }
 
     fn request(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
@@ -251,7 +279,10 @@ struct Ways<'a> {
 struct Host<'a> {
     id: MessageId,
     name: &'a Ident,
+    /// Whether it is the message's own, which has the constants.
     is_home: bool,
+    /// Whether it has the requests that carry nothing.
+    is_whole: bool,
 }
 
 /// Puts the elements of each array together, at the place of the one that comes first.

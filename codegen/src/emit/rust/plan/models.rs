@@ -72,7 +72,7 @@ impl Models {
         });
         let has_within = protocol.frames.iter().any(|frame| depends_on_model(protocol, frame));
         let mut models = Self { rows, has_within, limits: Vec::new(), sources: Vec::new(), scaled };
-        for signal in protocol.messages.iter().flat_map(|message| &message.signals) {
+        for signal in protocol.contents().flat_map(|message| &message.signals) {
             models.add_limits(protocol, signal, constants);
         }
         models

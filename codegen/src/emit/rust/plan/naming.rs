@@ -1,6 +1,7 @@
 //! Rust names for the names of a spec. Two items never get the same name.
 
 use std::collections::BTreeSet;
+use std::iter;
 
 use proc_macro2::{Ident, Span};
 
@@ -9,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 78] = [
+const TAKEN: [&str; 84] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -26,6 +27,7 @@ const TAKEN: [&str; 78] = [
     "Default",
     "Destination",
     "Drop",
+    "Elements",
     "Encode",
     "Entry",
     "Eq",
@@ -48,6 +50,9 @@ const TAKEN: [&str; 78] = [
     "Kind",
     "Layout",
     "Legend",
+    "LongLayout",
+    "LongPayload",
+    "LongSignal",
     "Message",
     "Meaning",
     "Mode",
@@ -57,6 +62,7 @@ const TAKEN: [&str; 78] = [
     "Ok",
     "Option",
     "PartialEq",
+    "Parted",
     "PackedText",
     "Pattern",
     "Payload",
@@ -73,6 +79,7 @@ const TAKEN: [&str; 78] = [
     "Request",
     "Result",
     "Route",
+    "Said",
     "Selector",
     "Self",
     "Send",
@@ -130,7 +137,12 @@ impl Pool {
 
     /// Returns the pool of a message's methods and constants.
     pub fn of_members() -> Self {
-        Self::without(OF_MESSAGES.into_iter().map(str::to_owned))
+        Self::with_members(iter::empty())
+    }
+
+    /// Returns the pool of a message's methods and constants, some of them named already.
+    pub fn with_members(names: impl Iterator<Item = String>) -> Self {
+        Self::without(names.chain(OF_MESSAGES.into_iter().map(str::to_owned)))
     }
 
     /// Returns a pool in which these names are taken already.

@@ -7,8 +7,8 @@ use quote::{ToTokens, quote};
 
 /// A place as bytes, and bits of the word that they make.
 pub struct Written {
-    first: u8,
-    last: u8,
+    first: u16,
+    last: u16,
     /// Bits of the word, unless they are all of it.
     bits: Option<(u8, u8)>,
 }
@@ -20,14 +20,27 @@ impl Written {
         let word = low / 8 * 8;
         let whole = low == word && high % 8 == 7;
         let bits = (!whole).then_some((high - word, low - word));
-        match place.order() {
-            ByteOrder::Big => Self { first: 7 - high / 8, last: 7 - low / 8, bits },
-            ByteOrder::Little => Self { first: high / 8, last: low / 8, bits },
-        }
+        let (first, last) = match place.order() {
+            ByteOrder::Big => (7 - high / 8, 7 - low / 8),
+            ByteOrder::Little => (high / 8, low / 8),
+        };
+        Self { first: first.into(), last: last.into(), bits }
+    }
+
+    /// Writes the place as bits of all eight bytes, which says their order however few the bits are.
+    pub fn in_all(place: Place) -> Self {
+        let bits = place.bits_of_payload();
+        let (first, last) = if place.order() == ByteOrder::Big { (0, 7) } else { (7, 0) };
+        Self { first, last, bits: Some((bits.shift() + bits.width() - 1, bits.shift())) }
+    }
+
+    /// Counts the bytes with those before the first one.
+    pub fn after(self, bytes: u16) -> Self {
+        Self { first: self.first + bytes, last: self.last + bytes, ..self }
     }
 
     /// Counts the bytes from another first byte.
-    pub fn counted_from(self, byte: u8) -> Self {
+    pub fn counted_from(self, byte: u16) -> Self {
         Self { first: self.first.saturating_sub(byte), last: self.last.saturating_sub(byte), ..self }
     }
 
@@ -47,7 +60,7 @@ impl Written {
 
 impl ToTokens for Written {
     fn to_tokens(&self, tokens: &mut TokenStream) {
-        let [first, last] = [self.first, self.last].map(Literal::u8_unsuffixed);
+        let [first, last] = [self.first, self.last].map(Literal::u16_unsuffixed);
         tokens.extend(if self.first == self.last {
             quote!(Place::byte(#first))
         } else {

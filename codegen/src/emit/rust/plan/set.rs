@@ -8,7 +8,7 @@ use super::doc::{self, Comment};
 use super::message::Message;
 use super::naming::ident;
 use super::types::{FrameTypes, Types};
-use super::variant::Variant;
+use super::variant::{self, Variant};
 use crate::model::{self, FrameId, Kind, MessageId, Protocol, Table};
 
 /// A set of frames.
@@ -136,17 +136,7 @@ impl Planner<'_> {
         let (exchange, own) = (self.messages[self.id].exchanges.first()?, self.protocol[self.id].exchanges.first()?);
         let node = self.addresses[self.protocol.answering(own)?].clone();
         let exchange = exchange.constant.clone();
-        Some(Assembly { exchange, node, others: self.others(members) })
-    }
-
-    fn others(&self, members: &[Member]) -> Option<TokenStream> {
-        let is_other = |known: &&Variant| members.iter().all(|member| member.variant != known.name);
-        let mut others = self.variants.iter().filter(is_other);
-        let Variant { name, carried, .. } = others.next()?;
-        Some(match (others.next(), carried) {
-            (Some(_), _) => quote!(_),
-            (None, Some(_)) => quote!(Message::#name(_)),
-            (None, None) => quote!(Message::#name),
-        })
+        let others = variant::others(self.variants, |name| members.iter().any(|member| member.variant == *name));
+        Some(Assembly { exchange, node, others })
     }
 }

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::doc::{self, Comment};
-use super::encoding::Coding;
+use super::encoding::{Coding, WordTypes};
 use super::literal::{decimal, hexadecimal};
 use super::models::Models;
 use super::naming::{Pool, member};
@@ -114,25 +114,50 @@ impl Context<'_> {
     /// Plans a message's signals, whose constants are among its members.
     pub fn signals(&self, id: MessageId, members: &mut Pool) -> Table<SignalId, Signal> {
         let (message, mut fields) = (&self.protocol[id], Pool::default());
-        let constants = message.signals.map(|known| members.take(known.name.to_ascii_uppercase(), "_SIGNAL"));
+        let constants = message.signals.map(|known| constant(&known.name, members));
         let of_array = |array: &Array, fields: &mut Pool| fields.take(self.name(message, array.elements[0]), "_");
         let arrays = message.arrays.map(|array| of_array(array, &mut fields));
         let signals = message.signals.entries().map(|(signal, known)| {
-            let constant = constants[signal].clone();
             let field = match known.element {
                 Some(element) => arrays[element.array].clone(),
                 None => fields.take(self.name(message, signal), "_"),
             };
-            let values = named_values(known).iter().map(|special| {
-                let name = format!("{}_{}", message.field_name(known), special.name);
-                members.take(name.to_ascii_uppercase(), "_VALUE")
-            });
-            let names = Names { constant, field, values: values.collect() };
-            let coding = Coding::new(self.protocol, &self.types.words(id, signal), known, self.scaled);
-            let scales = Scales::new(self.protocol, (self.models, self.scaled), message, known, members);
-            self.signal(message, known, (names, scales), coding)
+            let words = self.types.words(self.types.packed[id][signal].as_ref());
+            self.named(message, known, (constants[signal].clone(), field), &words, members)
         });
         signals.collect()
+    }
+
+    /// Plans the signals of what several frames carry together. The elements of an array are one.
+    pub fn long_signals(&self, message: &Message, members: &mut Pool) -> Vec<(Signal, SignalId)> {
+        let mut fields = Pool::default();
+        let is_first = |signal: &model::Signal| signal.element.is_none_or(|element| element.index == 0);
+        let first = message.signals.entries().filter(|(_, signal)| is_first(signal));
+        let signals = first.map(|(id, known)| {
+            let row = model::Signal { name: message.field_name(known).to_owned(), ..known.clone() };
+            let names = (constant(&row.name, members), fields.take(self.name(message, id), "_"));
+            (self.named(message, &row, names, &self.types.words(None), members), id)
+        });
+        signals.collect()
+    }
+
+    /// Plans a signal that has the names of its constant and of its member.
+    fn named(
+        &self,
+        message: &Message,
+        known: &model::Signal,
+        (constant, field): (Ident, Ident),
+        words: &WordTypes,
+        members: &mut Pool,
+    ) -> Signal {
+        let values = named_values(known).iter().map(|special| {
+            let name = format!("{}_{}", message.field_name(known), special.name);
+            members.take(name.to_ascii_uppercase(), "_VALUE")
+        });
+        let names = Names { constant, field, values: values.collect() };
+        let coding = Coding::new(self.protocol, words, known, self.scaled);
+        let scales = Scales::new(self.protocol, (self.models, self.scaled), message, known, members);
+        self.signal(message, known, (names, scales), coding)
     }
 
     /// Names the member of a signal.
@@ -207,7 +232,7 @@ impl Context<'_> {
         let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
         let (place, optional) = (Some(places(message, signal)), optional(message, signal));
         let only = only_on(self.protocol, signal);
-        let facts = [place, optional, coding.step.clone(), range, specials(signal), only];
+        let facts = [place, varying(message, signal), optional, coding.step.clone(), range, specials(signal), only];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
         let models = models(self.protocol, signal);
         format!("{}{models}", doc::sentence_of(&format!("{title}{unit}: {}", facts.join(", "))))
@@ -223,6 +248,11 @@ impl Special {
             value: coding.value_of(known, special.raw),
         }
     }
+}
+
+/// Takes the name of a signal's constant.
+fn constant(name: &str, members: &mut Pool) -> Ident {
+    members.take(name.to_ascii_uppercase(), "_SIGNAL")
 }
 
 /// Writes a raw value as the signed number that has its bits.
@@ -250,9 +280,15 @@ fn named_values(signal: &model::Signal) -> &[NamedValue] {
 
 /// Writes the place of a signal, or those of the first and the last element of its array.
 fn places(message: &Message, signal: &model::Signal) -> String {
-    let mut all = elements(message, signal).map(|element| Written::new(element.place).text());
+    let mut all = elements(message, signal).map(|element| Written::new(element.place).after(element.window).text());
     let first = all.next().unwrap_or_default();
     all.last().map_or_else(|| first.clone(), |last| format!("{first} to {last}"))
+}
+
+/// Says how many elements an array has, if that varies.
+fn varying(message: &Message, signal: &model::Signal) -> Option<String> {
+    let array = message.array_of(signal)?;
+    Some(format!("{} to {} elements", array.least?, array.elements.len()))
 }
 
 /// Says which frames lack a signal, or elements of its array.

@@ -1,12 +1,15 @@
 //! The types of a module, each with its own name, and the type that each frame carries.
 
+use std::collections::BTreeMap;
+
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::encoding::WordTypes;
 use super::naming::{Pool, camel_case};
 use crate::model::{
-    EnumerationId, FrameId, FrameLayout, Kind, Message, MessageId, Protocol, Signal, SignalId, StatusWordId, Table,
+    EnumerationId, FrameId, FrameLayout, Kind, LongMessageId, Message, MessageId, Protocol, Signal, SignalId,
+    StatusWordId, Table,
 };
 
 /// The types of a module.
@@ -20,6 +23,8 @@ pub struct Types {
     /// Structs of messages, one for each set of signals that some frame carries. The first one is
     /// the message's own.
     pub structs: Table<MessageId, Vec<Struct>>,
+    /// Structs of what the parts of messages carry together.
+    pub long: BTreeMap<LongMessageId, Ident>,
     /// How frames look in the enum of all messages.
     pub frames: Table<FrameId, FrameTypes>,
 }
@@ -48,6 +53,8 @@ impl Types {
     /// Names the types.
     pub fn new(protocol: &Protocol) -> Self {
         let mut pool = Pool::of_types();
+        let in_parts = protocol.long_messages.entries().filter(|(_, long)| long.parts().is_some());
+        let long = in_parts.map(|(id, long)| (id, pool.take(camel_case(&long.content.name), "Message"))).collect();
         let structs = protocol.messages.map(|message| structs(protocol, message, &mut pool));
         let mut named = |name: &str, suffix| pool.take(camel_case(name), suffix);
         let enumerations = protocol.enumerations.map(|known| named(&known.name, "Value"));
@@ -56,7 +63,7 @@ impl Types {
         let taken = structs.iter().flatten().map(|known: &Struct| known.name.to_string());
         let mut variants = Pool::without(taken);
         let frames = protocol.frames.map(|frame| FrameTypes::new(protocol, &structs, frame, &mut variants));
-        Self { enumerations, status_words, packed, structs, frames }
+        Self { enumerations, status_words, packed, structs, long, frames }
     }
 
     /// Returns the message's own struct.
@@ -64,9 +71,8 @@ impl Types {
         &self.structs[message][0].name
     }
 
-    /// Returns the types of a signal's words.
-    pub fn words(&self, message: MessageId, signal: SignalId) -> WordTypes<'_> {
-        let packed = self.packed[message][signal].as_ref();
+    /// Returns the types of a signal's words. `packed` is that of a packed value.
+    pub fn words<'a>(&'a self, packed: Option<&'a Ident>) -> WordTypes<'a> {
         WordTypes { enumerations: &self.enumerations, statuses: &self.status_words, packed }
     }
 
@@ -78,7 +84,7 @@ impl Types {
 }
 
 /// Names a struct for each set of signals, the largest first. A message without signals has an
-/// empty struct.
+/// empty struct. What several frames carry together has the name of the message, and each frame a part.
 fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Struct> {
     let mut sets: Vec<&FrameLayout> = Vec::new();
     for frame in protocol.frames_of(message) {
@@ -92,7 +98,8 @@ fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Stru
         let name = types.take(camel_case(&text), "Message");
         Struct { name, text, signals }
     };
-    let own = named(message.name.clone(), first);
+    let part = if protocol.in_parts(message).is_some() { "_part" } else { "" };
+    let own = named(format!("{}{part}", message.name), first);
     let others = sets
         .iter()
         .skip(1)

@@ -2,7 +2,8 @@
 
 use std::collections::HashSet;
 
-use proc_macro2::Ident;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
 
 use super::doc::{self, Comment};
 use super::naming::Pool;
@@ -32,6 +33,17 @@ pub fn variants(protocol: &Protocol, types: &Types) -> Vec<Variant> {
         Variant { name: variant.clone(), renamed, comment, carried: carried.clone() }
     };
     once.map(variant).collect()
+}
+
+/// Returns the pattern for all variants but those that are known: none, the only one, or `_`.
+pub fn others(variants: &[Variant], is_known: impl Fn(&Ident) -> bool) -> Option<TokenStream> {
+    let mut others = variants.iter().filter(|variant| !is_known(&variant.name));
+    let Variant { name, carried, .. } = others.next()?;
+    Some(match (others.next(), carried) {
+        (Some(_), _) => quote!(_),
+        (None, Some(_)) => quote!(Message::#name(_)),
+        (None, None) => quote!(Message::#name),
+    })
 }
 
 fn sentence(protocol: &Protocol, frame: &FrameLayout, carries: bool) -> String {

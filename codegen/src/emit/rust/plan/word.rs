@@ -238,7 +238,7 @@ impl PackedPart {
             comment: Comment::item(protocol, &part.doc, &sentence, Some(&signal.doc)),
             kind,
             constant: screaming(&part.name),
-            place: Written::new(part.place).counted_from(signal.start()),
+            place: Written::new(part.place).counted_from(signal.start().into()),
         }
     }
 }

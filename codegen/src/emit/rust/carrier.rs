@@ -1,0 +1,45 @@
+//! How frames carry a long message in numbered parts.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use super::plan::carrier::Carrier;
+
+/// Emits what an assembler and a sender need.
+pub fn carrier(carrier: &Carrier) -> TokenStream {
+    let Carrier { whole, part, number, data, memory, first, parts, others, .. } = carrier;
+    let memory = Literal::usize_unsuffixed(*memory);
+    let first = first.map(Literal::u16_unsuffixed).map_or_else(|| quote!(None), |first| quote!(Some(#first)));
+    let firsts = carrier.model_firsts.iter().map(|(model, first)| {
+        let first = Literal::u16_unsuffixed(*first);
+        quote!((Model::#model as u8, #first))
+    });
+    let of_models = !carrier.model_firsts.is_empty();
+    let of_models = of_models.then(|| quote!(const MODEL_FIRSTS: &'static [(u8, u16)] = &[#(#firsts),*];));
+    let continues = carrier.continues;
+    let continues = continues.then(|| {
+        quote!(
+            const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
+        )
+    });
+    let counts =
+        carrier.counts.iter().map(|(variants, place)| quote!(#(Message::#variants(_))|* => Said::Count(#place),));
+    let others = others.iter().map(|others| quote!(#others => Said::Nothing,));
+    quote! {
+        impl Parted for #whole {
+            type Protocol = Message;
+            type Part = #part;
+            type Memory = [u8; #memory];
+            const NUMBER: Place = #part::#number.place();
+            const DATA: Place = #part::#data.place();
+            const FIRST: Option<u16> = #first;
+            #of_models
+            #continues
+            const SAID: fn(&Message) -> Said = |message| match message {
+                #(Message::#parts(_))|* => Said::Part,
+                #(#counts)*
+                #(#others)*
+            };
+        }
+    }
+}

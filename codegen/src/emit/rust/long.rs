@@ -1,0 +1,147 @@
+//! What several frames carry together: its struct, its signals, and how the joined data are read and written.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use super::derives::Derives;
+use super::message::{kinds, request, special_value, value};
+use super::plan::literal::decimal;
+use super::plan::long::{Field, Long, Row, Step};
+use super::plan::signal::Member;
+use super::scales;
+
+/// The longest array that `serde` knows.
+const LONGEST_OF_SERDE: usize = 32;
+
+/// Emits the struct of a long message.
+pub fn long(long: &Long, derives: Derives) -> TokenStream {
+    let (definition, layout) = (definition(long, derives), layout(long));
+    let Long { name, fields, requests, .. } = long;
+    let (signals, requests) = (fields.iter().map(signal), requests.iter().map(request));
+    let by_model = fields.iter().filter(|field| field.row.is_none());
+    let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));
+    let optional = derives.long_message(name);
+    quote!(#definition impl #name { #(#signals)* #(#requests)* #(#by_model)* } #layout #optional)
+}
+
+fn definition(Long { name, comment, fields, is_exact, .. }: &Long, derives: Derives) -> TokenStream {
+    let eq = is_exact.then(|| quote!(, Eq, Hash));
+    let attributes = derives.structure(&quote!(Clone, Copy, Debug, PartialEq #eq));
+    let members = fields.iter().map(|field| member(field, derives));
+    quote!(#comment #attributes pub struct #name { #(#members),* })
+}
+
+fn member(Field { signal, row, .. }: &Field, derives: Derives) -> TokenStream {
+    let Member { name, comment, kind, is_optional, .. } = &signal.member;
+    let kind = if *is_optional { quote!(Option<#kind>) } else { kind.clone() };
+    let attribute = match row {
+        _ if signal.coding.is_float => Some(derives.float()),
+        Some(Row { count, varies: false, .. }) if *count > LONGEST_OF_SERDE => Some(derives.array()),
+        _ => None,
+    };
+    let kind = match row {
+        None => kind,
+        Some(Row { count, varies, .. }) => {
+            let count = Literal::usize_unsuffixed(*count);
+            if *varies { quote!(Elements<#kind, #count>) } else { quote!([#kind; #count]) }
+        }
+    };
+    quote!(#comment #attribute pub #name: #kind)
+}
+
+fn signal(Field { signal, start, row }: &Field) -> TokenStream {
+    let (constant, comment, start) = (&signal.constant, &signal.comment, Literal::u16_unsuffixed(*start));
+    let (kinds, value) = (kinds(signal), value(signal));
+    let step = row.as_ref().map(|row| match row.step {
+        Step::Bytes(bytes) => {
+            let bytes = decimal(bytes);
+            quote!(.every(#bytes))
+        }
+        Step::Bits(bits) => {
+            let bits = decimal(bits);
+            quote!(.every_bits(#bits))
+        }
+    });
+    let values = signal.values.iter().map(|special| special_value(special, signal));
+    let on_model = scales::on_model(signal, &quote!(Self::#constant.signal()));
+    quote! {
+        #comment
+        pub const #constant: LongSignal<#kinds> = LongSignal::new(#start, #value) #step;
+        #(#values)*
+        #on_model
+    }
+}
+
+/// Emits how the joined data are read and written.
+fn layout(long: &Long) -> TokenStream {
+    let Long { name, message, fields, shortest, longest, .. } = long;
+    let [shortest, longest] = [shortest, longest].map(|length| Literal::usize_unsuffixed(*length));
+    let varying = long.elements.map(|elements| varying(long, elements));
+    let Varying { constants, count } = varying.unwrap_or_default();
+    let reads = fields.iter().map(read);
+    let values = quote!(Self { #(#reads),* });
+    let decode = if count.is_empty() { values } else { quote!({ #count #values }) };
+    let mut writes: Vec<_> = fields.iter().map(write).collect();
+    let last = writes.pop();
+    let encode = if writes.is_empty() { quote!(#last) } else { quote!({ #(#writes?;)* #last }) };
+    quote! {
+        impl LongLayout for #name {
+            const MESSAGE: &'static str = #message;
+            const SHORTEST: usize = #shortest;
+            const LONGEST: usize = #longest;
+            #constants
+            const DECODE: fn(&[u8]) -> Self = |data| #decode;
+            const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| #encode;
+        }
+    }
+}
+
+/// What a long message has beside others if arrays of it vary in length.
+#[derive(Default)]
+struct Varying {
+    /// The least and the greatest number of elements, and how many bytes they take.
+    constants: TokenStream,
+    /// How many elements the data hold.
+    count: TokenStream,
+}
+
+fn varying(Long { fields, shortest, .. }: &Long, [least, most]: [usize; 2]) -> Varying {
+    let arrays = || fields.iter().filter(|field| field.row.as_ref().is_some_and(|row| row.varies));
+    let constants: Vec<_> = arrays().map(|field| &field.signal.constant).collect();
+    let Some((first, others)) = constants.split_first() else { return Varying::default() };
+    let least_bytes = (*shortest > 0).then(|| Literal::usize_unsuffixed(*shortest)).into_iter();
+    let [least, most] = [least, most].map(Literal::usize_unsuffixed);
+    Varying {
+        constants: quote! {
+            const ELEMENTS: Option<(usize, usize)> = Some((#least, #most));
+            const BYTES: fn(usize) -> usize = |elements|
+                Self::#first.reach(elements) #(.max(Self::#others.reach(elements)))* #(.max(#least_bytes))*;
+        },
+        count: quote! {
+            let count = Self::#first.fitting(data.len()) #(.min(Self::#others.fitting(data.len())))*;
+        },
+    }
+}
+
+/// Emits how a field is read.
+fn read(Field { signal, row, .. }: &Field) -> TokenStream {
+    let (constant, Member { name, get, is_optional, .. }) = (&signal.constant, &signal.member);
+    // All eight bytes are there, so only the value can be missing.
+    let get = if *is_optional { quote!(|signal, data| signal.#get(data, 8)) } else { quote!(Signal::#get) };
+    let value = match row {
+        None => quote!(read(data, #get)),
+        Some(Row { varies: false, .. }) => quote!(read_array(data, #get)),
+        Some(Row { varies: true, .. }) => quote!(read_some(data, count, #get)),
+    };
+    quote!(#name: Self::#constant.#value)
+}
+
+/// Emits how a field is written.
+fn write(Field { signal, row, .. }: &Field) -> TokenStream {
+    let (constant, Member { name, put, .. }) = (&signal.constant, &signal.member);
+    match row {
+        None => quote!(Self::#constant.write(message.#name, payload, Signal::#put)),
+        Some(Row { varies: true, .. }) => quote!(Self::#constant.write_some(&message.#name, payload, Signal::#put)),
+        Some(Row { varies: false, .. }) => quote!(Self::#constant.write_all(&message.#name, payload, Signal::#put)),
+    }
+}

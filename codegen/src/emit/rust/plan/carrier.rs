@@ -1,0 +1,94 @@
+//! How frames carry a long message in numbered parts.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::message::Message;
+use super::models::Models;
+use super::types::Types;
+use super::variant::{self, Variant};
+use crate::model::{FrameLayout, LongMessage, LongMessageId, MessageId, Protocol, SignalId, Table};
+
+/// How frames carry a long message.
+pub struct Carrier {
+    /// The struct of the whole.
+    pub whole: Ident,
+    /// The struct of a part.
+    pub part: Ident,
+    /// Constant of the signal that numbers the parts.
+    pub number: Ident,
+    /// Constant of the signal with the data of a part.
+    pub data: Ident,
+    /// How many bytes of memory the parts need: their data, and a bit for each.
+    pub memory: usize,
+    /// Number of the first part, if it is the same for every model.
+    pub first: Option<u16>,
+    /// Numbers of the first part by variant of the device model.
+    pub model_firsts: Vec<(Ident, u16)>,
+    /// Whether a field says that more parts follow.
+    pub continues: bool,
+    /// The variants whose frames carry parts.
+    pub parts: Vec<Ident>,
+    /// The variants whose frames say how many elements there are, and where.
+    pub counts: Option<(Vec<Ident>, TokenStream)>,
+    /// The pattern for the other variants.
+    pub others: Option<TokenStream>,
+}
+
+/// What carriers are planned from.
+pub struct Planner<'a> {
+    /// The protocol.
+    pub protocol: &'a Protocol,
+    /// Types of the module.
+    pub types: &'a Types,
+    /// Device models.
+    pub models: &'a Models,
+    /// Messages.
+    pub messages: &'a Table<MessageId, Message>,
+    /// The variants of the enum of all messages.
+    pub variants: &'a [Variant],
+}
+
+impl Planner<'_> {
+    /// Plans how a long message is carried, if it has numbered parts.
+    pub fn carrier(&self, id: LongMessageId) -> Option<Carrier> {
+        let long = &self.protocol[id];
+        let (LongMessage { message, .. }, rule) = (long, long.parts()?);
+        let frame = &self.messages[*message];
+        let parts = self.variants_with(*message, rule.data);
+        let counts = rule.count.map(|(message, signal)| {
+            let (home, constant) = (&self.messages[message].home, &self.messages[message].signals[signal].constant);
+            (self.variants_with(message, signal), quote!(#home::#constant.place()))
+        });
+        let counting = counts.iter().flat_map(|(variants, _)| variants);
+        let known: Vec<_> = parts.iter().chain(counting).cloned().collect();
+        let count = long.parts_of(long.longest());
+        Some(Carrier {
+            whole: self.types.long[&id].clone(),
+            part: frame.home.clone(),
+            number: frame.signals[rule.number].constant.clone(),
+            data: frame.signals[rule.data].constant.clone(),
+            memory: count * usize::from(rule.size) + count.div_ceil(8),
+            first: rule.first,
+            model_firsts: rule
+                .model_firsts
+                .iter()
+                .map(|own| (self.models.variant(own.model).clone(), own.value))
+                .collect(),
+            continues: self.protocol.continuation().is_some(),
+            others: variant::others(self.variants, |name| known.contains(name)),
+            parts,
+            counts,
+        })
+    }
+
+    /// Returns the variants of the frames that carry a signal, each once.
+    fn variants_with(&self, message: MessageId, signal: SignalId) -> Vec<Ident> {
+        let carries = |frame: &FrameLayout| frame.signals.contains(&signal);
+        let frames = self.protocol[message].frames.iter().filter(|id| carries(&self.protocol[**id]));
+        let mut variants: Vec<_> = frames.map(|id| self.types.frames[*id].variant.clone()).collect();
+        variants.sort();
+        variants.dedup();
+        variants
+    }
+}

@@ -1,0 +1,114 @@
+//! What several frames carry together: a struct that reads the joined data, and writes them.
+
+use proc_macro2::Ident;
+
+use super::doc::Comment;
+use super::message::Request;
+use super::place::Written;
+use super::signal::Signal;
+use crate::model::{self, LongMessage, LongMessageId, SignalId};
+
+/// What several frames carry together.
+pub struct Long {
+    /// The long message.
+    pub id: LongMessageId,
+    /// Its struct.
+    pub name: Ident,
+    /// Comment of the struct.
+    pub comment: Comment,
+    /// The message's name in the spec.
+    pub message: String,
+    /// Its fields, by first byte.
+    pub fields: Vec<Field>,
+    /// Whether equality is exact.
+    pub is_exact: bool,
+    /// The least number of data bytes: those up to the last field that is always there.
+    pub shortest: usize,
+    /// The greatest number of data bytes.
+    pub longest: usize,
+    /// The least and the greatest number of elements of arrays that vary in length.
+    pub elements: Option<[usize; 2]>,
+    /// The methods that build requests.
+    pub requests: Vec<Request>,
+}
+
+/// A signal that stands alone, or an array.
+pub struct Field {
+    /// The signal, or the first element.
+    pub signal: Signal,
+    /// The byte from which its place counts.
+    pub start: u16,
+    /// Where the other elements are, if it is an array.
+    pub row: Option<Row>,
+}
+
+/// The elements of an array.
+pub struct Row {
+    /// How many there are, at most if that varies.
+    pub count: usize,
+    /// Whether their number varies.
+    pub varies: bool,
+    /// How far it is from one to the next.
+    pub step: Step,
+}
+
+/// How far it is from an element to the next one.
+pub enum Step {
+    /// In bytes of the data.
+    Bytes(i32),
+    /// In bits of the same eight bytes.
+    Bits(i32),
+}
+
+impl Long {
+    /// Plans the struct of a long message.
+    pub fn new(
+        (id, long): (LongMessageId, &LongMessage),
+        name: &Ident,
+        (comment, requests): (Comment, Vec<Request>),
+        signals: Vec<(Signal, SignalId)>,
+    ) -> Self {
+        let fields: Vec<_> = signals.into_iter().map(|(signal, id)| Field::new(&long.content, signal, id)).collect();
+        Self {
+            id,
+            name: name.clone(),
+            comment,
+            message: long.content.name.clone(),
+            is_exact: fields.iter().all(|field| field.signal.coding.is_exact()),
+            fields,
+            shortest: long.bytes_with(Some(0)),
+            longest: long.longest(),
+            elements: long.varying().and_then(|array| Some([array.least?, array.elements.len()])),
+            requests,
+        }
+    }
+}
+
+impl Field {
+    fn new(content: &model::Message, signal: Signal, id: SignalId) -> Self {
+        let known = &content[id];
+        let row = Row::new(content, known);
+        let place = match row {
+            Some(Row { step: Step::Bits(_), .. }) => Written::in_all(known.place),
+            _ => Written::new(known.place),
+        };
+        let comment = match row {
+            Some(_) => {
+                format!("The elements of `{}`, to read or write one alone, or to ask for their limits.", signal.name)
+            }
+            None => return Self { signal, start: known.window, row },
+        };
+        Self { signal: Signal { place, comment: Comment::line(comment), ..signal }, start: known.window, row }
+    }
+}
+
+impl Row {
+    fn new(content: &model::Message, first: &model::Signal) -> Option<Self> {
+        let array = content.array_of(first)?;
+        let next = &content[*array.elements.get(1)?];
+        let bytes = i32::from(next.window) - i32::from(first.window);
+        let [low, above] = [first, next].map(|signal| i32::from(signal.place.bits_of_payload().shift()));
+        let step = if bytes == 0 { Step::Bits(above - low) } else { Step::Bytes(bytes) };
+        Some(Self { count: array.elements.len(), varies: array.least.is_some(), step })
+    }
+}

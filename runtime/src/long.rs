@@ -1,0 +1,63 @@
+//! Messages that are longer than a frame.
+//!
+//! What several frames carry together is a struct with a [`LongLayout`]: it reads the joined data
+//! and writes them. How the frames carry the data does not matter here.
+
+pub(crate) mod buffer;
+mod elements;
+pub mod parts;
+mod signal;
+
+use crate::Error;
+
+pub use elements::Elements;
+pub use signal::{LongPayload, LongSignal};
+
+#[cfg(test)]
+mod tests;
+
+/// The values that several frames carry together. Generated code implements it.
+pub trait LongLayout: Copy + 'static {
+    /// Name of the message.
+    const MESSAGE: &'static str;
+    /// The least number of data bytes: those up to the end of the last field that is always there.
+    const SHORTEST: usize;
+    /// The greatest number of data bytes.
+    const LONGEST: usize;
+    /// The least and the greatest number of elements of the arrays that vary in length, if there are any.
+    const ELEMENTS: Option<(usize, usize)> = None;
+    /// Returns how many data bytes there are if these arrays have some number of elements.
+    const BYTES: fn(usize) -> usize = |_| Self::LONGEST;
+    /// Reads the values from at least [`SHORTEST`](Self::SHORTEST) data bytes.
+    const DECODE: fn(&[u8]) -> Self;
+    /// Writes the values to the data.
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error>;
+
+    /// Reads the values from the joined data. Arrays that vary in length have as many elements as
+    /// the data hold whole.
+    ///
+    /// Returns `None` for fewer bytes than [`SHORTEST`](Self::SHORTEST). Bytes that no field covers
+    /// do not count.
+    fn decode(data: &[u8]) -> Option<Self> {
+        (data.len() >= Self::SHORTEST).then(|| Self::DECODE(data))
+    }
+
+    /// Writes the values to the front of a buffer, and returns what is written. It also overwrites
+    /// the rest of the buffer. [`LONGEST`](Self::LONGEST) bytes are always enough. Bits that no
+    /// field covers are 0.
+    ///
+    /// # Errors
+    ///
+    /// Refuses
+    /// - a value that the bits of its signal cannot hold,
+    /// - an array with fewer elements than the document allows, or not as many as the others that
+    ///   vary with it,
+    /// - a buffer with too few bytes.
+    fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
+        buffer.fill(0);
+        let mut payload = LongPayload::new(Self::MESSAGE, Self::ELEMENTS, buffer);
+        Self::ENCODE(self, &mut payload)?;
+        let (length, room) = (payload.elements().map_or(Self::LONGEST, Self::BYTES), buffer.len());
+        buffer.get(..length).ok_or(Error::Room { message: Self::MESSAGE, length, room })
+    }
+}

@@ -1,0 +1,209 @@
+//! Long messages whose frames carry numbered parts.
+//!
+//! An [`Assembler`] puts the parts together, for many nodes at a time and without allocation. It is
+//! given every frame of the bus. A message is one of [`Outcome`]: whole, or incomplete with what is
+//! missing. Parts of two nodes are never mixed.
+//!
+//! A node sends the parts of a message in their order. A part whose number is not greater than that
+//! of the part before begins another message. A part after a request begins one, too. A frame that
+//! is repeated at once counts once.
+//!
+//! Time is a number of milliseconds from any start, and may wrap around. Call
+//! [`timed_out`](Assembler::timed_out) at least once in 24 days, or it may miss a silent node.
+
+mod assembler;
+mod peers;
+mod sender;
+
+use core::fmt;
+
+use super::LongLayout;
+use super::buffer::Buffer;
+use crate::plumbing::Continuation;
+use crate::{Frame, IdentifierFields, Layout, Place, Protocol};
+
+pub use super::buffer::Memory;
+pub use assembler::{Assembler, Outcomes};
+pub use sender::Frames;
+
+#[cfg(test)]
+mod tests;
+
+/// How frames carry a long message in numbered parts. Generated code implements it, and an
+/// [`Assembler`] needs it.
+pub trait Parted: LongLayout {
+    /// The messages of the protocol.
+    type Protocol: Protocol;
+    /// What a frame carries.
+    type Part: Layout;
+    /// Memory for all parts.
+    type Memory: Memory;
+    /// Where a frame has the number of its part.
+    const NUMBER: Place;
+    /// Where a frame has the data of its part: whole bytes, the first one highest.
+    const DATA: Place;
+    /// Number of the first part, if it is the same on every device model.
+    const FIRST: Option<u16>;
+    /// Numbers of the first part by device model, if they differ.
+    const MODEL_FIRSTS: &'static [(u8, u16)] = &[];
+    /// The field that says whether more parts follow, if there is one.
+    const CONTINUATION: Option<Continuation> = None;
+
+    /// Returns what a frame says about such a message.
+    const SAID: fn(&Self::Protocol) -> Said;
+
+    /// Returns the frames that carry the message in parts. Each is like `blank`, a frame of the
+    /// message: received, or made by [`Filter::frame`](crate::Filter::frame).
+    ///
+    /// All but the last say that more follow, if the protocol has a field for that.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`encode`](LongLayout::encode). It also refuses a message whose first part has
+    /// another number on each device model; [`frames_for`](Self::frames_for) builds that.
+    fn frames(&self, blank: &Frame) -> Result<Frames<Self>, crate::Error> {
+        Frames::new(self, blank, None)
+    }
+
+    /// Returns the frames that carry the message in parts, as a device model numbers them.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`frames`](Self::frames). It also refuses a model without such a message.
+    fn frames_for(&self, model: impl Into<u8>, blank: &Frame) -> Result<Frames<Self>, crate::Error> {
+        Frames::new(self, blank, Some(model.into()))
+    }
+
+    /// Returns the parts as frames carry them.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`frames`](Self::frames).
+    fn parts(&self) -> Result<impl Iterator<Item = Self::Part>, crate::Error> {
+        let frames = self.frames(&Frame::new_raw(0, true, [0; 8], 8))?;
+        Ok(frames.map(|frame| Self::Part::decode(&frame.bytes())))
+    }
+}
+
+/// What a frame says about a long message in parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Said {
+    /// A part of it.
+    Part,
+    /// How many elements its arrays have, at this place of the data.
+    Count(Place),
+    /// Nothing.
+    Nothing,
+}
+
+/// What became of a message.
+#[derive(Clone, Copy, Debug)]
+pub enum Outcome<L: Parted> {
+    /// It came whole.
+    Whole(Whole<L>),
+    /// Something of it did not come.
+    Incomplete(Incomplete<L>),
+    /// A message begins, and there is no room for it. Nothing of this frame is kept.
+    Full(Frame),
+}
+
+/// A message that came whole.
+#[derive(Clone, Copy)]
+pub struct Whole<L: Parted> {
+    /// The values.
+    pub values: L,
+    /// Whether the number of elements is known of arrays that vary in length: the node has told it,
+    /// or has marked the last part. Otherwise all elements are there that the parts have room for.
+    pub is_counted: bool,
+    frame: Frame,
+}
+
+/// A message that did not come whole.
+#[derive(Clone, Copy)]
+pub struct Incomplete<L: Parted> {
+    buffer: Buffer<L::Memory>,
+    first: u16,
+    expected: usize,
+    frame: Frame,
+}
+
+impl<L: Parted> Whole<L> {
+    /// Returns the identifier of the last frame. It shows who sends the message.
+    pub fn identifier(&self) -> <L::Protocol as Protocol>::Identifier {
+        IdentifierFields::FROM_RAW(self.frame.raw_id())
+    }
+
+    /// Returns the last frame.
+    pub const fn frame(&self) -> &Frame {
+        &self.frame
+    }
+}
+
+impl<L: Parted> Incomplete<L> {
+    /// Returns the identifier of the last frame. It shows who sends the message.
+    pub fn identifier(&self) -> <L::Protocol as Protocol>::Identifier {
+        IdentifierFields::FROM_RAW(self.frame.raw_id())
+    }
+
+    /// Returns the last frame.
+    pub const fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Returns the numbers of the parts that did not come, as far as it is known how many there are.
+    ///
+    /// There are none if the node marks a part as the last one before the message has all its
+    /// fields.
+    pub fn missing(&self) -> impl Iterator<Item = u16> {
+        let first = usize::from(self.first);
+        self.buffer.missing(self.expected).filter_map(move |index| u16::try_from(first.checked_add(index)?).ok())
+    }
+
+    /// Returns the data of a part that came, by its number.
+    pub fn part(&self, number: u16) -> Option<&[u8]> {
+        self.buffer.get(number.checked_sub(self.first)?.into())
+    }
+
+    /// Returns the joined data up to the last part that came. Those of missing parts are 0.
+    pub fn data(&self) -> &[u8] {
+        self.buffer.data()
+    }
+}
+
+impl<L: Parted + fmt::Debug> fmt::Debug for Whole<L> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { values, is_counted, .. } = self;
+        formatter
+            .debug_struct("Whole")
+            .field("identifier", &self.identifier())
+            .field("values", values)
+            .field("is_counted", is_counted)
+            .finish()
+    }
+}
+
+impl<L: Parted> fmt::Debug for Incomplete<L> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Incomplete")
+            .field("identifier", &self.identifier())
+            .field("data", &self.data())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Returns the number of data bytes in a part, at least one.
+fn size<L: Parted>() -> usize {
+    usize::from(L::DATA.width() / 8).max(1)
+}
+
+/// Returns how many parts carry some number of bytes.
+fn parts_of<L: Parted>(bytes: usize) -> usize {
+    bytes.div_ceil(size::<L>()).max(1)
+}
+
+/// Returns the number of the first part, if that is known of the device model.
+fn first<L: Parted>(model: Option<u8>) -> Option<u16> {
+    let own = L::MODEL_FIRSTS.iter().find(|(known, _)| Some(*known) == model);
+    own.map(|(_, first)| *first).or(L::FIRST)
+}

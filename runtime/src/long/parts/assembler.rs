@@ -1,0 +1,265 @@
+//! Puts the parts of long messages together, for many nodes at a time.
+
+use core::fmt;
+
+use super::peers::Peers;
+use super::{Incomplete, Outcome, Parted, Said, Whole, first, parts_of, size};
+use crate::assembler::elapsed;
+use crate::long::buffer::Buffer;
+use crate::{Frame, Kind, Received};
+
+/// Puts the parts of the message `L` together, from up to `N` nodes at a time.
+///
+/// Where a message of a node says how many elements arrays have, it remembers the numbers of `N`
+/// nodes.
+#[derive(Clone, Copy)]
+pub struct Assembler<L: Parted, const N: usize> {
+    transfers: [Option<Transfer<L>>; N],
+    counts: [Option<Count>; N],
+    patience: u32,
+    model: Option<u8>,
+}
+
+/// The parts of one message, up to now.
+#[derive(Clone, Copy)]
+struct Transfer<L: Parted> {
+    peers: Peers,
+    buffer: Buffer<L::Memory>,
+    /// Whether the last frame said that no other follows.
+    is_ended: bool,
+    /// The last frame.
+    frame: Frame,
+    /// When it came.
+    since: u32,
+}
+
+/// How many elements a node says that arrays have.
+#[derive(Clone, Copy)]
+struct Count {
+    node: Peers,
+    elements: usize,
+}
+
+/// A part of a message.
+#[derive(Clone, Copy)]
+struct Part {
+    /// How many parts come before it.
+    index: usize,
+    /// Its data, as the low bytes of a word.
+    word: [u8; 8],
+    /// Whether the frame says that no other follows.
+    is_last: bool,
+}
+
+impl Part {
+    fn data<L: Parted>(&self) -> &[u8] {
+        self.word.get(8_usize.saturating_sub(size::<L>())..).unwrap_or_default()
+    }
+}
+
+/// What became of messages by one frame: of the one that its node was sending, and of the one that
+/// it belongs to.
+#[derive(Clone)]
+#[must_use = "these are messages that ended"]
+pub struct Outcomes<L: Parted> {
+    before: Option<Outcome<L>>,
+    own: Option<Outcome<L>>,
+}
+
+impl<L: Parted> Outcomes<L> {
+    const NONE: Self = Self { before: None, own: None };
+}
+
+impl<L: Parted> Iterator for Outcomes<L> {
+    type Item = Outcome<L>;
+
+    fn next(&mut self) -> Option<Outcome<L>> {
+        self.before.take().or_else(|| self.own.take())
+    }
+}
+
+impl<L: Parted + fmt::Debug> fmt::Debug for Outcomes<L> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_list().entries(self.before).entries(self.own).finish()
+    }
+}
+
+impl<L: Parted, const N: usize> Assembler<L, N> {
+    /// Returns an assembler. A node times out after `patience` milliseconds of silence.
+    pub const fn new(patience: u32) -> Self {
+        Self { transfers: [None; N], counts: [None; N], patience, model: None }
+    }
+
+    /// Reads frames as those of a device model. Where the number of the first part depends on it,
+    /// nothing is put together without one.
+    #[must_use]
+    pub fn for_model(self, model: impl Into<u8>) -> Self {
+        Self { model: Some(model.into()), ..self }
+    }
+
+    /// Takes a frame, and returns what became of messages by it. A frame that is none of the
+    /// protocol, or says nothing about the message, changes nothing.
+    pub fn receive(&mut self, frame: &impl embedded_can::Frame, now: u32) -> Outcomes<L> {
+        let received = match self.model {
+            Some(model) => Received::decode_for(model, frame),
+            None => Received::decode(frame),
+        };
+        received.map_or(Outcomes::NONE, |received| self.take(&received, now))
+    }
+
+    /// The same as [`receive`](Self::receive), for a frame that is recognised already, as one of the
+    /// assembler's device model.
+    pub fn take(&mut self, received: &Received<L::Protocol>, now: u32) -> Outcomes<L> {
+        let said = L::SAID(received.content());
+        let is_own = received.exchange().message() == L::MESSAGE;
+        if said == Said::Nothing && !is_own || received.is_error_reply() {
+            return Outcomes::NONE;
+        }
+        let Some(peers) = Peers::of(received) else { return Outcomes::NONE };
+        match (said, self.part(received)) {
+            (Said::Part, Some(part)) => self.add(peers, part, received.frame(), now),
+            (Said::Count(place), _) if place.is_within(received.frame().length()) => {
+                let elements = usize::try_from(place.get(&received.frame().bytes())).unwrap_or(usize::MAX);
+                self.keep_count(Count { node: peers, elements });
+                Outcomes::NONE
+            }
+            _ if is_own && received.kind() == Kind::Request => {
+                let open = self.transfers.iter_mut().find(|slot| is_of(slot.as_ref(), &peers)).and_then(Option::take);
+                Outcomes { before: open.map(|open| self.ended(&open, None)), own: None }
+            }
+            _ => Outcomes::NONE,
+        }
+    }
+
+    /// Ends a message whose node has been silent for too long. Call this until it returns `None`.
+    pub fn timed_out(&mut self, now: u32) -> Option<Outcome<L>> {
+        let patience = self.patience;
+        let is_silent = |open: &Transfer<L>| elapsed(open.since, now).is_some_and(|silence| silence >= patience);
+        self.end(|open| open.as_ref().is_some_and(is_silent))
+    }
+
+    /// Ends a message whose parts have begun to come. Call this until it returns `None`.
+    pub fn finish(&mut self) -> Option<Outcome<L>> {
+        self.end(Option::is_some)
+    }
+
+    fn end(&mut self, is_meant: impl Fn(&Option<Transfer<L>>) -> bool) -> Option<Outcome<L>> {
+        let open = self.transfers.iter_mut().find(|open| is_meant(open))?.take()?;
+        Some(self.ended(&open, None))
+    }
+
+    /// Returns the part that a frame carries, if its number is one of the message's.
+    fn part(&self, received: &Received<L::Protocol>) -> Option<Part> {
+        let data = received.frame().bytes();
+        let index = L::NUMBER.get(&data).checked_sub(first::<L>(self.model)?.into())?;
+        let index = usize::try_from(index).ok().filter(|index| *index < parts_of::<L>(L::LONGEST))?;
+        let is_last = L::CONTINUATION.is_some_and(|continuation| !continuation.is_in(received.frame()));
+        Some(Part { index, word: L::DATA.get(&data).to_be_bytes(), is_last })
+    }
+
+    /// Adds a part to the message that its node sends, or begins another.
+    fn add(&mut self, peers: Peers, part: Part, frame: &Frame, now: u32) -> Outcomes<L> {
+        let open = self.transfers.iter_mut().find(|slot| is_of(slot.as_ref(), &peers));
+        let open = open.and_then(Option::take);
+        let (open, before) = match open {
+            Some(open) if open.is_last(&part) => {
+                let kept = self.keep(Transfer { since: now, ..open });
+                return Outcomes { before: None, own: kept };
+            }
+            Some(open) if open.buffer.end() <= part.index => (open, None),
+            other => (Transfer::new(peers, frame, now), other.map(|open| self.ended(&open, None))),
+        };
+        let mut open = Transfer { is_ended: part.is_last, frame: *frame, since: now, ..open };
+        open.buffer.put(part.index, part.data::<L>());
+        let count = part.index.saturating_add(1);
+        let expected = if part.is_last { Some(count) } else { expected::<L>(self.count(&open)) };
+        let is_end = expected.unwrap_or_else(|| parts_of::<L>(L::LONGEST)) <= count;
+        let own = if is_end { Some(self.ended(&open, expected)) } else { self.keep(open) };
+        Outcomes { before, own }
+    }
+
+    /// Keeps a message that goes on, or says that there is no room.
+    fn keep(&mut self, open: Transfer<L>) -> Option<Outcome<L>> {
+        match self.transfers.iter_mut().find(|slot| slot.is_none()) {
+            Some(slot) => {
+                *slot = Some(open);
+                None
+            }
+            None => Some(Outcome::Full(open.frame)),
+        }
+    }
+
+    /// Remembers how many elements a node says that arrays have.
+    fn keep_count(&mut self, count: Count) {
+        let is_its = |known: &Option<Count>| known.is_some_and(|known| known.node.are_of_module(&count.node));
+        let known = self.counts.iter().position(is_its).or_else(|| self.counts.iter().position(Option::is_none));
+        if let Some(slot) = known.and_then(|known| self.counts.get_mut(known)) {
+            *slot = Some(count);
+        }
+    }
+
+    /// Returns how many elements the arrays of a message have, if its node has said it.
+    fn count(&self, open: &Transfer<L>) -> Option<usize> {
+        let known = self.counts.iter().flatten().find(|known| known.node.are_of_module(&open.peers));
+        known.map(|known| known.elements)
+    }
+
+    /// Returns what became of a message. `expected` is the number of its parts, if the frames say it.
+    fn ended(&self, open: &Transfer<L>, expected: Option<usize>) -> Outcome<L> {
+        let Transfer { buffer, frame, .. } = *open;
+        let count = self.count(open);
+        let expected = expected.or_else(|| self::expected::<L>(count)).unwrap_or(buffer.end());
+        let data = buffer.data();
+        let data = data.get(..bytes_with::<L>(count)).unwrap_or(data);
+        let values = if buffer.missing(expected).next().is_none() { L::decode(data) } else { None };
+        match values {
+            Some(values) => {
+                let is_counted = L::ELEMENTS.is_none() || count.is_some() || open.is_ended;
+                Outcome::Whole(Whole { values, is_counted, frame })
+            }
+            None => Outcome::Incomplete(Incomplete {
+                buffer,
+                first: first::<L>(self.model).unwrap_or_default(),
+                expected,
+                frame,
+            }),
+        }
+    }
+}
+
+impl<L: Parted> Transfer<L> {
+    fn new(peers: Peers, frame: &Frame, now: u32) -> Self {
+        Self { peers, buffer: Buffer::new(size::<L>()), is_ended: false, frame: *frame, since: now }
+    }
+
+    /// Tests whether a part is the last one once more.
+    fn is_last(&self, part: &Part) -> bool {
+        let is_index = self.buffer.end() == part.index.saturating_add(1);
+        is_index && self.buffer.get(part.index) == Some(part.data::<L>())
+    }
+}
+
+impl<L: Parted, const N: usize> fmt::Debug for Assembler<L, N> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let nodes = self.transfers.iter().flatten().count();
+        formatter.debug_struct("Assembler").field("message", &L::MESSAGE).field("nodes", &nodes).finish_non_exhaustive()
+    }
+}
+
+fn is_of<L: Parted>(slot: Option<&Transfer<L>>, peers: &Peers) -> bool {
+    slot.is_some_and(|open| open.peers.are(peers))
+}
+
+/// Returns the number of parts, if it is known.
+fn expected<L: Parted>(count: Option<usize>) -> Option<usize> {
+    let is_known = L::ELEMENTS.is_none() || count.is_some();
+    is_known.then(|| parts_of::<L>(bytes_with::<L>(count)))
+}
+
+/// Returns the number of data bytes if arrays that vary in length have some number of elements, or all.
+fn bytes_with<L: Parted>(count: Option<usize>) -> usize {
+    match (L::ELEMENTS, count) {
+        (Some((_, most)), Some(count)) => L::BYTES(count.min(most)),
+        _ => L::LONGEST,
+    }
+}

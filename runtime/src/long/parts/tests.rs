@@ -1,0 +1,285 @@
+//! An assembler of parts on a protocol written by hand: three nodes, and messages of two or three parts.
+
+use std::vec::Vec;
+
+use super::*;
+use crate::long::{Elements, LongPayload, LongSignal};
+use crate::plumbing::{Address, Decode, Encode, Incoming, Pattern, Task, Who};
+use crate::{
+    AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Problem, Received, Signal,
+};
+
+const NODE: Bits = Bits::new(3, 0);
+const TO_HOST: Bits = Bits::new(4, 4);
+const COMMAND: Bits = Bits::new(6, 5);
+const ERROR: Bits = Bits::new(7, 7);
+const NODE_ADDRESS: AddressType = AddressType::new("node", 1, 3);
+
+const MODE: Mode = Mode {
+    name: "single",
+    target: Some(&NODE_ADDRESS),
+    request: Some(Pattern { constants: &[(TO_HOST, 0)], addresses: &[Address::new(NODE, &NODE_ADDRESS)] }),
+    one: Some(Pattern { constants: &[(TO_HOST, 1)], addresses: &[Address::new(NODE, &NODE_ADDRESS)] }),
+    each: None,
+    coordinator: None,
+};
+
+const READ: Exchange = Exchange::new("read", &[Some(Who::One)]).request(Filter::STANDARD).reply(Filter::STANDARD);
+const STATE: Exchange = READ.of("state", Filter::STANDARD.id(COMMAND, 1));
+const CELLS: Exchange = READ.of("cells", Filter::STANDARD.id(COMMAND, 2));
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Message {
+    Request,
+    State(State),
+    Part(CellsPart),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Identifier(u32);
+
+impl IdentifierFields for Identifier {
+    const FROM_RAW: fn(u32) -> Self = Self;
+    const TO_RAW: fn(Self) -> u32 = |Self(id)| id;
+
+    fn is_to_module(id: u32) -> bool {
+        TO_HOST.of(id) == 0
+    }
+
+    fn is_to_controller(id: u32) -> bool {
+        TO_HOST.of(id) == 1
+    }
+}
+
+impl Protocol for Message {
+    type Identifier = Identifier;
+    const FRAME: Filter = Filter::STANDARD;
+    const NORMAL: Filter = Filter::STANDARD.id(ERROR, 0);
+    const MODES: &'static [Mode] = &[MODE];
+
+    fn request(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        match frame.id(COMMAND) {
+            1 => frame.request(&STATE, Self::Request),
+            2 => frame.request(&CELLS, Self::Request),
+            _ => frame.unknown(),
+        }
+    }
+
+    fn reply(frame: &Incoming) -> Result<Received<Self>, Problem> {
+        match frame.id(COMMAND) {
+            1 => frame.reply(&STATE, Self::State(frame.values())),
+            2 => frame.reply(&CELLS, Self::Part(frame.values())),
+            _ => frame.unknown(),
+        }
+    }
+
+    fn run<T: Task>(&self, task: T) -> T::Output {
+        match self {
+            Self::State(message) => task.run(message),
+            Self::Part(message) => task.run(message),
+            Self::Request => task.run(&()),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct State {
+    cells: u8,
+}
+
+impl Layout for State {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[];
+    const DECODE: Decode<Self> = |data| Self { cells: Place::byte(0).read(data) };
+    const ENCODE: Encode<Self> = |_, _| Ok(());
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CellsPart {
+    part: u8,
+    data: Bytes<4>,
+}
+
+impl Layout for CellsPart {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[];
+    const DECODE: Decode<Self> = |data| Self { part: Cells::NUMBER.read(data), data: Cells::DATA.read(data) };
+    const ENCODE: Encode<Self> = |_, _| Ok(());
+}
+
+/// Two bytes, and one to five cells of two bytes in parts of four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cells {
+    cycles: u16,
+    voltage: Elements<u16, 5>,
+}
+
+impl Cells {
+    const CYCLES: LongSignal<u16> = LongSignal::new(0, Signal::new("cycles", Place::bytes(0, 1)));
+    const VOLTAGE: LongSignal<u16> = LongSignal::new(2, Signal::new("voltage", Place::bytes(0, 1))).every(2);
+}
+
+impl LongLayout for Cells {
+    const MESSAGE: &'static str = "cells";
+    const SHORTEST: usize = 2;
+    const LONGEST: usize = 12;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 5));
+    const BYTES: fn(usize) -> usize = |elements| Self::VOLTAGE.reach(elements).max(2);
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        cycles: Self::CYCLES.read(data, Signal::get),
+        voltage: Self::VOLTAGE.read_some(data, Self::VOLTAGE.fitting(data.len()), Signal::get),
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::CYCLES.write(message.cycles, payload, Signal::put)?;
+        Self::VOLTAGE.write_some(&message.voltage, payload, Signal::put)
+    };
+}
+
+impl Parted for Cells {
+    type Protocol = Message;
+    type Part = CellsPart;
+    type Memory = [u8; 13];
+    const NUMBER: Place = Place::byte(0);
+    const DATA: Place = Place::bytes(1, 4);
+    const FIRST: Option<u16> = Some(1);
+
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::Part(_) => Said::Part,
+        Message::State(_) => Said::Count(Place::byte(0)),
+        Message::Request => Said::Nothing,
+    };
+}
+
+fn cells(cells: &[u16]) -> Cells {
+    Cells { cycles: 258, voltage: Elements::from_slice(cells).expect("one to five") }
+}
+
+/// Returns the frames of a node.
+fn frames(node: u32, cells: &Cells) -> Vec<Frame> {
+    let blank = Frame::new_raw(2 << 5 | 1 << 4 | node, false, [0; 8], 8);
+    cells.frames(&blank).expect("it fits").collect()
+}
+
+fn state(node: u32, cells: u8) -> Frame {
+    Frame::new_raw(1 << 5 | 1 << 4 | node, false, [cells, 0, 0, 0, 0, 0, 0, 0], 8)
+}
+
+fn request(node: u32) -> Frame {
+    Frame::new_raw(2 << 5 | node, false, [0; 8], 8)
+}
+
+/// What became of a message, to compare it: who sent it, its values, and its missing parts.
+type Told = (u32, Option<Cells>, Vec<u16>);
+
+fn told(outcome: Outcome<Cells>) -> Told {
+    match outcome {
+        Outcome::Whole(whole) => (NODE.of(whole.identifier().0), Some(whole.values), Vec::new()),
+        Outcome::Incomplete(partial) => (NODE.of(partial.identifier().0), None, partial.missing().collect()),
+        Outcome::Full(frame) => (NODE.of(frame.raw_id()), None, Vec::new()),
+    }
+}
+
+fn fed<const N: usize>(assembler: &mut Assembler<Cells, N>, frames: &[Frame]) -> Vec<Told> {
+    frames.iter().flat_map(|frame| assembler.receive(frame, 0)).map(told).collect()
+}
+
+#[test]
+fn a_message_is_taken_apart_and_put_together() {
+    let message = cells(&[10, 20, 30, 40, 50]);
+    let parts: Vec<_> = message.parts().expect("it fits").collect();
+    // 258 is 0x0102; cells of two bytes follow it.
+    let expected = [[1, 2, 0, 10], [0, 20, 0, 30], [0, 40, 0, 50]].map(Bytes::new);
+    assert_eq!(parts.iter().map(|part| part.data).collect::<Vec<_>>(), expected);
+    assert_eq!(parts.iter().map(|part| part.part).collect::<Vec<_>>(), [1, 2, 3]);
+    assert_eq!(fed(&mut Assembler::<_, 1>::new(9), &frames(2, &message)), [(2, Some(message), Vec::new())]);
+}
+
+#[test]
+fn the_number_that_a_node_tells_ends_its_messages() {
+    let (short, mut assembler) = (cells(&[10]), Assembler::<_, 3>::new(9));
+    assert_eq!(fed(&mut assembler, &frames(2, &short)), []);
+    assert_eq!(fed(&mut assembler, &[state(1, 1), state(3, 2)]), []);
+    assert_eq!(fed(&mut assembler, &frames(1, &short)), [(1, Some(short), Vec::new())]);
+    let Some(Outcome::Whole(counted)) = assembler.receive(&frames(1, &short)[0], 0).next() else { panic!("one part") };
+    assert!(counted.is_counted);
+    let two = cells(&[10, 20]);
+    assert_eq!(fed(&mut assembler, &frames(3, &two)), [(3, Some(two), Vec::new())]);
+    // Node 2 has told nothing. All elements are shown that came: those of the one part.
+    let Some(Outcome::Whole(last)) = assembler.finish() else { panic!("one message has begun") };
+    assert_eq!((last.values, last.is_counted), (short, false));
+    assert!(assembler.finish().is_none());
+}
+
+#[test]
+fn a_repeated_frame_counts_once_and_a_lost_one_is_missing() {
+    let mut assembler = Assembler::<_, 1>::new(9);
+    let message = cells(&[10, 20, 30, 40, 50]);
+    let [one, two, three] = frames(1, &message)[..] else { panic!("three parts") };
+    assert_eq!(fed(&mut assembler, &[one, one, two, two, three]), [(1, Some(message), Vec::new())]);
+    assert_eq!(fed(&mut assembler, &[one, three]), [(1, None, [2].into())]);
+    assert_eq!(fed(&mut assembler, &[three]), [(1, None, [1, 2].into())]);
+    // A part that is not greater begins another message.
+    assert_eq!(fed(&mut assembler, &[one, two, one]), [(1, Some(cells(&[10, 20, 30])), Vec::new())]);
+    // The node tells that there are five cells, so each message that begins anew has lost something.
+    assert_eq!(
+        fed(&mut assembler, &[state(1, 5), two, one, one, three]),
+        [(1, None, [3].into()), (1, None, [2].into())]
+    );
+}
+
+#[test]
+fn a_request_begins_another_message() {
+    let mut assembler = Assembler::<_, 2>::new(9);
+    let [one, two, three] = frames(1, &cells(&[10, 20, 30, 40, 50]))[..] else { panic!("three parts") };
+    let told = fed(&mut assembler, &[state(1, 5), one, request(2), two, request(1), three]);
+    assert_eq!(told, [(1, None, [3].into()), (1, None, [1, 2].into())]);
+}
+
+#[test]
+fn an_incomplete_message_has_what_came() {
+    let mut assembler = Assembler::<Cells, 1>::new(9);
+    let [one, _, three] = frames(1, &cells(&[10, 20, 30, 40, 50]))[..] else { panic!("three parts") };
+    assert!(assembler.receive(&one, 0).next().is_none());
+    let Some(Outcome::Incomplete(partial)) = assembler.receive(&three, 0).next() else { panic!("part 2 is missing") };
+    assert_eq!(
+        [1, 2, 3, 0].map(|number| partial.part(number)),
+        [Some(&[1, 2, 0, 10][..]), None, Some(&[0, 40, 0, 50]), None]
+    );
+    assert_eq!(partial.data(), [1, 2, 0, 10, 0, 0, 0, 0, 0, 40, 0, 50]);
+}
+
+#[test]
+fn there_is_room_for_as_many_nodes_as_the_caller_says() {
+    let mut assembler = Assembler::<_, 1>::new(9);
+    let message = cells(&[10, 20, 30, 40, 50]);
+    let of_one = frames(1, &message);
+    assert!(assembler.receive(&of_one[0], 0).next().is_none());
+    assert!(matches!(assembler.receive(&frames(2, &message)[0], 0).next(), Some(Outcome::Full(_))));
+    assert_eq!(fed(&mut assembler, &of_one[1..]), [(1, Some(message), Vec::new())]);
+}
+
+#[test]
+fn a_silent_node_times_out_whatever_the_time_is() {
+    let mut assembler = Assembler::<_, 2>::new(100);
+    let of = |node| frames(node, &cells(&[10, 20, 30, 40, 50]));
+    assert!(assembler.receive(&of(1)[0], u32::MAX - 10).next().is_none());
+    assert!(assembler.receive(&of(2)[0], 0).next().is_none());
+    assert!(assembler.timed_out(88).is_none());
+    assert_eq!(assembler.timed_out(89).map(told), Some((1, Some(cells(&[10])), Vec::new())));
+    assert!(assembler.timed_out(89).is_none());
+    // A repeated frame shows that the node is there.
+    assert!(assembler.receive(&of(2)[0], 90).next().is_none());
+    assert!(assembler.timed_out(189).is_none() && assembler.timed_out(190).is_some());
+}
+
+#[test]
+fn frames_that_are_none_of_the_message_change_nothing() {
+    let mut assembler = Assembler::<_, 1>::new(9);
+    let [one, two, _] = frames(1, &cells(&[10, 20, 30, 40, 50]))[..] else { panic!("three parts") };
+    let other = Frame::new_raw(3 << 5 | 1 << 4 | 1, false, [0; 8], 8);
+    let beyond = one.with_data([4, 0, 0, 0, 0, 0, 0, 0] as Data);
+    let before = one.with_data([0; 8]);
+    let extended = Frame::new_raw(one.raw_id(), true, one.bytes(), 8);
+    let error = |frame: Frame| Frame::new_raw(frame.raw_id() | 1 << 7, false, frame.bytes(), 8);
+    assert_eq!(fed(&mut assembler, &[one, other, beyond, before, extended, error(state(1, 1)), error(two), two]), []);
+    assert_eq!(assembler.finish().map(told), Some((1, Some(cells(&[10, 20, 30])), Vec::new())));
+    assert_eq!(CELLS.filter(Kind::Reply).map(|filter| filter.matches(&one)), Some(true));
+}

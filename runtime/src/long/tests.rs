@@ -1,0 +1,110 @@
+//! A layout written by hand, as generated code has it.
+
+use std::string::ToString;
+
+use super::*;
+use crate::{Place, Signal};
+
+/// Eleven bytes at most: a count of cycles, four valves of two bits each, and one to four cells of two bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cells {
+    cycles: u16,
+    valve: [u8; 4],
+    voltage_v: Elements<f64, 4>,
+    group: Elements<u8, 4>,
+}
+
+impl Cells {
+    const CYCLES: LongSignal<u16> = LongSignal::new(0, Signal::new("cycles", Place::bytes(1, 0)));
+    const VALVE: LongSignal<u8> = LongSignal::new(2, Signal::new("valve", Place::byte(0).bits(7, 6))).every_bits(-2);
+    const VOLTAGE: LongSignal<u16, f64> =
+        LongSignal::new(3, Signal::new("voltage", Place::bytes(1, 0).bits(11, 0)).unit("V").scale(1, 100)).every(2);
+    const GROUP: LongSignal<u8> = LongSignal::new(3, Signal::new("group", Place::byte(1).bits(7, 4))).every(2);
+}
+
+impl LongLayout for Cells {
+    const MESSAGE: &'static str = "cells";
+    const SHORTEST: usize = 3;
+    const LONGEST: usize = 11;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 4));
+    const BYTES: fn(usize) -> usize =
+        |elements| Self::SHORTEST.max(Self::VOLTAGE.reach(elements)).max(Self::GROUP.reach(elements));
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::VOLTAGE.fitting(data.len()).min(Self::GROUP.fitting(data.len()));
+        Self {
+            cycles: Self::CYCLES.read(data, Signal::get),
+            valve: Self::VALVE.read_array(data, Signal::get),
+            voltage_v: Self::VOLTAGE.read_some(data, count, Signal::decode),
+            group: Self::GROUP.read_some(data, count, Signal::get),
+        }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::CYCLES.write(message.cycles, payload, Signal::put)?;
+        Self::VALVE.write_all(&message.valve, payload, Signal::put)?;
+        Self::VOLTAGE.write_some(&message.voltage_v, payload, Signal::encode)?;
+        Self::GROUP.write_some(&message.group, payload, Signal::put)
+    };
+}
+
+/// 0x0102 are 258 cycles; `0b11_01_00_10` are four valves; 0x014A is 330, and 0x114B is 331 with group 1.
+const DATA: [u8; 7] = [0x02, 0x01, 0b1101_0010, 0x4A, 0x01, 0x4B, 0x11];
+
+fn cells() -> Cells {
+    Cells {
+        cycles: 258,
+        valve: [3, 1, 0, 2],
+        voltage_v: Elements::from_slice(&[3.3, 3.31]).expect("two of four"),
+        group: Elements::from_slice(&[0, 1]).expect("two of four"),
+    }
+}
+
+#[test]
+fn values_are_read_from_the_joined_data_and_written_to_the_same_bytes() {
+    assert_eq!(Cells::decode(&DATA), Some(cells()));
+    assert_eq!(cells().encode(&mut [0xFF; Cells::LONGEST]), Ok(&DATA[..]));
+}
+
+#[test]
+fn an_element_that_is_cut_off_is_none_and_too_few_bytes_are_no_message() {
+    let lengths = (0..=9).map(|length| {
+        let data = [&DATA[..], &[0; 2]].concat();
+        Cells::decode(&data[..length]).map(|cells| cells.voltage_v.len())
+    });
+    let expected = [None, None, None, Some(0), Some(0), Some(1), Some(1), Some(2), Some(2), Some(3)];
+    assert!(lengths.eq(expected));
+    assert_eq!(Cells::decode(&[0; 40]).map(|cells| cells.group.len()), Some(4));
+}
+
+#[test]
+fn arrays_vary_together_and_within_their_limits() {
+    let refused = |cells: Cells| cells.encode(&mut [0; 11]).expect_err("a refusal").to_string();
+    let group = Elements::from_slice(&[0]).expect("one of four");
+    assert_eq!(refused(Cells { group, ..cells() }), "`group` of `cells` has 1 elements, but its limits are 2 and 2");
+    let none = Cells::decode(&DATA[..3]).expect("all that is always there");
+    assert_eq!(refused(none), "`voltage` of `cells` has 0 elements, but its limits are 1 and 4");
+}
+
+#[test]
+fn a_value_that_does_not_fit_and_a_short_buffer_are_refused() {
+    let error = Cells { valve: [0, 4, 0, 0], ..cells() }.encode(&mut [0; 11]).expect_err("two bits");
+    assert_eq!(error.to_string(), "`valve` of `cells` is 4, but its limits are 0 and 3");
+    let error = cells().encode(&mut [0; 6]).expect_err("six of seven bytes");
+    assert_eq!(error.to_string(), "`cells` has 7 data bytes, and the buffer has room for 6");
+}
+
+#[test]
+fn elements_can_run_against_the_order_of_bytes_and_bits() {
+    const DOWN: LongSignal<u8> = LongSignal::new(3, Signal::new("down", Place::byte(0))).every(-1);
+    const UP: LongSignal<u8> = LongSignal::new(0, Signal::new("up", Place::bytes(1, 0).bits(2, 0))).every_bits(3);
+    assert_eq!(DOWN.read_array(&[1, 2, 3, 4], Signal::get), [4, 3, 2, 1]);
+    // 0x4A01 is 0b100_101_000_000_001 in groups of three bits.
+    assert_eq!(UP.read_array(&[0x01, 0x4A], Signal::get), [1, 0, 0, 5, 4]);
+    assert_eq!(
+        ([0, 1, 4].map(|count| DOWN.reach(count)), [1, 3, 5].map(|count| UP.reach(count))),
+        ([0, 4, 4], [1, 2, 2])
+    );
+    let mut data = [0; 2];
+    UP.write_all(&[1, 0, 0, 5, 4], &mut LongPayload::new("message", None, &mut data), Signal::put)
+        .expect("three bits each");
+    assert_eq!(data, [0x01, 0x4A]);
+}
