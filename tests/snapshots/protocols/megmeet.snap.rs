@@ -118,7 +118,7 @@ impl IdentifierFields for Identifier {
     }
 }
 
-/// The field that says whether more frames of a set follow.
+/// The field that says whether more frames follow.
 pub const CONTINUATION: Continuation = Continuation::identifier(Identifier::MORE, 0x1);
 
 /// Whom a request addresses.
