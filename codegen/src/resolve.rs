@@ -13,6 +13,7 @@ mod fields;
 mod format;
 mod identifier;
 mod keys;
+mod lengths;
 mod long;
 mod messages;
 mod patterns;

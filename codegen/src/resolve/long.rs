@@ -40,7 +40,50 @@ pub struct Head<'a> {
     pub reserved: Reserved,
 }
 
+/// The fields of a message's frames, and what several frames carry together.
+pub struct Carried {
+    pub leaves: Leaves,
+    pub long: Option<LongMessageId>,
+    /// The numbers of data bytes that a frame can have; empty if none carries the fields.
+    pub lengths: Vec<u8>,
+}
+
 impl Resolver<'_> {
+    /// Takes the fields of a message apart: into those of its frames, and those of all frames together.
+    pub fn carried(
+        &mut self,
+        id: MessageId,
+        path: &Path,
+        message: &ast::Message,
+        contents: Leaves,
+        head: Head,
+        length: u8,
+    ) -> Carried {
+        let at = path.key("length");
+        if let (Some(_), Some(_)) = (&message.parts, &message.via) {
+            let text = format!("`{}` has both `parts` and `via`", head.name);
+            let help = "numbered parts need no transport; write one of the two";
+            self.error_with_help(&rules::TRANSPORT, path.key("via").at_key(), text, help);
+        }
+        if let Some(name) = &message.via {
+            let lengths = self.long_lengths(&at, &message.length.0);
+            let Some(transport) = self.transport(&path.key("via"), name) else {
+                let given_up = contents.names().collect();
+                return Carried { leaves: Leaves { given_up, ..Leaves::default() }, long: None, lengths: Vec::new() };
+            };
+            let (leaves, long) = self.transported(id, path, (transport, lengths), contents, head);
+            let known = long.map(|long| &self.tables.long_messages[long]);
+            let lengths = known.map(|long| (0..=8).filter(|bytes| long.has_length(usize::from(*bytes))).collect());
+            return Carried { leaves, long, lengths: lengths.unwrap_or_default() };
+        }
+        let lengths = self.lengths(&at, &message.length.0, length);
+        let (leaves, long) = match &message.parts {
+            Some(parts) => self.long_message(id, path, (parts, contents), head),
+            None => (contents, None),
+        };
+        Carried { leaves, long, lengths }
+    }
+
     /// Reads `bytes` that count in the data of several frames.
     pub fn window(&mut self, path: &Path, text: &str) -> Option<Windowed> {
         let (first, last) = self.ends(path, text, "12..13")?;

@@ -1,19 +1,17 @@
 //! Resolves messages: their signals and their frames.
 
-use std::fmt::Display;
-
 use super::Resolver;
 use super::access::{Modes, Times, pattern_of};
 use super::fields::Leaves;
-use super::long::{Head, MOST_BYTES};
+use super::lengths::lengths_with;
+use super::long::{Carried, Head};
 use super::sets::distinct;
 use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    LongMessageId, Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
+    Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
-use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -45,14 +43,6 @@ pub struct Owner<'a> {
     pub exchange: &'a Exchange,
     pub lengths: &'a [u8],
     pub signals: &'a Table<SignalId, Signal>,
-}
-
-/// The fields of a message's frames, and what several frames carry together.
-struct Carried {
-    leaves: Leaves,
-    long: Option<LongMessageId>,
-    /// The numbers of data bytes that a frame can have; empty if none carries the fields.
-    lengths: Vec<u8>,
 }
 
 /// The constants that choose the frames of a message, whatever the access.
@@ -137,7 +127,7 @@ impl Resolver<'_> {
         let models = self.models_named(&path.key("models"), &message.models);
         let reserved = self.reserved(path, message.reserved.as_ref(), surroundings.reserved);
         let head = Head { name, doc: &doc, models: &models, reserved };
-        let Carried { leaves, long, lengths } = self.carried(id, path, message, contents, head, surroundings);
+        let Carried { leaves, long, lengths } = self.carried(id, path, message, contents, head, surroundings.length);
         let choice = self.choice(path, message, leaves.constants, &leaves.replies, surroundings.identifier);
         let set = self.set(path, message);
         self.tables.given_up.insert(name.to_owned(), leaves.given_up.into_iter().collect());
@@ -294,41 +284,6 @@ impl Resolver<'_> {
         constants.into_iter().map(|constant| Written { constant, at: at(&constant), part }).collect()
     }
 
-    /// Takes the fields of a message apart: into those of its frames, and those of all frames together.
-    fn carried(
-        &mut self,
-        id: MessageId,
-        path: &Path,
-        message: &ast::Message,
-        contents: Leaves,
-        head: Head,
-        surroundings: &Surroundings,
-    ) -> Carried {
-        let at = path.key("length");
-        if let (Some(_), Some(_)) = (&message.parts, &message.via) {
-            let text = format!("`{}` has both `parts` and `via`", head.name);
-            let help = "numbered parts need no transport; write one of the two";
-            self.error_with_help(&rules::TRANSPORT, path.key("via").at_key(), text, help);
-        }
-        if let Some(name) = &message.via {
-            let lengths = self.long_lengths(&at, &message.length.0);
-            let Some(transport) = self.transport(&path.key("via"), name) else {
-                let given_up = contents.names().collect();
-                return Carried { leaves: Leaves { given_up, ..Leaves::default() }, long: None, lengths: Vec::new() };
-            };
-            let (leaves, long) = self.transported(id, path, (transport, lengths), contents, head);
-            let known = long.map(|long| &self.tables.long_messages[long]);
-            let lengths = known.map(|long| (0..=8).filter(|length| long.has_length(usize::from(*length))).collect());
-            return Carried { leaves, long, lengths: lengths.unwrap_or_default() };
-        }
-        let lengths = self.lengths(&at, &message.length.0, surroundings.length);
-        let (leaves, long) = match &message.parts {
-            Some(parts) => self.long_message(id, path, (parts, contents), head),
-            None => (contents, None),
-        };
-        Carried { leaves, long, lengths }
-    }
-
     /// Resolves `fields` or `value`.
     fn contents(&mut self, path: &Path, name: &str, message: &ast::Message, doc: &Doc) -> Leaves {
         let is_long = message.parts.is_some() || message.via.is_some();
@@ -401,56 +356,6 @@ impl Resolver<'_> {
         let Some(pattern) = pattern_of(access, kind) else { return Vec::new() };
         let path = Path::default().key("access").key(name).key(kind.name());
         self.constants(&path, pattern, surroundings.identifier)
-    }
-
-    /// Reads a number of data bytes.
-    fn length(&mut self, path: &Path, text: &str) -> Option<u8> {
-        let is_longer = Rational::parse(text).is_some_and(|number| number > Rational::integer(8));
-        if !is_longer {
-            return self.integer(path, text, 0, 8);
-        }
-        let message = format!("a frame has at most 8 data bytes, not {text}");
-        let help = "frames of CAN FD are not there yet; split what is longer into messages of its frames";
-        self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
-        None
-    }
-
-    /// Reads the numbers of data bytes that frames of a message can have, the least first.
-    fn lengths(&mut self, path: &Path, written: &[String], otherwise: u8) -> Vec<u8> {
-        let lengths = self.rising(path, written, Self::length);
-        if lengths.is_empty() { vec![otherwise] } else { lengths }
-    }
-
-    /// Reads the numbers of data bytes that a long message can have, the least first.
-    fn long_lengths(&mut self, path: &Path, written: &[String]) -> Vec<u16> {
-        self.rising(path, written, |resolver, at, text| resolver.integer(at, text, 1, MOST_BYTES))
-    }
-
-    /// Reads numbers in rising order.
-    fn rising<N: Copy + PartialOrd + Display>(
-        &mut self,
-        path: &Path,
-        written: &[String],
-        read: impl Fn(&mut Self, &Path, &str) -> Option<N>,
-    ) -> Vec<N> {
-        let mut lengths: Vec<N> = Vec::new();
-        for (index, text) in written.iter().enumerate() {
-            let at = if self.diagnostics.has(&path.index(index)) { path.index(index) } else { path.clone() };
-            let Some(length) = read(self, &at, text) else { continue };
-            match lengths.last().filter(|shorter| **shorter >= length) {
-                None => lengths.push(length),
-                Some(shorter) => {
-                    let text = format!("the length {length} stands after {shorter}");
-                    self.error_with_help(
-                        &rules::NUMBER,
-                        at.at_value(),
-                        text,
-                        "write each length once, the least first",
-                    );
-                }
-            }
-        }
-        lengths
     }
 
     /// Makes the frame of one kind of a message. `travel` has the constants of its access.
@@ -548,16 +453,6 @@ impl Resolver<'_> {
         let diagnostic = Diagnostic::error(&rules::MATCH, first.1, text).help(help);
         self.diagnostics.push(diagnostic.other(second.1, second.0.name()));
     }
-}
-
-/// Returns the lengths of a kind of frame: the shortest, and those at which more of its signals end.
-fn lengths_with(lengths: &[u8], ends: &(impl Iterator<Item = u8> + Clone)) -> Vec<u8> {
-    let mut shorter = None;
-    let adds = |length: &&u8| {
-        let shorter = shorter.replace(**length);
-        shorter.is_none_or(|shorter| ends.clone().any(|end| (shorter + 1..=**length).contains(&end)))
-    };
-    lengths.iter().filter(adds).copied().collect()
 }
 
 /// Returns the ways in which a kind of frame is sent.
