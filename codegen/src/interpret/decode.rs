@@ -1,16 +1,13 @@
 //! Decodes a frame to a message with its values.
 
 use std::cmp::Reverse;
-use std::fmt::Display;
 
+use super::notes::signal_note;
 use super::value::physical;
-use super::{Decoded, Form, Frame, Note, Problem, Reading, Unrecognised, Value, hexadecimal};
-use crate::encoding::Words;
-use crate::hex;
+use super::{Decoded, Form, Frame, Problem, Reading, Unrecognised, hexadecimal};
 use crate::model::{
     AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Id, Message, ModelId,
-    NoteRule, Protocol, Range, Recognition, Reserved, Scope, SelectorId, SelectorPlace, Signal, Table, Travel, Who,
-    first_bytes,
+    Protocol, Recognition, Reserved, Scope, SelectorId, SelectorPlace, Table, Travel, Who,
 };
 
 /// Decodes a frame that goes to or comes from a device model.
@@ -56,18 +53,18 @@ pub fn failed_tests<'a>(protocol: &'a Protocol, frame: &Frame, is_to_module: boo
 }
 
 /// A kind of frame that a frame may be.
-type Candidate<'a> = (FrameId, &'a FrameLayout);
+pub type Candidate<'a> = (FrameId, &'a FrameLayout);
 
-struct Decoder<'a> {
-    protocol: &'a Protocol,
-    model: Option<ModelId>,
-    frame: &'a Frame,
+pub struct Decoder<'a> {
+    pub protocol: &'a Protocol,
+    pub model: Option<ModelId>,
+    pub frame: &'a Frame,
     data: [u8; 8],
 }
 
 /// How well an addressing pattern fits, the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Fit {
+pub enum Fit {
     Documented,
     Tolerated,
     DocumentedElsewhere,
@@ -76,10 +73,10 @@ enum Fit {
 }
 
 /// The mode that a frame shows.
-struct Addressing<'a> {
-    fit: Fit,
+pub struct Addressing<'a> {
+    pub fit: Fit,
     constants: usize,
-    travel: Option<(Travel, &'a AddressPattern)>,
+    pub travel: Option<(Travel, &'a AddressPattern)>,
 }
 
 impl<'a> Decoder<'a> {
@@ -121,7 +118,7 @@ impl<'a> Decoder<'a> {
         })
     }
 
-    fn field(&self, id: FieldId) -> u32 {
+    pub fn field(&self, id: FieldId) -> u32 {
         self.protocol[id].get(self.frame.id)
     }
 
@@ -242,7 +239,7 @@ impl<'a> Decoder<'a> {
     }
 
     /// Returns the kinds of frames that have the frame's length.
-    fn candidates(&self, frames: &'a [FrameId]) -> impl Iterator<Item = Candidate<'a>> {
+    pub fn candidates(&self, frames: &'a [FrameId]) -> impl Iterator<Item = Candidate<'a>> {
         let protocol = self.protocol;
         let length = self.frame.data.len();
         let known = frames.iter().map(move |id| (*id, &protocol[*id]));
@@ -251,49 +248,13 @@ impl<'a> Decoder<'a> {
 
     /// Ranks candidates: first those that the device model has, then those whose addresses fit
     /// better.
-    fn rank(&self, (_, frame): &Candidate) -> (Reverse<bool>, Fit, Reverse<usize>) {
+    pub fn rank(&self, (_, frame): &Candidate) -> (Reverse<bool>, Fit, Reverse<usize>) {
         let addressing = self.addressing(frame);
         let is_of_model = self.model.is_none_or(|model| self.protocol[frame.message].is_of(model));
         (Reverse(is_of_model), addressing.fit, Reverse(addressing.constants))
     }
 
-    /// Says that the number of a part means nothing without the device model.
-    fn part_note(&self, message: &Message) -> Option<Note> {
-        let (_, long) = self.protocol.long_message(message)?;
-        let text = format!("the first part of `{}` has another number on each model", message.name);
-        long.first(self.model).is_none().then_some(Note { rule: NoteRule::ModelDependent, text })
-    }
-
-    /// Says that the device model has no such message, or that the frame may be another message on another model.
-    fn model_note(&self, best: Candidate, frames: &'a [FrameId]) -> Option<Note> {
-        let message = self.message(best);
-        let text = match self.model {
-            Some(model) if message.is_of(model) => return None,
-            Some(model) => format!("{} has no message `{}`", self.protocol[model].name, message.name),
-            None if message.models.is_empty() || frames.len() < 2 => return None,
-            None => {
-                let rank = self.rank(&best);
-                let is_equal = |other: &Candidate| {
-                    message.is_apart_from(&self.protocol[other.1.message]) && self.rank(other) == rank
-                };
-                let others = self.candidates(frames).filter(is_equal).map(|(_, other)| other.message);
-                let mut others: Vec<_> = others.collect();
-                others.dedup();
-                others.first()?;
-                let texts: Vec<_> = others.into_iter().map(|other| self.of_models(&self.protocol[other])).collect();
-                format!("it is {}", texts.join(", and "))
-            }
-        };
-        Some(Note { rule: NoteRule::ModelDependent, text })
-    }
-
-    /// Names a message and the device models that have it.
-    fn of_models(&self, message: &Message) -> String {
-        let models = message.models.iter().map(|model| self.protocol[*model].name.as_str());
-        format!("`{}` if the model is {}", message.name, models.collect::<Vec<_>>().join(" or "))
-    }
-
-    fn message(&self, (_, frame): Candidate) -> &'a Message {
+    pub fn message(&self, (_, frame): Candidate) -> &'a Message {
         &self.protocol[frame.message]
     }
 
@@ -421,98 +382,6 @@ impl<'a> Decoder<'a> {
     fn reserved(&self, frame: &FrameLayout) -> [u8; 8] {
         (u64::from_be_bytes(self.data) & !frame.covered).to_be_bytes()
     }
-
-    /// Notes bits that nothing covers, if they are not as they are sent.
-    fn reserved_note(&self, frame: &FrameLayout, reserved: [u8; 8]) -> Option<Note> {
-        let present = first_bytes(u8::try_from(self.frame.data.len()).unwrap_or(8));
-        let odd = u64::from_be_bytes(reserved) ^ frame.filled() & present;
-        let found = if frame.reserved.are_ones { "clear" } else { "set" };
-        let bits = hex::digits(&odd.to_be_bytes()[..self.frame.data.len()]);
-        let text = format!("bits are {found} that no field has: 0x{bits}");
-        (odd != 0 && !frame.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
-    }
-
-    fn error_notes(&self, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) -> Vec<Note> {
-        let fields = self.protocol.identifier.fields.iter().filter_map(|field| {
-            let value = u64::from(field.get(self.frame.id));
-            Some((&field.name, value, field.normal.filter(|normal| u64::from(*normal) != value)?, field.enumeration))
-        });
-        let payload = selectors.iter().filter(|_| !frame.is_to_module()).filter_map(|(id, value)| {
-            let selector = &self.protocol[*id];
-            let normal = selector.normal.filter(|normal| normal != value)?;
-            Some((&selector.name, *value, u32::try_from(normal).unwrap_or(0), selector.enumeration))
-        });
-        let wrong = fields.chain(payload);
-        wrong
-            .map(|(name, value, _, enumeration)| {
-                let named = enumeration.and_then(|id| self.protocol[id].named(value));
-                let text = match named {
-                    Some(meaning) => format!("{name} {value}: {}", meaning.name),
-                    None => format!("{name} {value}, which the document does not name"),
-                };
-                Note { rule: NoteRule::ErrorCode, text }
-            })
-            .collect()
-    }
-
-    fn address_notes(&self, message: &Message, frame: &FrameLayout, addressing: &Addressing) -> Vec<Note> {
-        let mut notes = Vec::new();
-        let Some((travel, pattern)) = addressing.travel else {
-            let text = format!("no addressing mode of this protocol fits a {}", frame.kind.name());
-            return vec![Note { rule: NoteRule::Addressing, text }];
-        };
-        if addressing.fit >= Fit::DocumentedElsewhere {
-            let text = format!("`{}` is not addressed by `{}`", message.name, self.protocol[travel.mode].name);
-            notes.push(Note { rule: NoteRule::Addressing, text });
-        }
-        let addresses = if addressing.fit == Fit::Documented { &[][..] } else { &pattern.addresses };
-        for address in addresses {
-            let address_type = &self.protocol[address.address_type];
-            let raw = self.field(address.field);
-            if !address_type.documents(raw) {
-                let shown = |(first, last): &(u32, u32)| {
-                    let [first, last] = [*first, *last].map(hexadecimal);
-                    if first == last { first } else { format!("{first}..{last}") }
-                };
-                let field = &self.protocol[address.field].name;
-                let ranges = address_type.raw_ranges().iter().map(shown).collect::<Vec<_>>().join(", ");
-                let text = format!("{field} {} is outside {ranges} of `{}`", hexadecimal(raw), address_type.name);
-                notes.push(Note { rule: NoteRule::Address, text });
-            }
-        }
-        notes
-    }
-}
-
-pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
-    let signal = message[reading.signal].on(model);
-    if let Some(text) = model.and_then(|model| protocol.lack(message, signal, model, reading.bits)) {
-        return Some(Note { rule: NoteRule::ModelDependent, text });
-    }
-    if model.is_some_and(|model| !signal.is_of(model)) {
-        return None;
-    }
-    let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
-    if let Some((rule, text)) = oddity {
-        return Some(Note { rule, text });
-    }
-    match &reading.value {
-        Value::Integer(value) => range_note(signal, model, value, |range| range.has_whole(*value)),
-        Value::Number(value) => range_note(signal, model, value, |range| signal.is_within(range, *value)),
-        Value::None | Value::Name(_) | Value::Text(_) | Value::Status { .. } => None,
-    }
-}
-
-fn range_note(
-    signal: &Signal,
-    model: Option<ModelId>,
-    shown: impl Display,
-    is_inside: impl FnOnce(&Range) -> bool,
-) -> Option<Note> {
-    let range = signal.range_for(model).filter(|range| !is_inside(range))?;
-    let unit = signal.unit_text();
-    let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
-    Some(Note { rule: NoteRule::OutOfRange, text })
 }
 
 /// Names the kinds of frames in words.

@@ -1,8 +1,8 @@
 //! Reads what the joined parts of a long message say, and makes its parts.
 
 use super::arrays::parted_texts;
-use super::decode::signal_note;
 use super::encode::{refuse, twice};
+use super::notes::signal_note;
 use super::value::{Limits, physical, raw_of};
 use super::{Input, Note, Reading, Refusal};
 use crate::encoding::Words;

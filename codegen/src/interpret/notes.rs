@@ -1,0 +1,141 @@
+//! What a decoded frame has that its document does not expect.
+
+use std::fmt::Display;
+
+use super::decode::{Addressing, Candidate, Decoder, Fit};
+use super::{Note, Reading, Value, hexadecimal};
+use crate::encoding::Words;
+use crate::hex;
+use crate::model::{
+    FrameId, FrameLayout, Message, ModelId, NoteRule, Protocol, Range, SelectorId, Signal, first_bytes,
+};
+
+impl<'a> Decoder<'a> {
+    /// Says that the number of a part means nothing without the device model.
+    pub fn part_note(&self, message: &Message) -> Option<Note> {
+        let (_, long) = self.protocol.long_message(message)?;
+        let text = format!("the first part of `{}` has another number on each model", message.name);
+        long.first(self.model).is_none().then_some(Note { rule: NoteRule::ModelDependent, text })
+    }
+
+    /// Says that the device model has no such message, or that the frame may be another message on another model.
+    pub fn model_note(&self, best: Candidate, frames: &'a [FrameId]) -> Option<Note> {
+        let message = self.message(best);
+        let text = match self.model {
+            Some(model) if message.is_of(model) => return None,
+            Some(model) => format!("{} has no message `{}`", self.protocol[model].name, message.name),
+            None if message.models.is_empty() || frames.len() < 2 => return None,
+            None => {
+                let rank = self.rank(&best);
+                let is_equal = |other: &Candidate| {
+                    message.is_apart_from(&self.protocol[other.1.message]) && self.rank(other) == rank
+                };
+                let others = self.candidates(frames).filter(is_equal).map(|(_, other)| other.message);
+                let mut others: Vec<_> = others.collect();
+                others.dedup();
+                others.first()?;
+                let texts: Vec<_> = others.into_iter().map(|other| self.of_models(&self.protocol[other])).collect();
+                format!("it is {}", texts.join(", and "))
+            }
+        };
+        Some(Note { rule: NoteRule::ModelDependent, text })
+    }
+
+    /// Names a message and the device models that have it.
+    fn of_models(&self, message: &Message) -> String {
+        let models = message.models.iter().map(|model| self.protocol[*model].name.as_str());
+        format!("`{}` if the model is {}", message.name, models.collect::<Vec<_>>().join(" or "))
+    }
+
+    /// Notes bits that nothing covers, if they are not as they are sent.
+    pub fn reserved_note(&self, frame: &FrameLayout, reserved: [u8; 8]) -> Option<Note> {
+        let present = first_bytes(u8::try_from(self.frame.data.len()).unwrap_or(8));
+        let odd = u64::from_be_bytes(reserved) ^ frame.filled() & present;
+        let found = if frame.reserved.are_ones { "clear" } else { "set" };
+        let bits = hex::digits(&odd.to_be_bytes()[..self.frame.data.len()]);
+        let text = format!("bits are {found} that no field has: 0x{bits}");
+        (odd != 0 && !frame.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
+    }
+
+    pub fn error_notes(&self, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) -> Vec<Note> {
+        let fields = self.protocol.identifier.fields.iter().filter_map(|field| {
+            let value = u64::from(field.get(self.frame.id));
+            Some((&field.name, value, field.normal.filter(|normal| u64::from(*normal) != value)?, field.enumeration))
+        });
+        let payload = selectors.iter().filter(|_| !frame.is_to_module()).filter_map(|(id, value)| {
+            let selector = &self.protocol[*id];
+            let normal = selector.normal.filter(|normal| normal != value)?;
+            Some((&selector.name, *value, u32::try_from(normal).unwrap_or(0), selector.enumeration))
+        });
+        let wrong = fields.chain(payload);
+        wrong
+            .map(|(name, value, _, enumeration)| {
+                let named = enumeration.and_then(|id| self.protocol[id].named(value));
+                let text = match named {
+                    Some(meaning) => format!("{name} {value}: {}", meaning.name),
+                    None => format!("{name} {value}, which the document does not name"),
+                };
+                Note { rule: NoteRule::ErrorCode, text }
+            })
+            .collect()
+    }
+
+    pub fn address_notes(&self, message: &Message, frame: &FrameLayout, addressing: &Addressing) -> Vec<Note> {
+        let mut notes = Vec::new();
+        let Some((travel, pattern)) = addressing.travel else {
+            let text = format!("no addressing mode of this protocol fits a {}", frame.kind.name());
+            return vec![Note { rule: NoteRule::Addressing, text }];
+        };
+        if addressing.fit >= Fit::DocumentedElsewhere {
+            let text = format!("`{}` is not addressed by `{}`", message.name, self.protocol[travel.mode].name);
+            notes.push(Note { rule: NoteRule::Addressing, text });
+        }
+        let addresses = if addressing.fit == Fit::Documented { &[][..] } else { &pattern.addresses };
+        for address in addresses {
+            let address_type = &self.protocol[address.address_type];
+            let raw = self.field(address.field);
+            if !address_type.documents(raw) {
+                let shown = |(first, last): &(u32, u32)| {
+                    let [first, last] = [*first, *last].map(hexadecimal);
+                    if first == last { first } else { format!("{first}..{last}") }
+                };
+                let field = &self.protocol[address.field].name;
+                let ranges = address_type.raw_ranges().iter().map(shown).collect::<Vec<_>>().join(", ");
+                let text = format!("{field} {} is outside {ranges} of `{}`", hexadecimal(raw), address_type.name);
+                notes.push(Note { rule: NoteRule::Address, text });
+            }
+        }
+        notes
+    }
+}
+
+pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
+    let signal = message[reading.signal].on(model);
+    if let Some(text) = model.and_then(|model| protocol.lack(message, signal, model, reading.bits)) {
+        return Some(Note { rule: NoteRule::ModelDependent, text });
+    }
+    if model.is_some_and(|model| !signal.is_of(model)) {
+        return None;
+    }
+    let oddity = Words::from(protocol).with(signal, |room| room.oddity(reading.bits, &reading.value));
+    if let Some((rule, text)) = oddity {
+        return Some(Note { rule, text });
+    }
+    match &reading.value {
+        Value::Integer(value) => range_note(signal, model, value, |range| range.has_whole(*value)),
+        Value::Number(value) => range_note(signal, model, value, |range| signal.is_within(range, *value)),
+        Value::None | Value::Name(_) | Value::Text(_) | Value::Status { .. } => None,
+    }
+}
+
+fn range_note(
+    signal: &Signal,
+    model: Option<ModelId>,
+    shown: impl Display,
+    is_inside: impl FnOnce(&Range) -> bool,
+) -> Option<Note> {
+    let range = signal.range_for(model).filter(|range| !is_inside(range))?;
+    let unit = signal.unit_text();
+    let text = format!("{} {shown}{unit} is outside {}..{}{unit}", signal.name, range.minimum, range.maximum);
+    Some(Note { rule: NoteRule::OutOfRange, text })
+}
