@@ -11,6 +11,7 @@ mod identifier;
 pub mod keys;
 mod messages;
 mod names;
+mod numbers;
 pub mod run;
 mod yaml;
 
