@@ -11,6 +11,7 @@ import glob
 import itertools
 import json
 import os
+import random
 import re
 import resource
 import shutil
@@ -26,6 +27,8 @@ SPEC = os.path.join(PEERS, "tshark.yaml")
 TAKEN_NAMES = ("can", "j1939", "frame")
 # Random frames of all protocols together, of each protocol at least, and of each feature of the language.
 OF_ALL_PROTOCOLS, OF_A_PROTOCOL, OF_A_FEATURE = 100_000, 10_000, 1_000
+# The last line of each log.
+LAST = "(4000000.000000) can0 000#R"
 # What a frame has to do with others, which `canspec decode` does not say.
 LINKS = ("request_in", "response_time", "response_in", "answers")
 # Rules of notes that have the same text in both programs.
@@ -75,9 +78,16 @@ class Bench:
         return path
 
     def decoded(self, spec, log, model):
+        """Returns the decoded lines, each with the long messages that it ends."""
         chosen = ["--model", model] if model else []
-        lines = self.run(self.canspec, "decode", "--spec", spec, "--format", "jsonl", *chosen, log)
-        return [json.loads(line) for line in lines.splitlines()]
+        text = self.run(self.canspec, "decode", "--spec", spec, "--format", "jsonl", "--assemble", *chosen, log)
+        lines = []
+        for known in map(json.loads, text.splitlines()):
+            if "lines" in known:
+                lines[-1]["wholes"].append(known)
+            else:
+                lines.append(known | {"wholes": []})
+        return lines
 
     def log_of_examples(self, spec):
         examples = self.run(self.canspec, "examples", "--spec", spec, "--format", "jsonl").splitlines()
@@ -98,9 +108,10 @@ class Bench:
         return path
 
     def log(self, lines):
+        """Writes a log. Its last frame is remote: what the end of the log ends stands there, and no dissector knows it."""
         path = self.path("bus.log")
         with open(path, "w", encoding="utf-8") as file:
-            file.writelines(f"{line}\n" for line in lines)
+            file.writelines(f"{line}\n" for line in (*lines, LAST))
         return path
 
 
@@ -135,7 +146,10 @@ class Dissector:
 
 def rows_of_plain_lua(bench, dissector, lines, model):
     """Returns the fields that each frame has in plain Lua 5.4."""
-    frames = (f"{line['line']} {line['id']} {29 if len(line['id']) == 8 else 11} {line['data'] or '-'}\n" for line in lines)
+    frames = (
+        f"{line['line']} {line['channel']} {line['id']} {29 if len(line['id']) == 8 else 11} {line['data'] or '-'}\n"
+        for line in lines
+    )
     call = ["lua5.4", os.path.join(PEERS, "tshark_lua54.lua"), dissector.lua, str(model)]
     done = subprocess.run(call, input="".join(frames), capture_output=True, text=True)
     if done.returncode != 0:
@@ -237,7 +251,25 @@ def expected(line, dissector):
     for rule, count in collections.Counter(rules).items():
         fields[f"{groups['note']}.{rule}"] = ",".join(["1"] * count)
     info = f"{line['access']} {line['message']} {line['kind']}" + (": " if texts else "") + ", ".join(texts)
-    return with_names(fields, dissector.types), info
+    fields = with_names(fields, dissector.types)
+    for whole in line["wholes"]:
+        info += f", {'part of' if 'incomplete' in whole else 'whole'} {whole['message']}"
+        add_whole(fields, whole, dissector)
+    return fields, info
+
+
+def add_whole(fields, whole, dissector):
+    """Adds what tshark shows of a long message. A field that the frame has, too, gets another value."""
+    of, note = f"{dissector.protocol}.", dissector.groups["note"]
+    name = of + whole["message"]
+    more = {f"{of}whole": whole["message"]}
+    for signal, known in alone(name, whole["signals"], dissector):
+        more |= signal_fields(f"{name}.{signal}", known)[0] if known["raw"] is not None else {}
+    rules = [known["rule"] for known in whole["notes"] if known["rule"] in (*OF_VALUES, "model_dependent", "count")]
+    rules += ["incomplete"] * ("incomplete" in whole)
+    more = with_names(more, dissector.types) | {f"{note}.{rule}": ",".join("1" for known in rules if known == rule) for rule in rules}
+    for field, value in more.items():
+        fields[field] = f"{fields[field]},{value}" if field in fields else value
 
 
 def with_names(fields, types):
@@ -259,10 +291,10 @@ def plain(name, cell, types):
     """Returns a cell of tshark as `expected` has it."""
     kind = types[name]
     if kind == "FT_DOUBLE":
-        return rounded(cell)
+        return ",".join(map(rounded, cell.split(",")))
     if kind == "FT_BOOLEAN":
         return {"True": "1", "False": "0"}.get(cell, cell)
-    return str(int(cell, 0)) if "INT" in kind else cell
+    return ",".join(str(int(number, 0)) for number in cell.split(",")) if "INT" in kind else cell
 
 
 def difference(line, row, dissector):
@@ -313,7 +345,7 @@ def compare(bench, spec, log, dissected=None, model=None, by_heuristic=False, sh
 
 def compare_plain_lua(bench, spec):
     """Compares random frames with what the dissector shows of them in plain Lua 5.4."""
-    lines = bench.decoded(spec, bench.random_log(spec, OF_A_FEATURE), None)
+    lines = bench.decoded(spec, bench.random_log(spec, OF_A_FEATURE), None)[:-1]
     dissector = Dissector(bench, spec, lines[0]["protocol"])
     started = processor_time()
     rows = rows_of_plain_lua(bench, dissector, lines, 0)
@@ -384,6 +416,23 @@ def frame_of_row(row):
     """Returns the same of a row of tshark."""
     stamp, channel, identifier, length, remote, count = row.split("\t")
     return [stamp, channel, remote == "1", int(count)] + ([int(identifier, 0), int(length)] if identifier else [])
+
+
+def compare_sessions(bench, protocols):
+    """Compares the logs of sessions with long messages, and the same frames where some are lost and some repeated."""
+    wrong = 0
+    for spec in protocols:
+        name = os.path.basename(spec).removesuffix(".yaml")
+        for path in sorted(glob.glob(os.path.join(ROOT, "tests", "logs", f"{name}-*.log"))):
+            with open(path, encoding="utf-8") as file:
+                frames = [line.rstrip("\n") for line in file if "#" in line]
+            chosen = random.Random(20)
+            disturbed = [frame for frame in frames for _ in range(chosen.choices((0, 1, 2), (5, 90, 5))[0])]
+            for what, log in (("session", frames), ("disturbed session", disturbed)):
+                lines, _, differences, seconds = compare(bench, spec, bench.log(log))
+                wholes = sum(len(line["wholes"]) for line in lines[:-1])
+                wrong += report(name, f"{what}, {wholes} long", lines, differences, seconds)
+    return wrong
 
 
 def compare_captures(bench):
@@ -473,6 +522,7 @@ def main():
         else:
             print("SKIPPED: there is no lua5.4, so the dissectors run in tshark's version of Lua alone;")
             print("SKIPPED: `apt-get install --no-install-recommends lua5.4` installs it.")
+        wrong += compare_sessions(bench, protocols)
         wrong += compare_captures(bench) + compare_edges(bench) + compare_links(bench) + compare_taken_names(bench)
         wrong += find_mistakes(bench)
     return 1 if wrong else 0

@@ -2,7 +2,7 @@
 --
 --   lua5.4 tshark_lua54.lua DISSECTOR MODEL < FRAMES
 --
--- A frame is a line `NUMBER ID BITS DATA`, with `-` for no data. Its fields are written on a line, `NAME=VALUE` with tabs between.
+-- A frame is a line `NUMBER CHANNEL ID BITS DATA`, with `-` for no data. Its fields are written on a line, `NAME=VALUE` with tabs between.
 
 local shown, current
 
@@ -112,7 +112,7 @@ Range.__index = Range
 function Range:number(from, to, step)
   local value = 0
   for index = from, to, step do
-    value = value << 8 | current.bytes[index]
+    value = value << 8 | self.bytes[index]
   end
   return word(value)
 end
@@ -121,13 +121,22 @@ function Range:le_uint64() return self:number(self.first + self.count, self.firs
 
 local Buffer = {}
 Buffer.__index = Buffer
-function Buffer:len() return #current.bytes end
-function Buffer:reported_len() return #current.bytes end
+function Buffer:len() return #self.bytes end
+function Buffer:reported_len() return #self.bytes end
 function Buffer:__call(first, count)
-  first, count = first or 0, count or #current.bytes
-  assert(first + count <= #current.bytes, "the range is out of bounds")
-  return setmetatable({ first = first, count = count }, Range)
+  first, count = first or 0, count or #self.bytes
+  assert(first + count <= #self.bytes, "the range is out of bounds")
+  return setmetatable({ bytes = self.bytes, first = first, count = count }, Range)
 end
+
+local function buffer(bytes)
+  return setmetatable({ bytes = bytes }, Buffer)
+end
+ByteArray = {
+  new = function(hex)
+    return { tvb = function() return buffer(bytes_of(hex)) end }
+  end,
+}
 
 Field = {
   new = function(name)
@@ -150,17 +159,16 @@ end
 dofile(arg[1])
 proto.init()
 for line in io.lines() do
-  local number, id, width, data = line:match("(%d+) (%x+) (%d+) (%S+)")
+  local number, channel, id, width, data = line:match("(%d+) (%S+) (%x+) (%d+) (%S+)")
   shown = {}
   current = {
-    bytes = bytes_of(data),
     ["can.id"] = tonumber(id, 16),
     ["can.flags.xtd"] = width == "29",
     ["can.flags.rtr"] = false,
-    ["frame.interface_id"] = 0,
+    ["frame.interface_id"] = channel,
     ["frame.time_epoch"] = tonumber(number),
   }
   local pinfo = { cols = {}, number = math.tointeger(number) }
-  proto.dissector(setmetatable({}, Buffer), pinfo, setmetatable({}, Item))
+  proto.dissector(buffer(bytes_of(data)), pinfo, setmetatable({}, Item))
   print(table.concat(shown, "\t") .. "\t_ws.col.Info=" .. (pinfo.cols.info or ""))
 end

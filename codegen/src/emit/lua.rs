@@ -1,11 +1,13 @@
 //! Emits Lua: a dissector for Wireshark that reads the protocol from a table.
 
 mod addressing;
+mod long;
 mod recognition;
 mod signal;
 mod table;
 
 use addressing::{address_type, constants, direction, foreign, mode, who};
+use long::{continuation, long, transport};
 use recognition::course;
 use signal::{names, place, signal, wide};
 use table::Value;
@@ -13,8 +15,14 @@ use table::Value;
 use crate::model::{FrameLayout, IdentifierField, Kind, Message, Protocol, Selector, SelectorPlace, Set};
 
 /// The Lua that is the same for every protocol. Each part needs those before it.
-const INTERPRETER: [&str; 3] =
-    [include_str!("lua/decode.lua"), include_str!("lua/link.lua"), include_str!("lua/dissector.lua")];
+const INTERPRETER: [&str; 6] = [
+    include_str!("lua/decode.lua"),
+    include_str!("lua/link.lua"),
+    include_str!("lua/long.lua"),
+    include_str!("lua/parts.lua"),
+    include_str!("lua/transfers.lua"),
+    include_str!("lua/dissector.lua"),
+];
 
 /// Returns a dissector for CAN frames of the protocol, in Lua 5.2 to 5.4.
 pub fn wireshark(protocol: &Protocol) -> String {
@@ -37,6 +45,8 @@ fn table(protocol: &Protocol) -> Value {
         .with("modes", Value::list(&protocol.modes, mode))
         .with("models", Value::list(&protocol.models, |model| Value::text(&model.name)))
         .with("selectors", Value::list(&protocol.selectors, |known| selector(protocol, known)))
+        .maybe("continuation", protocol.continuation().map(|known| continuation(protocol, known)))
+        .maybe("transports", (!protocol.transports.is_empty()).then(|| Value::list(&protocol.transports, transport)))
         .with("messages", Value::list(&protocol.messages, |known| message(protocol, known)))
         .with("requests", course(&protocol.recognition.requests))
         .with("replies", course(&protocol.recognition.replies))
@@ -81,18 +91,10 @@ fn message(protocol: &Protocol, message: &Message) -> Value {
     Value::record()
         .with("name", Value::text(&message.name))
         .maybe("models", models)
-        .maybe("numbered", numbered(protocol, message))
+        .maybe("long", protocol.long_message(message).map(|(_, known)| long(protocol, known)))
         .with("signals", Value::list(&message.signals, |known| signal(protocol, message, known)))
         .with("layouts", Value::list(protocol.frames_of(message), |known| frame(protocol, message, known)))
         .maybe("refusals", refusals)
-}
-
-/// Returns the device models whose number of the first part is known, unless all have the same.
-fn numbered(protocol: &Protocol, message: &Message) -> Option<Value> {
-    let (_, long) = protocol.long_message(message)?;
-    let parts = long.parts().filter(|parts| parts.first.is_none())?;
-    let known = parts.model_firsts.iter().map(|own| (Value::id(own.model), Value::flag(true)));
-    Some(Value::map(known))
 }
 
 fn frame(protocol: &Protocol, message: &Message, frame: &FrameLayout) -> Value {

@@ -56,6 +56,7 @@ pub fn address_type(known: &AddressType) -> Value {
         .with("name", Value::text(&known.name))
         .with("ranges", ranges(&known.raw_ranges()))
         .maybe("strict", known.strict.then(|| Value::flag(true)))
+        .maybe("sent", known.send.is_some().then(|| Value::flag(true)))
 }
 
 pub fn mode(mode: &Mode) -> Value {

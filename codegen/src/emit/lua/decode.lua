@@ -13,6 +13,15 @@ local function prepare(place)
   place.mask = UInt64.max():rshift(64 - place.width)
 end
 
+-- Does so for all places of a signal.
+local function prepare_signal(signal)
+  prepare(signal.place)
+  for _, own in pairs(signal.on or {}) do prepare(own.place) end
+  for _, piece in ipairs(signal.pieces or {}) do
+    if piece.place then prepare(piece.place) end
+  end
+end
+
 -- Tests whether a frame is long enough to have a place.
 local function has(frame, place)
   return place.first + place.count <= frame.length
@@ -359,13 +368,7 @@ end
 -- of its reply. Each kind knows its message.
 local kinds_of_frames, refusals = {}, {}
 for _, message in ipairs(protocol.messages) do
-  for _, signal in ipairs(message.signals) do
-    prepare(signal.place)
-    for _, own in pairs(signal.on or {}) do prepare(own.place) end
-    for _, piece in ipairs(signal.pieces or {}) do
-      if piece.place then prepare(piece.place) end
-    end
-  end
+  for _, signal in ipairs(message.signals) do prepare_signal(signal) end
   for _, layout in ipairs(message.layouts) do
     layout.message = message
     table.insert(kinds_of_frames, layout)
@@ -560,6 +563,11 @@ local function address_notes(frame, decoded, note)
   end
 end
 
+-- Returns the number of the first part, if it is known of the device model.
+local function first_part(parts, model)
+  return parts.first or parts.firsts[model]
+end
+
 -- Returns the message with its values and notes, or a problem.
 local function decode(frame)
   local layouts, unrecognised = candidates(frame)
@@ -578,8 +586,8 @@ local function decode(frame)
       if known.rule then note(known.rule, known.text) end
     end
   end
-  local numbered = layout.message.numbered
-  if numbered and #decoded.readings > 0 and not numbered[frame.model] then
+  local parts = layout.message.long and layout.message.long.parts
+  if parts and #decoded.readings > 0 and not first_part(parts, frame.model) then
     note("model_dependent", "the first part of `" .. layout.message.name .. "` has another number on each model")
   end
   local reserved = frame.big:band(layout.reserved):tohex(-16):sub(1, 2 * frame.length)
@@ -591,4 +599,13 @@ local function decode(frame)
   end
   if other_model then note("model_dependent", other_model) end
   return decoded
+end
+
+-- Returns what a frame that reports an error says in place of its values, or nil for any other
+-- frame.
+local function refusal(decoded)
+  if is_to_module(decoded.layout) then return nil end
+  for _, note in ipairs(decoded.notes) do
+    if note.rule == "error_code" then return (decoded.layout.kind == "reply" and "refused, " or "in error, ") .. note.text end
+  end
 end

@@ -38,6 +38,13 @@ local function number_field(name, text, width, is_signed, display, names, about)
   return define(make(name, text, is_signed and base.DEC or display, names, nil, about))
 end
 
+-- Shows a signal in the fields of another, on each device model.
+local function share_fields(signal, other)
+  signal.field, signal.name_field, signal.raw_field = other.field, other.name_field, other.raw_field
+  for index, bit in ipairs(signal.bits or {}) do bit.field = other.bits[index].field end
+  for _, own in pairs(signal.on or {}) do share_fields(own, other) end
+end
+
 local function define_signal(signal, prefix)
   local name, text, width = prefix .. signal.name, title(signal), signal.place.width
   if signal.shown == "integer" then
@@ -56,13 +63,20 @@ local function define_signal(signal, prefix)
   if signal.specials or signal.numeral or (signal.shown ~= "integer" and signal.shown ~= "bits") then
     signal.raw_field = number_field(name .. ".raw", "raw", width, signal.signed, base.DEC_HEX)
   end
-  for _, own in pairs(signal.on or {}) do
-    own.field, own.name_field, own.raw_field = signal.field, signal.name_field, signal.raw_field
+  for _, own in pairs(signal.on or {}) do share_fields(own, signal) end
+end
+
+-- Signals of a long message that also fits a frame share the fields of that frame. Numbered parts have other signals.
+local function define_long_signal(signal, message, prefix)
+  for _, known in ipairs(message.signals) do
+    if known.name == signal.name and message.long.parts then return define_signal(signal, prefix .. "whole.") end
+    if known.name == signal.name then return share_fields(signal, known) end
   end
+  define_signal(signal, prefix)
 end
 
 local known = {}
-for _, name in ipairs({ "message", "access", "kind", "addressing", "answers", "reserved", "problem" }) do
+for _, name in ipairs({ "message", "access", "kind", "addressing", "answers", "reserved", "problem", "whole" }) do
   known[name] = define(ProtoField.string(proto_name .. "." .. name, name))
 end
 known.request_in = define(ProtoField.framenum(proto_name .. ".request_in", "Request in", base.NONE, frametype.REQUEST))
@@ -85,14 +99,18 @@ for _, selector in ipairs(protocol.selectors) do
   end
 end
 for _, message in ipairs(protocol.messages) do
+  local prefix = proto_name .. "." .. message.name .. "."
   for _, signal in ipairs(message.signals) do
-    define_signal(signal, proto_name .. "." .. message.name .. ".")
+    define_signal(signal, prefix)
+  end
+  for _, signal in ipairs(message.long and message.long.signals or {}) do
+    define_long_signal(signal, message, prefix)
   end
 end
 
 local RULES = {
   "error_code", "addressing", "address", "unknown_value", "unknown_bit", "out_of_range", "not_finite", "reserved_bit",
-  "model_dependent",
+  "model_dependent", "count",
 }
 -- Rules of notes about the value of a signal.
 local OF_VALUES = { unknown_value = true, unknown_bit = true, out_of_range = true, not_finite = true }
@@ -104,6 +122,9 @@ end
 local unrecognised =
   ProtoExpert.new(group("note") .. "unrecognised", "not recognised", expert.group.PROTOCOL, expert.severity.ERROR)
 table.insert(experts, unrecognised)
+local incomplete =
+  ProtoExpert.new(group("note") .. "incomplete", "not whole", expert.group.PROTOCOL, expert.severity.WARN)
+table.insert(experts, incomplete)
 
 proto.fields, proto.experts = fields, experts
 
@@ -143,7 +164,7 @@ end
 -- added.
 local function add_reading(tree, tvb, reading)
   local signal = reading.signal
-  local range = tvb(signal.place.first, signal.place.count)
+  local range = tvb((signal.window or 0) + signal.place.first, signal.place.count)
   if reading.value == nil and not reading.name then
     tree:add(signal.raw_field, range, reading.raw):prepend_text(title(signal) .. ", ")
     return "?"
@@ -186,16 +207,8 @@ local function show_problem(frame, decoded, tvb, tree)
   tree:add_proto_expert_info(unrecognised, decoded.text)
 end
 
--- Returns what a frame that reports an error says in place of its values, or nil for any other
--- frame.
-local function refusal(decoded)
-  if is_to_module(decoded.layout) then return nil end
-  for _, note in ipairs(decoded.notes) do
-    if note.rule == "error_code" then return (decoded.layout.kind == "reply" and "refused, " or "in error, ") .. note.text end
-  end
-end
-
-local function show_message(frame, decoded, tvb, pinfo, tree)
+-- Shows a message, and returns what the list of packets says about it.
+local function show_message(frame, decoded, tvb, tree)
   local layout = decoded.layout
   local summary = layout.access .. " " .. layout.message.name .. " " .. layout.kind
   tree:append_text(", " .. summary .. (layout.sender and " from the " .. layout.sender or ""))
@@ -216,7 +229,38 @@ local function show_message(frame, decoded, tvb, pinfo, tree)
     if not (refused and OF_VALUES[note.rule]) then tree:add_proto_expert_info(notes[note.rule], note.text) end
   end
   add_links(tree, frame, decoded)
-  pinfo.cols.info = #texts > 0 and summary .. ": " .. table.concat(texts, ", ") or summary
+  return #texts > 0 and summary .. ": " .. table.concat(texts, ", ") or summary
+end
+
+-- Adds a message that several frames carry. The last of them shows it.
+local function show_whole(whole, model, tree)
+  local name, data = whole.long.message.name, whole.data:gsub("%.", "0")
+  local tvb = ByteArray.new(data):tvb("Joined data of " .. name)
+  local subtree = tree:add(known.whole, tvb(), name)
+  local readings, found = readings_of(whole, model)
+  for _, reading in ipairs(readings) do add_reading(subtree, tvb, reading) end
+  for _, note in ipairs(found) do subtree:add_proto_expert_info(notes[note.rule], note.text) end
+  if whole.incomplete then subtree:add_proto_expert_info(incomplete, whole.incomplete) end
+end
+
+-- The messages that each frame ends.
+local wholes
+
+proto.init = function()
+  forget_links()
+  forget_parts()
+  forget_transfers()
+  wholes = {}
+end
+
+-- Notes a frame when it is seen for the first time. That can be in the second pass, because tshark's first pass may have
+-- no fields.
+local function notice(frame, decoded)
+  if wholes[frame.number] then return end
+  wholes[frame.number] = {}
+  link(frame, decoded)
+  take_part(frame, decoded, wholes[frame.number])
+  take_transfer(frame, decoded, wholes[frame.number])
 end
 
 local function show(frame, decoded, tvb, pinfo, tree)
@@ -226,8 +270,13 @@ local function show(frame, decoded, tvb, pinfo, tree)
     show_problem(frame, decoded, tvb, root)
     return
   end
-  link(frame, decoded)
-  show_message(frame, decoded, tvb, pinfo, root)
+  notice(frame, decoded)
+  local info = show_message(frame, decoded, tvb, root)
+  for _, whole in ipairs(wholes[frame.number]) do
+    show_whole(whole, frame.model, root)
+    info = info .. (whole.incomplete and ", part of " or ", whole ") .. whole.long.message.name
+  end
+  pinfo.cols.info = info
 end
 
 local can_id, can_extended, can_remote = Field.new("can.id"), Field.new("can.flags.xtd"), Field.new("can.flags.rtr")
@@ -253,8 +302,6 @@ local function read_frame(tvb, pinfo)
   end
   return frame
 end
-
-proto.init = forget
 
 -- If "Decode As" chose the dissector, it shows every frame, and says why one is not recognised.
 function proto.dissector(tvb, pinfo, tree)

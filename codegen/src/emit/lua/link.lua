@@ -1,11 +1,10 @@
 -- Linking: finds the request that a reply answers, and how long that took.
 
-local waiting, requests, responses, seen
+local waiting, requests, responses
 
-local function forget()
-  waiting, requests, responses, seen = {}, {}, {}, {}
+local function forget_links()
+  waiting, requests, responses = {}, {}, {}
 end
-forget()
 
 -- Returns the value of the same kind of address in a pattern's identifier.
 local function bound(frame, pattern, kind)
@@ -97,11 +96,8 @@ local function answer(frame, decoded)
   table.insert(responses[request.number], frame.number)
 end
 
--- Notes a frame when it is seen for the first time. That can be in the second pass, because
--- tshark's first pass may have no fields.
+-- Notes a frame.
 local function link(frame, decoded)
-  if seen[frame.number] then return end
-  seen[frame.number] = true
   if decoded.layout.kind == "request" then ask(frame, decoded) end
   if decoded.layout.kind == "reply" then answer(frame, decoded) end
 end

@@ -1,0 +1,96 @@
+-- Long messages: what several frames say together.
+--
+-- Joined data are hexadecimal digits, with two points for each byte that did not come.
+
+-- Returns how many bytes a long message has at least if it has a signal.
+local function reach(signal)
+  return signal.window + signal.place.first + signal.place.count
+end
+
+-- Tests whether a signal is there if arrays of varying length have `count` elements.
+local function is_among(signal, count)
+  return not count or not signal.index or signal.index < count
+end
+
+-- Returns how many bytes a long message has with some number of elements, or with all.
+local function bytes_with(long, count)
+  local bytes = 0
+  for _, signal in ipairs(long.signals) do
+    if is_among(signal, count) then bytes = math.max(bytes, reach(signal)) end
+  end
+  return bytes
+end
+
+local function longest(long)
+  return long.lengths and long.lengths[#long.lengths] or bytes_with(long)
+end
+
+local function has_length(long, length)
+  for _, known in ipairs(long.lengths or {}) do
+    if known == length then return true end
+  end
+  if long.lengths then return false end
+  if not long.elements then return length == longest(long) end
+  for count = long.elements[1], long.elements[2] do
+    if bytes_with(long, count) == length then return true end
+  end
+  return false
+end
+
+-- Returns how many elements an array of varying length has in some number of bytes.
+local function elements_in(long, length)
+  for count = long.elements and long.elements[2] or -1, 0, -1 do
+    if bytes_with(long, count) <= length then return count end
+  end
+end
+
+-- Returns the number that sixteen digits write.
+local function word(digits)
+  return UInt64(tonumber(digits:sub(9), 16), tonumber(digits:sub(1, 8), 16))
+end
+
+-- Returns the bytes from which a signal is read, as if they were a frame.
+local function window(data, signal, model)
+  local digits = (data:gsub("%.", "0"):sub(2 * signal.window + 1) .. string.rep("0", 16)):sub(1, 16)
+  local reversed = digits:reverse():gsub("(.)(.)", "%2%1")
+  return { big = word(digits), little = word(reversed), length = 8, model = model }
+end
+
+-- Tests whether all bytes of a signal came.
+local function came(data, signal)
+  local place = signal.place
+  local digits = data:sub(2 * (signal.window + place.first) + 1, 2 * reach(signal))
+  return #digits == 2 * place.count and not digits:find("%.")
+end
+
+-- Returns what joined data say: the signals whose bytes all came, and notes.
+local function readings_of(whole, model)
+  local found, notes = {}, {}
+  for _, signal in ipairs(whole.long.signals) do
+    if is_among(signal, whole.count) and came(whole.data, signal) then
+      local known = reading(window(whole.data, signal, model), signal)
+      table.insert(found, known)
+      if known.rule then table.insert(notes, known) end
+    end
+  end
+  if not whole.is_counted then
+    local text = "nothing says how many of the elements of `" .. whole.long.array .. "` are real"
+    table.insert(notes, { rule = "count", text = text })
+  end
+  return found, notes
+end
+
+-- Says which of the numbers are missing, or returns nil.
+local function missing(numbers, one, several)
+  if #numbers == 0 then return nil end
+  if #numbers == 1 then return one .. " " .. numbers[1] .. " is missing" end
+  return "the " .. several .. " " .. table.concat(numbers, ", ") .. " are missing"
+end
+
+for _, message in ipairs(protocol.messages) do
+  local long = message.long
+  if long then long.message = message end
+  for _, signal in ipairs(long and long.signals or {}) do
+    prepare_signal(signal)
+  end
+end

@@ -1,0 +1,80 @@
+//! Writes long messages: what their frames carry together, and how.
+
+use super::in_identifier;
+use super::signal::{signal, wide};
+use super::table::Value;
+use crate::model::{
+    Carrier, Continuation, FrameLayout, LongMessage, Parts, Protocol, SelectorPlace, Signal, Transport, TransportFrame,
+    TransportId,
+};
+
+pub fn long(protocol: &Protocol, long: &LongMessage) -> Value {
+    let lengths = (!long.lengths.is_empty()).then(|| Value::list(&long.lengths, |length| Value::number(*length)));
+    let elements = long.varying().and_then(|array| Some([array.least?, array.elements.len()]));
+    let record = Value::record()
+        .maybe("lengths", lengths)
+        .maybe("array", long.varying().map(|array| Value::text(&array.name)))
+        .maybe("elements", elements.map(|ends| Value::list(ends, |end| Value::Plain(end.to_string()))))
+        .with("signals", Value::list(&long.content.signals, |known| long_signal(protocol, long, known)));
+    match &long.carrier {
+        Carrier::Parts(known) => record.with("parts", parts(known)),
+        Carrier::Transport(transport) => record.with("via", via(protocol, *transport, &long.frames)),
+    }
+}
+
+/// Returns a signal with the first of the eight bytes in which it has its place.
+fn long_signal(protocol: &Protocol, long: &LongMessage, known: &Signal) -> Value {
+    signal(protocol, &long.content, known)
+        .with("window", Value::number(known.window))
+        .maybe("index", long.counted(known).map(|index| Value::Plain(index.to_string())))
+}
+
+fn parts(parts: &Parts) -> Value {
+    let firsts = parts.model_firsts.iter().map(|own| (Value::id(own.model), Value::number(own.value)));
+    let count = parts
+        .count
+        .map(|(message, signal)| Value::record().with("message", Value::id(message)).with("signal", Value::id(signal)));
+    Value::record()
+        .with("number", Value::id(parts.number))
+        .with("data", Value::id(parts.data))
+        .with("size", Value::number(parts.size))
+        .maybe("first", parts.first.map(Value::number))
+        .maybe("firsts", parts.first.is_none().then(|| Value::map(firsts)))
+        .maybe("count", count)
+}
+
+/// Returns what announces a message: the constants of its identifier, and who sends it.
+fn via(protocol: &Protocol, transport: TransportId, frames: &[FrameLayout]) -> Value {
+    let layout = |frame: &FrameLayout| {
+        Value::record().with("to_module", Value::flag(frame.is_to_module())).with("in_identifier", in_identifier(frame))
+    };
+    Value::record().with("name", Value::text(&protocol[transport].name)).with("layouts", Value::list(frames, layout))
+}
+
+pub fn transport(transport: &Transport) -> Value {
+    let names = TransportFrame::ALL.iter().map(|(_, name)| *name);
+    let frames =
+        names.zip(&transport.frames).fold(Value::record(), |record, (name, id)| record.with(name, Value::id(*id)));
+    Value::record()
+        .with("name", Value::text(&transport.name))
+        .with("group", Value::list(&transport.group, |field| Value::id(*field)))
+        .with("target", Value::id(transport.target))
+        .with("source", Value::id(transport.source))
+        .with("frames", frames)
+}
+
+/// Returns the field that says whether more parts follow, and its value if they do.
+pub fn continuation(protocol: &Protocol, known: Continuation) -> Value {
+    let width = match known.place {
+        SelectorPlace::Identifier(_) => 32,
+        SelectorPlace::Payload(place) => place.width(),
+    };
+    let record = Value::record().with("value", wide(known.raw, width));
+    match known.place {
+        SelectorPlace::Identifier(field) => record.with("field", Value::id(field)),
+        SelectorPlace::Payload(known) => {
+            let selector = protocol.selectors.position(|selector| selector.place == SelectorPlace::Payload(known));
+            record.maybe("selector", selector.map(Value::id))
+        }
+    }
+}

@@ -1,0 +1,115 @@
+-- Numbered parts: joins those of each device. A device sends them in their order.
+
+local open_parts, counts
+
+local function forget_parts()
+  open_parts, counts = {}, {}
+end
+
+-- Returns the addresses of a frame. `is_module` leaves those out that every controller has.
+local function peers(frame, decoded, is_module)
+  local found = {}
+  for _, address in ipairs(decoded.addressing.pattern.addresses) do
+    if not (is_module and protocol.address_types[address.type].sent) then
+      table.insert(found, string.format("%d=%d", address.type, identifier_field(frame, address.field)))
+    end
+  end
+  table.sort(found)
+  return frame.interface .. " " .. table.concat(found, " ")
+end
+
+-- Returns the raw value of one of a frame's signals, or nil if the frame does not have it.
+local function raw_value(frame, decoded, signal)
+  for _, known in ipairs(decoded.readings) do
+    if known.signal == signal then return get(frame, signal.place) end
+  end
+end
+
+-- The messages in parts whose elements another message counts.
+local counted = {}
+for _, message in ipairs(protocol.messages) do
+  local count = message.long and message.long.parts and message.long.parts.count
+  if count then
+    local counting = protocol.messages[count.message]
+    table.insert(counted, { name = message.name, by = counting, signal = counting.signals[count.signal] })
+  end
+end
+
+-- Remembers how many elements a device says that its arrays have.
+local function keep_counts(frame, decoded)
+  for _, known in ipairs(counted) do
+    local raw = known.by == decoded.layout.message and raw_value(frame, decoded, known.signal)
+    if raw then counts[peers(frame, decoded, true) .. " " .. known.name] = double(raw) end
+  end
+end
+
+-- Tests whether a frame says that no other follows.
+local function is_last(frame)
+  local known = protocol.continuation
+  if not known then return false end
+  local place = known.selector and protocol.selectors[known.selector].place
+  local value = place and key(get(frame, place)) or known.field and identifier_field(frame, known.field)
+  return value ~= known.value
+end
+
+local function expected_parts(long, count)
+  if long.elements and not count then return nil end
+  return math.max(1, math.ceil(bytes_with(long, count) / long.parts.size))
+end
+
+-- Ends a message. `expected` is the number of its parts, if the frames say it.
+local function end_parts(open, expected, ended)
+  local is_counted = counts[open.counted] or open.is_ended or not open.long.elements
+  open_parts[open.key] = nil
+  local long, size, data, numbers = open.long, open.long.parts.size, {}, {}
+  expected = expected or expected_parts(long, counts[open.counted])
+  for index = 0, open.last do
+    data[index + 1] = open.parts[index] or string.rep(".", 2 * size)
+  end
+  for index = 0, (expected or open.last + 1) - 1 do
+    if not open.parts[index] then table.insert(numbers, string.format("%d", open.first + index)) end
+  end
+  local whole = { long = long, data = table.concat(data), count = counts[open.counted] }
+  whole.incomplete, whole.is_counted = missing(numbers, "part", "parts"), is_counted
+  table.insert(ended, whole)
+end
+
+-- Returns the part that a frame carries, if its number is one of the message's.
+local function part_of(frame, decoded, first)
+  local long, signals = decoded.layout.message.long, decoded.layout.message.signals
+  local number = raw_value(frame, decoded, signals[long.parts.number])
+  local data = raw_value(frame, decoded, signals[long.parts.data])
+  if not (number and data and first) then return nil end
+  local index = double(number) - first
+  if index < 0 or index >= math.ceil(longest(long) / long.parts.size) then return nil end
+  return { index = index, data = digits(data, 2 * long.parts.size) }
+end
+
+-- Takes a frame of a message in parts, and adds the messages that it ends.
+local function take_part(frame, decoded, ended)
+  if not decoded.addressing.mode then return end
+  local is_error = refusal(decoded)
+  if not is_error then keep_counts(frame, decoded) end
+  local message = decoded.layout.message
+  local long = message.long
+  if not (long and long.parts) then return end
+  local first = first_part(long.parts, frame.model)
+  local this = peers(frame, decoded) .. " " .. message.name
+  local open, part = open_parts[this], not is_error and part_of(frame, decoded, first)
+  if not part then
+    if open and decoded.layout.kind == "request" then end_parts(open, nil, ended) end
+    return
+  end
+  if open and open.last == part.index and open.parts[open.last] == part.data then return end
+  if not open or open.last >= part.index then
+    if open then end_parts(open, nil, ended) end
+    local counted = peers(frame, decoded, true) .. " " .. message.name
+    open = { key = this, counted = counted, long = long, first = first, parts = {} }
+    open_parts[this] = open
+  end
+  open.last, open.parts[part.index], open.is_ended = part.index, part.data, is_last(frame)
+  local expected = open.is_ended and part.index + 1 or expected_parts(long, counts[open.counted])
+  if (expected or math.ceil(longest(long) / long.parts.size)) <= part.index + 1 then
+    end_parts(open, expected, ended)
+  end
+end
