@@ -5,10 +5,12 @@ mod by_hand;
 mod calls;
 mod others;
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs, io};
+use std::sync::LazyLock;
+use std::{env, fs, io, thread};
 
 use canspec_codegen::emit::{self, Options, Scaled};
 use canspec_codegen::model::Protocol;
@@ -175,30 +177,25 @@ pub struct Settings<'a> {
 }
 
 impl Program {
-    /// Compiles and links the program in a folder, one at a time; returns it, or what cargo says.
+    /// Compiles and links the program in a folder, as many at a time as there are processors; returns it, or what cargo
+    /// says.
     ///
     /// # Errors
     ///
     /// If files cannot be written, or cargo does not start.
     pub fn link(&self, folder: &Path, settings: Settings<'_>) -> io::Result<Result<Binary, String>> {
-        let folder = folder.join(settings.profile);
+        VERSIONS.as_ref().map_err(|error| io::Error::new(error.kind(), error.to_string()))?;
+        let (folder, _lock) = free(&folder.join(settings.profile))?;
         let source = folder.join(format!("{}.rs", self.name));
-        fs::create_dir_all(&folder)?;
-        let lock = File::create(folder.join("lock"))?;
-        lock.lock()?;
         fs::write(&source, &self.modules)?;
-        let bare = root().join("tests/bare");
-        // The versions of this workspace; all of them are on the machine already.
-        fs::copy(root().join("Cargo.lock"), bare.join("Cargo.lock"))?;
         let target = settings.target.map(|target| ["--target", target]);
-        let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-            .args(["build", "--offline", "--quiet", "--profile", settings.profile])
+        let output = cargo()
+            .args(["build", "--offline", "--locked", "--quiet", "--profile", settings.profile])
             .args(target.into_iter().flatten())
             .arg("--target-dir")
             .arg(&folder)
             .env("CANSPEC_PROGRAM", &source)
             .env_remove("RUSTFLAGS")
-            .current_dir(bare)
             .output()?;
         if !output.status.success() {
             return Ok(Err(String::from_utf8_lossy(&output.stderr).into_owned()));
@@ -206,6 +203,44 @@ impl Program {
         let path = folder.join(settings.target.unwrap_or_default()).join(settings.profile).join("bare");
         Binary::read(&path).map(Ok)
     }
+}
+
+/// Gives the programs the versions of this workspace. They are on the machine already.
+static VERSIONS: LazyLock<io::Result<()>> = LazyLock::new(|| {
+    fs::copy(root().join("Cargo.lock"), bare().join("Cargo.lock"))?;
+    cargo().args(["update", "--workspace", "--offline", "--quiet"]).status().map(drop)
+});
+
+/// Calls cargo for the programs.
+fn cargo() -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(bare());
+    command
+}
+
+/// Takes one of the folders in which no program is compiled now, one for each processor, until the lock is dropped. It
+/// waits for the last one if all are taken.
+fn free(folder: &Path) -> io::Result<(PathBuf, File)> {
+    let count = thread::available_parallelism().map_or(1, NonZero::get);
+    let mut taken = None;
+    for place in 0..count {
+        let folder = folder.join(place.to_string());
+        fs::create_dir_all(&folder)?;
+        let lock = File::create(folder.join("lock"))?;
+        match lock.try_lock() {
+            Ok(()) => return Ok((folder, lock)),
+            Err(TryLockError::WouldBlock) => taken = Some((folder, lock)),
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+    }
+    let (folder, lock) = taken.ok_or(io::ErrorKind::NotFound)?;
+    lock.lock()?;
+    Ok((folder, lock))
+}
+
+/// Returns the folder of the crate that every program is.
+fn bare() -> PathBuf {
+    root().join("tests/bare")
 }
 
 /// Returns the root of the workspace.

@@ -3,7 +3,7 @@
 
 use std::env::consts::ARCH;
 use std::path::Path;
-use std::{env, io};
+use std::{env, io, thread};
 
 use canspec_codegen::emit::Scaled;
 use canspec_tests::bare::{Codec, Program, Settings, Size, is_installed};
@@ -33,8 +33,7 @@ fn main() -> io::Result<()> {
     println!("| | {} |\n|---|{}", headings.join(" | "), "---:|".repeat(headings.len()));
     let words: Vec<_> = env::args().skip(1).collect();
     for (name, program) in programs().into_iter().filter(|(name, _)| words.iter().all(|word| name.contains(word))) {
-        let cells: io::Result<Vec<_>> = columns.iter().map(|column| cell(&program, &folder, column)).collect();
-        println!("| {name} | {} |", cells?.join(" | "));
+        println!("| {name} | {} |", cells(&program, &folder, &columns)?.join(" | "));
     }
     Ok(())
 }
@@ -70,15 +69,24 @@ fn programs() -> Vec<(String, Program)> {
 }
 
 /// Returns the programs of a codec, each with its name.
-fn of_codec(codec: &Codec, what: &str) -> [(String, Program); 4] {
+fn of_codec(codec: &Codec, what: &str) -> Vec<(String, Program)> {
     let name = codec.name();
-    let message = codec.one_message().unwrap_or_default();
-    [
+    let mut programs = vec![
         (format!("`{name}`{what}: decode"), Program::decode(codec)),
         (format!("`{name}`{what}: visit"), Program::visit(codec)),
         (format!("`{name}`{what}: encode"), Program::encode(codec)),
-        (format!("`{name}`{what}: `{message}` alone"), Program::one_message(codec)),
-    ]
+    ];
+    let message = codec.one_message();
+    programs.extend(message.map(|message| (format!("`{name}`{what}: `{message}` alone"), Program::one_message(codec))));
+    programs
+}
+
+/// Compiles a program in each way, side by side.
+fn cells(program: &Program, folder: &Path, columns: &[Column]) -> io::Result<Vec<String>> {
+    thread::scope(|scope| {
+        let cells: Vec<_> = columns.iter().map(|column| scope.spawn(|| cell(program, folder, column))).collect();
+        cells.into_iter().map(|cell| cell.join().expect("no cell panics")).collect()
+    })
 }
 
 /// Returns by how much a program is larger than the empty one.
