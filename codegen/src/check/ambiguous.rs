@@ -130,13 +130,27 @@ fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path,
     if first == second { (own(one), own(other)) } else { (first, second) }
 }
 
-/// Tests whether models, lengths and addresses allow a frame that is both.
+/// Tests whether models, lengths, constants and addresses allow a frame that is both.
 fn both_fit(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
-    !protocol[one.message].is_apart_from(&protocol[other.message])
+    agree(one, other)
+        && !protocol[one.message].is_apart_from(&protocol[other.message])
         && one.lengths.iter().any(|length| other.lengths.contains(length))
         && protocol
             .patterns_of(one)
             .any(|(_, pattern)| protocol.patterns_of(other).any(|(_, opposite)| intersect(protocol, pattern, opposite)))
+}
+
+/// Tests whether the constants of two frames want the same of each data bit, whatever the fields are called.
+fn agree(one: &FrameLayout, other: &FrameLayout) -> bool {
+    let bits = |frame: &FrameLayout| {
+        frame.payload().fold((0, 0), |(mask, bits), (place, value)| {
+            let mut data = [0; 8];
+            place.put(&mut data, value);
+            (mask | u64::from_be_bytes(place.mask()), bits | u64::from_be_bytes(data))
+        })
+    };
+    let ((mask, value), (others, wanted)) = (bits(one), bits(other));
+    mask & others & (value ^ wanted) == 0
 }
 
 /// Tests whether one identifier fits both patterns.
