@@ -298,7 +298,7 @@ fn put_reserved(
 
 /// Tests that the frame decodes to the content. A request must also keep to the documented
 /// addresses and to the messages of the model.
-fn confirm(
+pub fn confirm(
     protocol: &Protocol,
     message: &Message,
     layout: &FrameLayout,

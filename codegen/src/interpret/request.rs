@@ -2,7 +2,7 @@
 
 use super::arrays::parted_texts;
 use super::content::blank_data;
-use super::encode::{continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
+use super::encode::{confirm, continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
 use super::long::typed;
 use super::transfer::frames;
 use super::value::{Limits, raw_of};
@@ -255,7 +255,8 @@ fn made(
     let length = length_with(message, layout, |name| signals.iter().any(|(given, _)| given == name));
     put_signals(protocol, message, (layout, length), signals, (model, Limits::Range(model)), &mut data)?;
     let frame = frame(protocol, id, data[..length].to_vec());
-    decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    let decoded = decode(protocol, model, &frame).map_err(|problem| refuse(message, &problem.text))?;
+    confirm(protocol, message, layout, &decoded, model)?;
     Ok(frame)
 }
 

@@ -87,14 +87,15 @@ fn direction_tests(
     let mut tests = Vec::new();
     for (id, field) in identifier.fields.entries() {
         let address = pattern.addresses.iter().find(|address| address.field == id);
-        let claimed = strict_ranges(id, types, modes);
-        if let Some(address) = address.filter(|address| types[address.address_type].strict) {
-            tests.push(FieldTest { field: id, ranges: types[address.address_type].raw_ranges(), inside: true });
-        } else if pattern.mask & field.mask() != 0
-            && others.iter().all(|(_, other)| differs(pattern, other, field.mask()))
-        {
-            tests.push(FieldTest::constant(id, field.get(pattern.value)));
-        } else if (address.is_some() || pattern.mask & field.mask() != 0) && !claimed.is_empty() {
+        let address = address.map(|address| &types[address.address_type]);
+        let value = (pattern.mask & field.mask() != 0).then(|| field.get(pattern.value));
+        let is_telling = || others.iter().all(|(_, other)| differs(pattern, other, field.mask()));
+        let claimed = without(strict_ranges(id, types, modes), value);
+        if let Some(strict) = address.filter(|known| known.strict) {
+            tests.push(FieldTest { field: id, ranges: strict.raw_ranges(), inside: true });
+        } else if let Some(value) = value.filter(|_| is_telling()) {
+            tests.push(FieldTest::constant(id, value));
+        } else if (address.is_some() || value.is_some()) && !claimed.is_empty() {
             tests.push(FieldTest { field: id, ranges: claimed, inside: false });
         }
     }
@@ -104,6 +105,17 @@ fn direction_tests(
 /// Tests whether the patterns have different constants in the field.
 fn differs(one: &AddressPattern, other: &AddressPattern, field: u32) -> bool {
     other.mask & field != 0 && (one.value ^ other.value) & field != 0
+}
+
+/// Returns ranges without a value.
+fn without(ranges: Vec<(u32, u32)>, value: Option<u32>) -> Vec<(u32, u32)> {
+    let Some(value) = value else { return ranges };
+    let rest = |(first, last): (u32, u32)| {
+        let before = value.checked_sub(1).map(|before| (first, last.min(before)));
+        let after = value.checked_add(1).map(|after| (first.max(after), last));
+        before.into_iter().chain(after).filter(|(first, last)| first <= last)
+    };
+    ranges.into_iter().flat_map(rest).collect()
 }
 
 fn strict_ranges(field: FieldId, types: &AddressTypes, modes: &Table<ModeId, Mode>) -> Vec<(u32, u32)> {
