@@ -48,6 +48,7 @@ impl Room for Number<'_> {
         let (scale, name) = (self.scale, &self.signal.name);
         let integer = integer.ok_or_else(|| format!("`{text}` is no whole number of steps of {scale} for `{name}`"))?;
         let raw = self.numeral.raw(integer).ok_or_else(|| self.misfit(value))?;
+        self.check_present(value, raw)?;
         bits_of_spec(self.signal, raw)
     }
 
@@ -92,6 +93,10 @@ impl Number<'_> {
             allowed.check(self.signal, value)?;
             return Err(self.misfit(value));
         };
+        if let Err(why) = self.check_present(value, raw) {
+            allowed.check(self.signal, value)?;
+            return Err(why);
+        }
         let special = self.special(raw).map(|special| special.name.as_str());
         allowed.check_sent(self.signal, value, self.physical(integer), special)?;
         if special.is_none() && self.is_unscaled() {
@@ -106,6 +111,10 @@ impl Number<'_> {
         if raw.is_none_or(|raw| self.special(raw).is_none()) {
             allowed.check_whole(self.signal, value)?;
         }
+        if let Some(Err(why)) = raw.map(|raw| self.check_present(value, raw)) {
+            allowed.check_whole(self.signal, value)?;
+            return Err(why);
+        }
         raw.and_then(|raw| self.signal.bits_of(raw)).ok_or_else(|| self.misfit(value))
     }
 
@@ -119,6 +128,14 @@ impl Number<'_> {
             (None, None) => allowed.check_meaning(raw)?,
         }
         Ok(bits)
+    }
+
+    /// Refuses a number whose raw value says that there is none.
+    fn check_present(&self, value: impl std::fmt::Display, raw: i128) -> Result<(), String> {
+        let absent = self.signal.absent().filter(|absent| absent.raw == raw);
+        absent.map_or(Ok(()), |absent| {
+            Err(format!("{value}{} would be sent as `{}`", self.signal.unit_text(), absent.name))
+        })
     }
 
     /// Says that a value does not fit, and what the bits can hold.

@@ -28,7 +28,17 @@ impl Resolver<'_> {
         };
         let (_, raw) = numeral.raw_limits(width);
         let is_free = width > 1 && merged.field.constant.is_none() && named.iter().all(|known| known.raw != raw);
-        (are_ones && is_free).then(|| NamedValue { raw, name: NOT_AVAILABLE.to_owned() })
+        if !(are_ones && is_free) {
+            return None;
+        }
+        if let Some(known) = named.iter().find(|known| known.name == NOT_AVAILABLE) {
+            let text = format!("raw {} and all ones would both be called `{NOT_AVAILABLE}`", known.raw);
+            let help = "give the value another name, or write `absent: none`";
+            let at = merged.path(self.diagnostics, Key::Values);
+            self.error_with_help(&rules::NAMED_VALUE, at.at_key(), text, help);
+            return None;
+        }
+        Some(NamedValue { raw, name: NOT_AVAILABLE.to_owned() })
     }
 
     /// Reads what a field or its type says, which must make a difference.

@@ -104,7 +104,9 @@ impl<R: Raw, F: Physical<R>> WriteSignal for Signal<R, F> {
     fn write(&self, meaning: Meaning<'_>, payload: &mut Payload) -> Result<(), Error> {
         if R::IS_NUMBER && !self.is_by_model {
             if let Meaning::Number(number) = meaning {
-                return F::write(self, number, payload);
+                let before = *payload.data();
+                F::write(self, number, payload)?;
+                return self.confirm(payload, before, || number);
             }
         }
         let raw = self.special_value(meaning).or_else(|| self.plain_value(meaning));

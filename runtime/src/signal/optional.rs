@@ -3,7 +3,7 @@
 use super::Signal;
 use crate::physical::{Physical, Scaled};
 use crate::raw::Raw;
-use crate::{Data, Error, Payload};
+use crate::{Data, Error, Number, Payload};
 
 impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Returns the raw value, if a frame of `length` data bytes has it.
@@ -28,14 +28,29 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     ///
     /// # Errors
     ///
-    /// The same as [`put`](Self::put). It also refuses to leave out what the frame is long enough
-    /// for, if no bits say that there is no value.
+    /// The same as [`put`](Self::put). It also refuses a value whose bits say that there is none.
+    /// It refuses to leave out what the frame is long enough for, if no bits say so.
     #[inline(always)]
     pub fn put_some(&self, raw: Option<R>, payload: &mut Payload) -> Result<(), Error> {
-        match raw {
-            Some(raw) => self.put(raw, payload),
-            None => self.left_out(payload),
+        let Some(raw) = raw else { return self.left_out(payload) };
+        let before = *payload.data();
+        self.put(raw, payload)?;
+        self.confirm(payload, before, || self.physical(raw).number(self.scale))
+    }
+
+    /// Takes back a value whose bits say that there is none.
+    #[inline(always)]
+    pub(super) fn confirm(
+        &self,
+        payload: &mut Payload,
+        before: Data,
+        value: impl FnOnce() -> Number,
+    ) -> Result<(), Error> {
+        if self.is_there(*payload.data(), before.len()) {
+            return Ok(());
         }
+        payload.replace(before);
+        Err(self.hidden(value(), "not_available", payload))
     }
 
     /// Writes that there is no value, unless the frame ends before it.
@@ -64,13 +79,13 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     ///
     /// # Errors
     ///
-    /// The same as [`encode`](Self::encode). It also refuses to leave out what the frame is long
-    /// enough for.
+    /// The same as [`encode`](Self::encode). It also refuses a value whose bits say that there is
+    /// none. It refuses to leave out what the frame is long enough for, if no bits say so.
     #[inline(always)]
     pub fn encode_some(&self, physical: Option<F>, payload: &mut Payload) -> Result<(), Error> {
-        match physical {
-            Some(physical) => self.encode(physical, payload),
-            None => self.left_out(payload),
-        }
+        let Some(physical) = physical else { return self.left_out(payload) };
+        let before = *payload.data();
+        self.encode(physical, payload)?;
+        self.confirm(payload, before, || Scaled::number(physical))
     }
 }

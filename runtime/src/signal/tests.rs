@@ -62,6 +62,11 @@ fn all_ones_or_the_greatest_signed_number_say_that_there_is_no_value() {
     assert_eq!(payload.data(), &[0xFF, 0x7F, 0xFF, 0, 0, 0, 0, 0]);
     assert_eq!([charge.put_some(Some(1), &mut payload), heat.encode_some(Some(0.2), &mut payload)], [Ok(()); 2]);
     assert_eq!(payload.data(), &[1, 0, 2, 0, 0, 0, 0, 0]);
+    let text = refusal(charge.put_some(Some(255), &mut payload));
+    assert_eq!(text, "`charge` of `report` is 255, which would be sent as `not_available`");
+    let text = refusal(heat.encode_some(Some(3276.7), &mut payload));
+    assert_eq!(text, "`heat` of `report` is 3276.7, which would be sent as `not_available`");
+    assert_eq!(payload.data(), &[1, 0, 2, 0, 0, 0, 0, 0]);
 }
 
 #[test]
