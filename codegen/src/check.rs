@@ -9,6 +9,7 @@ mod grid;
 mod model_range;
 mod no_example;
 mod no_limit;
+mod no_match;
 mod no_model;
 mod no_unit;
 mod nobody_replies;
@@ -41,7 +42,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 28] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 29] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -59,6 +60,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 28] = [
     (&direction::DIRECTION, Some(direction::check)),
     (&shared_address::SHARED_ADDRESS, Some(shared_address::check)),
     (&ambiguous::AMBIGUOUS, Some(ambiguous::check)),
+    (&no_match::NO_MATCH, Some(no_match::check)),
     (&refusal::REFUSAL, Some(refusal::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),
     (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),

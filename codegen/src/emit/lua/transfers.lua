@@ -34,7 +34,7 @@ local function transfer_key(frame, transport, sender, receiver)
   return table.concat({ frame.interface, transport.name, string.format("%d %d", sender, receiver) }, " ")
 end
 
--- Returns the transfer of which a frame of the sender is, and the one of which a frame of the receiver would be.
+-- Returns the name of the transfer if the sender sends the frame, its name if the receiver does, and the receiver.
 local function ends(frame, transport)
   local source, target = identifier_field(frame, transport.source), identifier_field(frame, transport.target)
   return transfer_key(frame, transport, source, target), transfer_key(frame, transport, target, source), target
