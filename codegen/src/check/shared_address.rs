@@ -15,7 +15,9 @@ type Asked<'a> = (ModeId, &'a AddressPattern);
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     let mut known = HashSet::new();
-    for frame in protocol.frames.iter().filter(|frame| frame.is_to_module()) {
+    // The standard of a transport says where its frames go.
+    let is_own = |frame: &&FrameLayout| frame.is_to_module() && protocol.transport_frame(frame.message).is_none();
+    for frame in protocol.frames.iter().filter(is_own) {
         let modes: Vec<Asked> = protocol.patterns_of(frame).collect();
         if !known.insert(modes.iter().map(|(mode, _)| *mode).collect::<Vec<_>>()) {
             continue;
