@@ -133,7 +133,10 @@ impl Resolver<'_> {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
         let outer = Outer::of_message(doc, owner);
+        // A part always has a number, so all ones are one, too.
+        let are_ones = std::mem::take(&mut self.tables.absent_are_ones);
         self.leaf(&path.key("number"), PART, &parts.number, outer, &mut leaves);
+        self.tables.absent_are_ones = are_ones;
         let data =
             Field { bytes: Some(parts.data.clone()), format_of_number: Some("bytes".to_owned()), ..Field::default() };
         self.leaf(&path.key("data"), DATA, &data, outer, &mut leaves);
