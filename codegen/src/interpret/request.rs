@@ -288,7 +288,10 @@ fn mode<'a>(
 ) -> Result<&'a Mode, Refusal> {
     let allowed = || layout.travels.iter().map(|travel| &protocol[travel.mode]);
     let is_meant = |mode: &&Mode| mode.name == target.name || protocol.target_name(mode) == target.name;
-    if let Some(mode) = allowed().find(is_meant) {
+    let has_type = |mode: &&Mode| mode.target.is_some_and(|address| protocol[address].name == target.name);
+    let by_type: Vec<&Mode> = allowed().filter(has_type).collect();
+    let only = <[&Mode; 1]>::try_from(by_type).ok().map(|[mode]| mode);
+    if let Some(mode) = allowed().find(is_meant).or(only) {
         return Ok(mode);
     }
     let names: Vec<_> = allowed().map(|mode| format!("`{}`", written(protocol, mode))).collect();
