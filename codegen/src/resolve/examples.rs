@@ -155,12 +155,14 @@ impl Resolver<'_> {
         outer: &Doc,
     ) {
         let name = message.map_or("", |message| &message.name);
-        let has_parts = self.spec.messages.get(name).is_some_and(|message| message.parts.is_some());
+        let written = self.spec.messages.get(name);
+        let is_meant = written.is_some_and(|message| message.parts.is_some() || message.via.is_some());
         let Some(long) = message.and_then(|message| message.long) else {
-            if has_parts {
+            if is_meant {
                 return;
             }
-            let text = "a list of frames, and a `count`, are for an example of a message in `parts`".to_owned();
+            let text = "a list of frames, and a `count`, are for an example of a message in `parts` or by a transport"
+                .to_owned();
             let help = "write one frame without `count`, and an example for each other frame";
             return self.error_with_help(&rules::EXAMPLE, path.key(kind.name()).at_value(), text, help);
         };
