@@ -31,6 +31,7 @@ mod error;
 mod filter;
 mod frame;
 mod incoming;
+pub mod isotp;
 mod layout;
 mod long;
 mod number;

@@ -1,6 +1,7 @@
 //! Requests, replies and what they say, of a made-up protocol.
 
 mod heaters;
+pub mod random;
 
 use std::string::ToString;
 

@@ -4,6 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::Data;
+use crate::tests::random::Random;
 
 /// The battery's address, and the charger's.
 const BATTERY: Link = Link { source: 0xF4, target: 0x56 };
@@ -256,18 +257,6 @@ fn a_silent_sender_is_given_up() {
     assert_eq!(event.broken.map(|broken| broken.cause), Some(Cause::Silent));
     assert_eq!(event.answer, Some((CHARGER, Control::Abort(Reason::TIMEOUT).encode(0x1600))));
     assert!(assembler.timed_out(9999).is_none());
-}
-
-/// Numbers that look random, the same each time.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 20) % limit
-    }
 }
 
 /// Returns a broadcast of 9 to 40 bytes as the bus spoils it: packets are lost, repeated, late or changed.

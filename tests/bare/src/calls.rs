@@ -8,7 +8,7 @@ use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::{
     AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading, Received,
-    Request, Route, Signal, WriteSignal, tp,
+    Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -173,6 +173,36 @@ fn packets<M: tp::Memory>(event: &tp::Event<M>) {
         transfer.missing().for_each(sink);
     }
     sink(event.answer);
+}
+
+/// Puts frames of ISO-TP together, and takes a message apart.
+pub fn isotp() {
+    let separation = isotp::Separation(unknown());
+    let mut assembler = isotp::Assembler::<[u8; isotp::memory(40)], 3>::new().pacing(unknown(), separation);
+    for _ in 0..unknown::<u8>() {
+        let link = isotp::Link { source: unknown_frame().id(), target: unknown_frame().id() };
+        let data: [u8; 8] = unknown();
+        pdus(&assembler.receive(link, data.get(..unknown()).unwrap_or_default(), unknown()));
+        assembler.timed_out(unknown()).iter().for_each(pdus);
+    }
+    let data: [u8; 40] = unknown();
+    let Some(mut sender) = data.get(..unknown()).and_then(isotp::Sender::new) else { return };
+    sender = sender.padded(unknown::<bool>().then(unknown));
+    for _ in 0..unknown::<u8>() {
+        sink((sender.is_waiting(), sender.is_done()));
+        if let isotp::Answer::Allowed(separation) = sender.control(&unknown::<[u8; 8]>()) {
+            sink(separation.micros());
+        }
+        sender.by_ref().for_each(|packet| sink(packet.data()));
+    }
+}
+
+fn pdus<M: isotp::Memory>(event: &isotp::Event<M>) {
+    let broken = event.broken.iter().chain(&event.refused).map(|broken| &broken.transfer);
+    for transfer in broken.chain(&event.whole) {
+        sink((transfer.data(), transfer.link, transfer.size()));
+    }
+    sink(event.answer.as_ref().map(|(link, packet)| (*link, packet.data())));
 }
 
 fn unknown_frame() -> canspec_runtime::Frame {

@@ -44,7 +44,7 @@ impl Module {
             function.signature.ident != "fmt" && function.signature.generics.params.is_empty()
         };
         let functions = self.functions().filter(is_called).map(Function::call);
-        let transport = quote!(calls::transport(););
+        let transport = quote!(calls::transport(); calls::isotp(););
         functions.chain(self.signals()).chain(self.blocks().map(provided)).chain([transport]).collect()
     }
 
