@@ -6,19 +6,22 @@ Called as `transports.py TRANSPORTS` with the program; `.ci/peers` does that. Th
 import random
 import subprocess
 import sys
-from collections import Counter
 
+import isotp
+import isotp.tools
 from j1939 import j1939_21
 
 OURS, THEIRS, ALL = 0x80, 0x90, 0xFF
+# Identifiers of ISO-TP, which differ by 8.
+REQUEST, RESPONSE = 0x7E0, 0x7E8
 
 
 class Node:
     """A node that speaks by canspec's runtime."""
 
-    def __init__(self, program, transport):
+    def __init__(self, program, *arguments):
         pipe = subprocess.PIPE
-        self.program = subprocess.Popen([program, transport], stdin=pipe, stdout=pipe, text=True)
+        self.program = subprocess.Popen([program, *map(str, arguments)], stdin=pipe, stdout=pipe, text=True)
 
     def __enter__(self):
         return self
@@ -43,6 +46,9 @@ class Clock:
     def time(self):
         return self.now
 
+    def perf_counter_ns(self):
+        return round(self.now * 1e9)
+
 
 def word(sign, identifier, data):
     return f"{identifier:X}{sign}{bytes(data).hex().upper()}"
@@ -55,8 +61,6 @@ def parted(text):
 
 class J1939:
     """A node that speaks by can-j1939, and allows some packets at once."""
-
-    transport = "j1939"
 
     def __init__(self, packets):
         self.clock = j1939_21.time = Clock()
@@ -88,6 +92,44 @@ class J1939:
             if self.frames or not 0 < wake - self.clock.now < 4:
                 break
             self.clock.now = wake
+        frames, self.frames = self.frames, []
+        return frames
+
+
+class IsoTp:
+    """A node that speaks by can-isotp, and asks for blocks and a separation."""
+
+    def __init__(self, block, separation, padding):
+        self.clock = isotp.tools.time = Clock()
+        self.came, self.frames, self.words = [], [], []
+        settings = {"blocksize": block, "stmin": separation, "tx_padding": padding}
+        settings["tx_data_min_length"] = None if padding is None else 8
+        self.layer = isotp.TransportLayerLogic(
+            rxfn=lambda _: self.came.pop(0) if self.came else None,
+            txfn=lambda frame: self.frames.append(word("#", frame.arbitration_id, frame.data)),
+            address=isotp.Address(txid=RESPONSE, rxid=REQUEST),
+            error_handler=lambda error: self.words.append(f"!{type(error).__name__}"),
+            params=settings | {"wait_func": lambda _: None},
+        )
+
+    def send(self, message):
+        self.layer.send(parted(message)[1])
+
+    def take(self, frame):
+        identifier, data = parted(frame)
+        self.came.append(isotp.CanMessage(arbitration_id=identifier, data=data))
+
+    def taken(self):
+        """Lets the node work, and waits for it if it has nothing to say yet. Returns its frames."""
+        while not self.frames:
+            self.layer.process()
+            while (message := self.layer.recv()) is not None:
+                self.words.append(word("=", REQUEST, message))
+            delay = self.layer.next_cf_delay()
+            if delay:
+                self.clock.now += delay + 1e-9
+            elif not self.came and not self.frames:
+                break
         frames, self.frames = self.frames, []
         return frames
 
@@ -127,18 +169,55 @@ def j1939_messages(sizes, rng):
                 yield word("=", group << 8 | source, rng.randbytes(size)), is_ours
 
 
-def main(program):
-    rng, counts = random.Random(1), Counter()
+def isotp_messages(sizes, rng):
+    """Messages in both directions."""
+    for size in sizes:
+        yield word("=", REQUEST, rng.randbytes(size)), True
+        yield word("=", RESPONSE, rng.randbytes(size)), False
+
+
+def compare_j1939(program, rng):
+    count = 0
     # One packet at a time takes long, so these are the sizes next to a change of the last or the first packets.
     edges = [9, 10, 13, 14, 15, 20, 21, 22, 112, 113, 1784, 1785]
     for packets, sizes in ((255, range(9, 1786)), (16, range(9, 1786, 100)), (1, edges)):
+        messages = list(j1939_messages(sizes, rng))
         with Node(program, "j1939") as ours:
-            messages = list(j1939_messages(sizes, rng))
-            counts["messages"] += len(messages)
-            wrong = list(failures(ours, J1939(packets), messages))
-            if wrong:
-                raise SystemExit(f"can-j1939, {packets} packets at once: {len(wrong)} do not come over: {wrong[0]}")
-    print(f"can-j1939: {counts['messages']} messages of 9 to 1785 bytes come over, both ways, to one node and to all")
+            demand_none(failures(ours, J1939(packets), messages), f"can-j1939, {packets} packets at once")
+        count += len(messages)
+    print(f"can-j1939: {count} messages of 9 to 1785 bytes come over, both ways, to one node and to all")
+
+
+def compare_isotp(program, rng):
+    count = 0
+    # Every size with up to three digits in base 7, some larger ones, and the last two frames of the largest.
+    many = [*range(1, 344), *range(344, 4080, 83), *range(4080, 4096)]
+    edges = [1, 6, 7, 8, 13, 14, 20, 21, 111, 112, 118, 119, 255, 256, 4089, 4090, 4095]
+    # Block, separation and padding: those of our node, and those of the other one.
+    settings = [
+        ((0, 0), (0, 0, None), many),
+        ((8, 0, 0xCC), (15, 0, 0xAA), many),
+        ((1, 0xF3, 0x00), (1, 10, 0xFF), edges),
+        ((255, 127), (254, 0xF9, 0x55), edges),
+    ]
+    for mine, other, sizes in settings:
+        messages = list(isotp_messages(sizes, rng))
+        with Node(program, "isotp", *mine) as ours:
+            demand_none(failures(ours, IsoTp(*other), messages), f"can-isotp, {mine} and {other}")
+        count += len(messages)
+    print(f"can-isotp: {count} messages of 1 to 4095 bytes come over, both ways")
+
+
+def demand_none(failures, where):
+    failures = list(failures)
+    if failures:
+        raise SystemExit(f"{where}: {len(failures)} messages do not come over, such as {failures[0]}")
+
+
+def main(program):
+    rng = random.Random(1)
+    compare_j1939(program, rng)
+    compare_isotp(program, rng)
 
 
 if __name__ == "__main__":

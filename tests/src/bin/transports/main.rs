@@ -1,17 +1,21 @@
-//! One node of a transport, on a bus of lines, for programs that are compared with canspec. Called as
-//! `transports j1939`.
+//! One node of a transport, on a bus of lines, for programs that are compared with canspec.
 //!
-//! A line says what happens to the node, as words with a blank between them: `ID#DATA` is a frame that comes, `ID=DATA`
-//! a message to send. The answer is one line too: its words are frames that the node sends, messages that it has put
-//! together, `sent` for a message that came over, and `!CAUSE` for one that comes to nothing. The identifier of
-//! a message is the one that it would have as a single frame.
+//! Called as `transports j1939` or `transports isotp BLOCK SEPARATION [PADDING]`. The node then asks senders for blocks
+//! and for time between frames, and fills its frames up with a byte.
+//!
+//! A line says in words what happens to the node. `ID#DATA` is a frame that comes, and `ID=DATA` a message to send. Its
+//! identifier is the one that the message would have as a single frame. The answer is one line too. It has frames that
+//! the node sends, and messages that it has put together. `sent` says that a message came over, and `!CAUSE` that one
+//! comes to nothing.
 
+mod isotp;
 mod j1939;
 
 use std::env;
 use std::fmt;
 use std::io::{self, Write};
 
+use isotp::IsoTp;
 use j1939::J1939;
 
 /// A node, which answers at once.
@@ -45,10 +49,8 @@ impl fmt::Display for Word {
 }
 
 fn main() -> io::Result<()> {
-    let mut node: Box<dyn Node> = match env::args().nth(1).as_deref() {
-        Some("j1939") => Box::new(J1939::new()),
-        _ => return Err(io::Error::other("call it as `transports j1939`")),
-    };
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let mut node = node(&arguments).ok_or_else(|| io::Error::other("the page of this program says how to call it"))?;
     for line in io::stdin().lines() {
         let mut answer = Vec::new();
         for word in line?.split_whitespace() {
@@ -58,6 +60,17 @@ fn main() -> io::Result<()> {
         writeln!(io::stdout(), "{}", answer.join(" "))?;
     }
     Ok(())
+}
+
+fn node(arguments: &[String]) -> Option<Box<dyn Node>> {
+    let (transport, numbers) = arguments.split_first()?;
+    let numbers: Result<Vec<u8>, _> = numbers.iter().map(|number| number.parse()).collect();
+    match (transport.as_str(), numbers.ok()?.as_slice()) {
+        ("j1939", []) => Some(Box::new(J1939::new())),
+        ("isotp", [block, separation]) => Some(Box::new(IsoTp::new(*block, *separation, None))),
+        ("isotp", [block, separation, padding]) => Some(Box::new(IsoTp::new(*block, *separation, Some(*padding)))),
+        _ => None,
+    }
 }
 
 /// Returns what a node answers to a word, if it is one.
