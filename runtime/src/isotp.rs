@@ -9,6 +9,36 @@
 //! Addresses stand in the identifier alone ("normal addressing").
 //!
 //! Time is a number of milliseconds from any start, and may wrap around.
+//!
+//! # Examples
+//!
+//! An engine sends the number of a vehicle to a tester:
+//!
+//! ```
+//! use canspec_runtime::embedded_can::{Id, StandardId};
+//! use canspec_runtime::isotp::{Assembler, Link, Sender, memory};
+//!
+//! # fn exchange() -> Option<()> {
+//! let id = |id| StandardId::new(id).map(Id::Standard);
+//! let link = Link { source: id(0x7E8)?, target: id(0x7E0)? };
+//! let mut assembler = Assembler::<[u8; memory(64)], 1>::new();
+//! let mut sender = Sender::new(b"\x49\x02\x011D4GP00R55B123456")?;
+//!
+//! let first = sender.next()?;
+//! assert_eq!(first.data(), b"\x10\x14\x49\x02\x011D4");
+//! let (back, flow_control) = assembler.receive(link, first.data(), 0).answer?;
+//! assert_eq!(back, link.reversed());
+//! sender.control(flow_control.data());
+//!
+//! let mut whole = None;
+//! for packet in sender {
+//!     whole = assembler.receive(link, packet.data(), 1).whole;
+//! }
+//! assert_eq!(whole?.data(), b"\x49\x02\x011D4GP00R55B123456");
+//! # Some(())
+//! # }
+//! # exchange().expect("it comes over");
+//! ```
 
 mod assembler;
 mod pdu;

@@ -1,6 +1,6 @@
 //! Puts frames together, for several pairs of identifiers at a time.
 
-use super::pdu::{CONSECUTIVE, Flow, Packet, Pdu, SINGLE, Separation};
+use super::pdu::{CONSECUTIVE, FIRST, Flow, Packet, Pdu, Separation};
 use super::{Link, Memory, PADDING, PATIENCE, SIZES};
 use crate::assembler::elapsed;
 use crate::long::buffer::Buffer;
@@ -73,9 +73,7 @@ pub enum Cause {
 
 impl<M: Memory> Transfer<M> {
     /// Returns a message with the data of its only frame, or of its first one, if there is room for them.
-    fn new(link: Link, size: usize, data: &[u8]) -> (Self, bool) {
-        let head = CONSECUTIVE.saturating_sub(data.len());
-        let head = if size > SINGLE { head } else { 0 };
+    fn new(link: Link, size: usize, head: usize, data: &[u8]) -> (Self, bool) {
         let mut transfer = Self { link, size, head, buffer: Buffer::new(CONSECUTIVE) };
         let has_room = super::memory(size) <= M::BLANK.as_ref().len() && transfer.add(head, data);
         (transfer, has_room)
@@ -168,14 +166,14 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
 
     fn single(&mut self, link: Link, data: &[u8]) -> Event<M> {
         let event = self.restarted(link);
-        let (transfer, has_room) = Transfer::new(link, data.len(), data);
+        let (transfer, has_room) = Transfer::new(link, data.len(), 0, data);
         if has_room { Event { whole: Some(transfer), ..event } } else { event.refused(transfer) }
     }
 
     fn first(&mut self, link: Link, size: u32, data: &[u8], now: u32) -> Event<M> {
         let event = self.restarted(link);
         let size = usize::try_from(size).unwrap_or(usize::MAX);
-        let (transfer, has_room) = Transfer::new(link, size, data);
+        let (transfer, has_room) = Transfer::new(link, size, CONSECUTIVE - FIRST, data);
         let is_free = self.sessions.iter().any(Option::is_none);
         if !has_room || !is_free || !SIZES.contains(&size) {
             return self.answering(event.refused(transfer), link, Flow::Overflow);
