@@ -37,7 +37,7 @@ class Bus(unittest.TestCase):
 
 
 class SpoiltJ1939(Bus):
-    node = ["j1939"]
+    node = ["j1939", 255]
     messages = staticmethod(j1939_messages)
 
     def peer(self):

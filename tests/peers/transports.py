@@ -180,10 +180,12 @@ def compare_j1939(program, rng):
     count = 0
     # One packet at a time takes long, so these are the sizes next to a change of the last or the first packets.
     edges = [9, 10, 13, 14, 15, 20, 21, 22, 112, 113, 1784, 1785]
-    for packets, sizes in ((255, range(9, 1786)), (16, range(9, 1786, 100)), (1, edges)):
+    # The most packets that either node lets come at once.
+    settings = [(255, 255, range(9, 1786)), (255, 16, range(9, 1786, 100)), (5, 255, edges), (255, 1, edges)]
+    for mine, other, sizes in settings:
         messages = list(j1939_messages(sizes, rng))
-        with Node(program, "j1939") as ours:
-            demand_none(failures(ours, J1939(packets), messages), f"can-j1939, {packets} packets at once")
+        with Node(program, "j1939", mine) as ours:
+            demand_none(failures(ours, J1939(other), messages), f"can-j1939, {mine} and {other} packets at once")
         count += len(messages)
     print(f"can-j1939: {count} messages of 9 to 1785 bytes come over, both ways, to one node and to all")
 

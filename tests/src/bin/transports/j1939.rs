@@ -15,12 +15,14 @@ type Memory = [u8; memory(*SIZES.end())];
 /// A node that receives a message and sends another one at a time.
 pub struct J1939 {
     assembler: Assembler<Memory, 1>,
+    /// The greatest number of packets that a receiver may allow at once.
+    limit: u8,
     sending: Option<(Link, Sender<'static>)>,
 }
 
 impl J1939 {
-    pub fn new() -> Self {
-        Self { assembler: Assembler::new(), sending: None }
+    pub fn new(limit: u8) -> Self {
+        Self { assembler: Assembler::new(), limit, sending: None }
     }
 
     /// Returns the packets that may be sent now.
@@ -51,7 +53,9 @@ impl Node for J1939 {
     fn send(&mut self, id: u32, data: Vec<u8>) -> Vec<Word> {
         let (group, link) = parted(id);
         // The program ends soon, and a sender borrows its data.
-        let Some(mut sender) = Sender::new(group, data.leak(), 255) else { return vec![Word::Broken("Size".into())] };
+        let Some(mut sender) = Sender::new(group, data.leak(), self.limit) else {
+            return vec![Word::Broken("Size".into())];
+        };
         let is_broadcast = link.target == ALL;
         let first = if is_broadcast { sender.bam() } else { sender.rts() };
         self.sending = Some((link, sender));

@@ -1,7 +1,8 @@
 //! One node of a transport, on a bus of lines, for programs that are compared with canspec.
 //!
-//! Called as `transports j1939` or `transports isotp BLOCK SEPARATION [PADDING]`. The node then asks senders for blocks
-//! and for time between frames, and fills its frames up with a byte.
+//! Called as `transports j1939 LIMIT`, the node sends at most `LIMIT` packets at once. Called as
+//! `transports isotp BLOCK SEPARATION [PADDING]`, it asks senders for blocks and for time between frames, and fills its
+//! frames up with a byte.
 //!
 //! A line says in words what happens to the node. `ID#DATA` is a frame that comes, and `ID=DATA` a message to send. Its
 //! identifier is the one that the message would have as a single frame. The answer is one line too. It has frames that
@@ -66,7 +67,7 @@ fn node(arguments: &[String]) -> Option<Box<dyn Node>> {
     let (transport, numbers) = arguments.split_first()?;
     let numbers: Result<Vec<u8>, _> = numbers.iter().map(|number| number.parse()).collect();
     match (transport.as_str(), numbers.ok()?.as_slice()) {
-        ("j1939", []) => Some(Box::new(J1939::new())),
+        ("j1939", [limit]) => Some(Box::new(J1939::new(*limit))),
         ("isotp", [block, separation]) => Some(Box::new(IsoTp::new(*block, *separation, None))),
         ("isotp", [block, separation, padding]) => Some(Box::new(IsoTp::new(*block, *separation, Some(*padding)))),
         _ => None,
