@@ -32,10 +32,10 @@ impl J1939 {
     }
 
     /// Takes a control frame about the message that is being sent, if it is one.
-    fn answered(&mut self, from: Link, data: &Data) -> Option<Vec<Word>> {
+    fn answered(&mut self, from: Link, data: Data) -> Option<Vec<Word>> {
         let (link, sender) = self.sending.as_mut().filter(|(link, _)| link.reversed() == from)?;
         let link = *link;
-        let words = match sender.control(data) {
+        let words = match sender.control(&data) {
             Answer::Allowed(_) => return Some(self.packets()),
             Answer::Done => vec![Word::Sent],
             Answer::Aborted(reason) => vec![Word::Broken(format!("{reason:?}"))],
@@ -66,10 +66,10 @@ impl Node for J1939 {
     }
 
     fn take(&mut self, id: u32, data: &[u8]) -> Vec<Word> {
-        let (Ok(data), (_, link)) = (data.try_into(), parted(id)) else { return Vec::new() };
+        let (Ok(data), (_, link)) = (Data::try_from(data), parted(id)) else { return Vec::new() };
         match format(id) {
-            CONTROL => self.answered(link, data).unwrap_or_else(|| words(&self.assembler.control(link, data, 0))),
-            PACKET => words(&self.assembler.packet(link, data, 0)),
+            CONTROL => self.answered(link, data).unwrap_or_else(|| words(&self.assembler.control(link, &data, 0))),
+            PACKET => words(&self.assembler.packet(link, &data, 0)),
             _ => Vec::new(),
         }
     }
