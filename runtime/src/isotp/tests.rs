@@ -134,7 +134,8 @@ fn what_a_receiver_has_to_ignore_changes_nothing() {
         "03AABB",           // a single frame that ends too early
         "1007010203040506", // a message of seven bytes that is no single frame
         "10140102030405",   // a first frame of seven bytes
-        "1000000000640102", // 100 bytes, with the size of a longer message
+        "1001000100000102", // a message of one byte that is no single frame
+        "100000000FFF0102", // 4,095 bytes, with the size of a longer message
         "2101020304050607", // no first frame
         "30",
         "3000", // flow controls without their times
