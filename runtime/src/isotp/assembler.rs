@@ -221,7 +221,7 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
     }
 
     fn answering(&self, event: Event<M>, link: Link, flow: Flow) -> Event<M> {
-        Event { answer: Some((link.reversed(), Pdu::Flow(flow).encode(self.padding))), ..event }
+        Event { answer: Some((link.reversed(), flow.encode(self.padding))), ..event }
     }
 
     /// Takes the session of a pair of identifiers out.

@@ -96,9 +96,10 @@ impl Packet {
 
 impl<'a> Pdu<'a> {
     /// Reads the data bytes of a frame. Returns `None` for what a receiver has to ignore. That is an
-    /// unknown kind, a size that travels by another kind, or a frame that ends too early.
+    /// unknown kind, a size that travels by another kind, or a frame that ends too early. A frame
+    /// of CAN FD is ignored, too.
     pub fn decode(data: &'a [u8]) -> Option<Self> {
-        let [first, rest @ ..] = data else { return None };
+        let ([first, rest @ ..], ..=8) = (data, data.len()) else { return None };
         let low = first & 0xF;
         match first >> 4 {
             0 if low != 0 => rest.get(..low.into()).map(Self::Single),
@@ -129,7 +130,7 @@ impl<'a> Pdu<'a> {
                 Packet::new(&[0x10 | high & 0xF, low], data, padding)
             }
             Self::Consecutive { number, data } => Packet::new(&[0x20 | number & 0xF], data, padding),
-            Self::Flow(flow) => Packet::new(&flow.encode(), &[], padding),
+            Self::Flow(flow) => flow.encode(padding),
         }
     }
 }
@@ -145,12 +146,18 @@ impl Flow {
         })
     }
 
-    fn encode(self) -> [u8; 3] {
-        match self {
+    /// Returns the data bytes of its frame, filled up if there is a byte for that.
+    ///
+    /// An assembler makes its own answers, and asks nobody to wait. A receiver that needs time sends
+    /// [`Wait`](Self::Wait) in place of the answer, and gives it to the assembler too. Then the
+    /// assembler waits longer. The answer follows when the receiver is ready.
+    pub fn encode(self, padding: Option<u8>) -> Packet {
+        let head = match self {
             Self::Continue { block, separation } => [0x30, block, separation.0],
             Self::Wait => [0x31, 0, 0],
             Self::Overflow => [0x32, 0, 0],
             Self::Reserved(status) => [0x30 | status & 0xF, 0, 0],
-        }
+        };
+        Packet::new(&head, &[], padding)
     }
 }

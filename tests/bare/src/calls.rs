@@ -183,6 +183,9 @@ pub fn isotp() {
         let link = isotp::Link { source: unknown_frame().id(), target: unknown_frame().id() };
         let data: [u8; 8] = unknown();
         pdus(&assembler.receive(link, data.get(..unknown()).unwrap_or_default(), unknown()));
+        if let Some(isotp::Pdu::Flow(flow)) = isotp::Pdu::decode(&data) {
+            sink(flow.encode(unknown::<bool>().then(unknown)));
+        }
         assembler.timed_out(unknown()).iter().for_each(pdus);
     }
     let data: [u8; 40] = unknown();
