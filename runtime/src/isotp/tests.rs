@@ -255,7 +255,7 @@ fn flow_controls_have_three_bytes_and_are_filled_up() {
         (Flow::Continue { block: 8, separation: Separation(0xF1) }, "3008F1"),
         (Flow::Wait, "310000"),
         (Flow::Overflow, "320000"),
-        (Flow::Reserved(13), "3D0000"),
+        (Flow::Reserved(12), "3C0000"),
     ];
     for (flow, text) in flows {
         assert_eq!(hex(flow.encode(None).data()), text);
