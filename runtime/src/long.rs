@@ -7,8 +7,9 @@ pub(crate) mod buffer;
 mod elements;
 pub mod parts;
 mod signal;
+pub mod transfers;
 
-use crate::Error;
+use crate::{Error, Payload};
 
 pub use elements::Elements;
 pub use signal::{LongPayload, LongSignal};
@@ -24,6 +25,8 @@ pub trait LongLayout: Copy + 'static {
     const SHORTEST: usize;
     /// The greatest number of data bytes.
     const LONGEST: usize;
+    /// The byte in which no field has a bit.
+    const BLANK: u8 = 0;
     /// The least and the greatest number of elements of the arrays that vary in length, if there are any.
     const ELEMENTS: Option<(usize, usize)> = None;
     /// Returns how many data bytes there are if these arrays have some number of elements.
@@ -44,7 +47,7 @@ pub trait LongLayout: Copy + 'static {
 
     /// Writes the values to the front of a buffer, and returns what is written. It also overwrites
     /// the rest of the buffer. [`LONGEST`](Self::LONGEST) bytes are always enough. Bits that no
-    /// field covers are 0.
+    /// field covers are those of [`BLANK`](Self::BLANK).
     ///
     /// # Errors
     ///
@@ -52,12 +55,24 @@ pub trait LongLayout: Copy + 'static {
     /// - a value that the bits of its signal cannot hold,
     /// - an array with fewer elements than the document allows, or not as many as the others that
     ///   vary with it,
+    /// - a field that is missing before one that is there,
     /// - a buffer with too few bytes.
     fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
-        buffer.fill(0);
-        let mut payload = LongPayload::new(Self::MESSAGE, Self::ELEMENTS, buffer);
+        self.encode_by(Payload::new(Self::MESSAGE, [0; 8]), buffer)
+    }
+
+    /// The same as [`encode`](Self::encode), of values that keep to the limits that `rules` say.
+    ///
+    /// # Errors
+    ///
+    /// The same as those of [`encode`](Self::encode), and values outside the limits.
+    #[doc(hidden)]
+    fn encode_by<'a>(&self, rules: Payload, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
+        buffer.fill(Self::BLANK);
+        let mut payload = LongPayload::new(rules, Self::ELEMENTS, buffer);
         Self::ENCODE(self, &mut payload)?;
-        let (length, room) = (payload.elements().map_or(Self::LONGEST, Self::BYTES), buffer.len());
+        let by_elements = || payload.elements().map_or(Self::LONGEST, Self::BYTES);
+        let (length, room) = (payload.length().unwrap_or_else(by_elements), buffer.len());
         buffer.get(..length).ok_or(Error::Room { message: Self::MESSAGE, length, room })
     }
 }

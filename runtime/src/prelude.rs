@@ -4,5 +4,5 @@ pub use crate::{
     AddressType, AnySignal, Bcd, Bits, Bytes, Data, Elements, Entry, Error, Exchange, Failure, Filter, Frame, FrameSet,
     IdentifierFields, Kind, Layout, LongLayout, LongSignal, Meaning, Mode, Number, PackedText, Payload, Place, Problem,
     Reading, Replies, Route, Selector, Severity, Signal, StatusBit, Text, assembler, embedded_can, parts,
-    parts::Parted,
+    parts::Parted, transfers, transfers::Transferred,
 };

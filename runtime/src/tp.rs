@@ -30,6 +30,12 @@ const PACKET: usize = 7;
 /// The target of a broadcast.
 pub const ALL: u8 = 0xFF;
 
+/// The number of the group of control frames.
+pub(crate) const CONTROL_GROUP: u32 = 0xEC00;
+
+/// The number of the group of packets.
+pub(crate) const DATA_GROUP: u32 = 0xEB00;
+
 /// Who sends a frame, and to whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Link {

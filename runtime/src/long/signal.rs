@@ -72,6 +72,20 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
         array::from_fn(|index| get(&self.signal, &self.window(data, index)))
     }
 
+    /// Reads the value of a signal that short data lack. `get` is a method of [`Signal`].
+    pub fn read_optional<T>(&self, data: &[u8], get: impl Fn(&Signal<R, F>, &Data, usize) -> T) -> T {
+        get(&self.signal, &self.window(data, 0), self.there(data, 0))
+    }
+
+    /// Reads the values of `N` elements, some of which short data lack.
+    pub fn read_optional_array<T, const N: usize>(
+        &self,
+        data: &[u8],
+        get: impl Fn(&Signal<R, F>, &Data, usize) -> T,
+    ) -> [T; N] {
+        array::from_fn(|index| get(&self.signal, &self.window(data, index), self.there(data, index)))
+    }
+
     /// Reads the values of the first elements.
     pub fn read_some<T, const N: usize>(
         &self,
@@ -124,13 +138,22 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
         put: impl Fn(&Signal<R, F>, T, &mut Payload) -> Result<(), Error>,
     ) -> Result<(), Error> {
         values.iter().enumerate().try_for_each(|(index, value)| {
-            let mut window = Payload::new(payload.message, self.window(payload.data, index));
+            let mut window = payload.rules;
+            window.replace(self.window(payload.data, index));
+            if payload.length.is_some_and(|length| self.end(index) > length) {
+                window.end_after(0);
+            }
             put(&self.signal, *value, &mut window)?;
             let bytes = self.moved(*window.data(), self.distance(index));
             let places = payload.data.iter_mut().skip(self.start(index));
             places.zip(bytes).for_each(|(place, byte)| *place = byte);
             Ok(())
         })
+    }
+
+    /// Returns how many bytes of its window there are, all or none.
+    fn there(&self, data: &[u8], index: usize) -> usize {
+        if self.end(index) <= data.len() { 8 } else { 0 }
     }
 
     /// Returns the byte from which the place of an element counts.
@@ -164,8 +187,11 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
 /// The data of a long message while they are written.
 #[derive(Debug)]
 pub struct LongPayload<'a> {
-    message: &'static str,
+    /// The message, and the limits that its values keep to.
+    rules: Payload,
     data: &'a mut [u8],
+    /// The number of bytes, if the message can have several.
+    length: Option<usize>,
     /// The least and the greatest number of elements of arrays that vary in length, if there are any.
     limits: Option<(usize, usize)>,
     /// How many elements they have.
@@ -173,10 +199,20 @@ pub struct LongPayload<'a> {
 }
 
 impl<'a> LongPayload<'a> {
-    /// Returns the bytes of a message that takes all values that fit its signals. `limits` are the
-    /// least and the greatest number of elements of arrays that vary in length.
-    pub const fn new(message: &'static str, limits: Option<(usize, usize)>, data: &'a mut [u8]) -> Self {
-        Self { message, data, limits, elements: None }
+    /// Returns the bytes of a message that takes the values that `rules` do. `limits` are the least
+    /// and the greatest number of elements of arrays that vary in length.
+    pub const fn new(rules: Payload, limits: Option<(usize, usize)>, data: &'a mut [u8]) -> Self {
+        Self { rules, data, length: None, limits, elements: None }
+    }
+
+    /// Sets the number of data bytes, of a message that can have several.
+    pub const fn end_after(&mut self, length: usize) {
+        self.length = Some(length);
+    }
+
+    /// Returns the number of data bytes, if the message can have several.
+    pub(crate) const fn length(&self) -> Option<usize> {
+        self.length
     }
 
     /// Returns how many elements the arrays have that vary in length, if there are any.
@@ -191,7 +227,7 @@ impl<'a> LongPayload<'a> {
             None => self.limits.unwrap_or((0, usize::MAX)),
         };
         if !(minimum..=maximum).contains(&count) {
-            return Err(Error::Elements { message: self.message, signal, count, minimum, maximum });
+            return Err(Error::Elements { message: self.rules.message(), signal, count, minimum, maximum });
         }
         self.elements = Some(count);
         Ok(())

@@ -3,7 +3,7 @@
 use std::string::ToString;
 
 use super::*;
-use crate::{Place, Signal};
+use crate::{Payload, Place, Signal};
 
 /// Eleven bytes at most: a count of cycles, four valves of two bits each, and one to four cells of two bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,7 +104,11 @@ fn elements_can_run_against_the_order_of_bytes_and_bits() {
         ([0, 4, 4], [1, 2, 2])
     );
     let mut data = [0; 2];
-    UP.write_all(&[1, 0, 0, 5, 4], &mut LongPayload::new("message", None, &mut data), Signal::put)
-        .expect("three bits each");
+    UP.write_all(
+        &[1, 0, 0, 5, 4],
+        &mut LongPayload::new(Payload::new("message", [0; 8]), None, &mut data),
+        Signal::put,
+    )
+    .expect("three bits each");
     assert_eq!(data, [0x01, 0x4A]);
 }

@@ -111,7 +111,7 @@ impl<M: Memory> Transfer<M> {
 }
 
 impl<M: Memory> Event<M> {
-    const NONE: Self = Self { whole: None, broken: None, refused: None, answer: None };
+    pub(crate) const NONE: Self = Self { whole: None, broken: None, refused: None, answer: None };
 
     fn broken(transfer: Transfer<M>, cause: Cause) -> Self {
         Self { broken: Some(Broken { transfer, cause }), ..Self::NONE }
@@ -181,11 +181,15 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
         Some(slot.take()?.given_up(Cause::Silent, Reason::TIMEOUT))
     }
 
+    /// Ends a message whose sender begins another one.
+    pub(crate) fn interrupt(&mut self, link: Link) -> Event<M> {
+        self.take(link, None).map_or(Event::NONE, |before| Event::broken(before.transfer, Cause::Restarted))
+    }
+
     /// Begins a message. One that its sender has begun before comes to nothing.
     fn begin(&mut self, transfer: Transfer<M>, (count, limit): (u8, u8), now: u32) -> Event<M> {
         let (link, group) = (transfer.link, transfer.group);
-        let before = self.take(link, None);
-        let event = before.map_or(Event::NONE, |before| Event::broken(before.transfer, Cause::Restarted));
+        let event = self.interrupt(link);
         let refused = |cause, reason| {
             let refused = Some(Broken { transfer, cause });
             Event { refused, ..event }.answered(link, Control::Abort(reason), group)

@@ -1,0 +1,91 @@
+//! Long messages that travel by a transport, as that of J1939.
+//!
+//! An [`Assembler`] puts them together, for many nodes at a time and without allocation. It is given
+//! every frame of the bus. A message that one frame has room for is whole with that frame. So a
+//! program sees each message as the same struct, whichever way it came. A [`Sender`] makes the
+//! frames of a message.
+//!
+//! The module [`tp`](crate::tp) does the same with bytes alone.
+
+mod assembler;
+mod group;
+mod sender;
+
+use core::fmt::Debug;
+
+use super::LongLayout;
+use super::buffer::Memory;
+use crate::{Bits, Error, Exchange, Frame, Kind, Payload, Protocol};
+
+pub use crate::tp::{Answer, Broken, Cause, Reason, memory};
+pub use assembler::{Assembler, Event, Whole};
+pub use sender::Sender;
+
+/// A transport of a protocol. Generated code implements it, and an [`Assembler`] needs it.
+pub trait Transport: Copy + Debug + 'static {
+    /// The messages of the protocol.
+    type Protocol: Protocol;
+    /// Memory for the longest message.
+    type Memory: Memory;
+    /// The fields of the identifier that are the number of a message, the highest bits first.
+    const GROUP: &'static [Bits];
+    /// The field with the address of the receiver, which is the last one of `GROUP`.
+    const TARGET: Bits;
+    /// The field with the address of the sender.
+    const SOURCE: Bits;
+    /// What its frames send in fields of the identifier, in place of what the message sends.
+    const SENDS: &'static [(Bits, u32)] = &[];
+    /// How the messages travel that it carries, and what their frames are for.
+    const CARRIES: &'static [(&'static Exchange, Kind)];
+}
+
+/// A message that travels by a transport, or in one frame if that is enough. Generated code
+/// implements it.
+pub trait Transferred: LongLayout {
+    /// The transport.
+    type Transport: Transport;
+    /// The numbers of data bytes that it can have, if the spec lists them.
+    const SIZES: &'static [usize] = &[];
+
+    /// Tests whether it can have some number of data bytes.
+    fn has_size(size: usize) -> bool {
+        match (Self::SIZES, Self::ELEMENTS) {
+            ([], None) => size == Self::LONGEST,
+            ([], Some((least, most))) => (least..=most).any(|elements| Self::BYTES(elements) == size),
+            (sizes, _) => sizes.contains(&size),
+        }
+    }
+
+    /// Returns what sends the message: in one frame, or by the transport. `blank` is a frame of the
+    /// message: received, or made by [`Filter::frame`](crate::Filter::frame). Its identifier shows
+    /// who sends the message, and to whom. The data are written to `buffer`, for which
+    /// [`LONGEST`](LongLayout::LONGEST) bytes are enough.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`encode`](LongLayout::encode). If the controller sends it, it also refuses values
+    /// outside their limits.
+    fn sender<'a>(&self, blank: &Frame, buffer: &'a mut [u8]) -> Result<Sender<'a, Self::Transport>, Error> {
+        Sender::new(self, blank, None, buffer)
+    }
+
+    /// The same as [`sender`](Self::sender), with the scales and the limits of a device model.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`sender`](Self::sender).
+    fn sender_for<'a>(
+        &self,
+        model: impl Into<u8>,
+        blank: &Frame,
+        buffer: &'a mut [u8],
+    ) -> Result<Sender<'a, Self::Transport>, Error> {
+        Sender::new(self, blank, Some(model.into()), buffer)
+    }
+}
+
+/// Returns the rules by which the values of a message are written, whose identifier shows who sends it.
+fn rules<L: Transferred>(id: u32, model: Option<u8>) -> Payload {
+    let payload = Payload::new(L::MESSAGE, [0; 8]).for_model(model);
+    if group::is_to_module::<L::Transport>(id) { payload.keeping_limits() } else { payload }
+}
