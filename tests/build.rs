@@ -20,7 +20,9 @@ fn main() {
         let visited = visit(&module, &path);
         list.visits.push_str(&visited);
         list.switched.push_str(&visited);
-        list.signals(&module, &generate(&path, &Options::default()).code);
+        let code = generate(&path, &Options::default()).code;
+        list.signals(&module, &code);
+        list.long_messages(&module, &path, &code);
         let module = format!("{name}_in_steps");
         list.generated(&out, &module, &generate(&path, &steps));
         list.in_steps.push_str(&visit(&module, &path));
@@ -89,6 +91,8 @@ struct Protocols {
     in_steps: String,
     signals: String,
     long: String,
+    parted: String,
+    transferred: String,
 }
 
 impl Protocols {
@@ -128,9 +132,14 @@ impl Protocols {
 
     /// Lists the long messages of a module.
     fn long_messages(&mut self, module: &str, path: &Path, code: &str) {
-        let blocks = code.lines().filter_map(|line| line.strip_prefix("impl LongLayout for "));
-        for name in blocks.filter_map(|rest| rest.strip_suffix(" {")) {
-            let _ = writeln!(self.long, "    visitor.visit::<{module}::{name}>(\"{}\");", path.display());
+        let lists =
+            [("LongLayout", &mut self.long), ("Parted", &mut self.parted), ("Transferred", &mut self.transferred)];
+        for (implemented, list) in lists {
+            let head = format!("impl {implemented} for ");
+            let blocks = code.lines().filter_map(|line| line.strip_prefix(&head));
+            for name in blocks.filter_map(|rest| rest.strip_suffix(" {")) {
+                let _ = writeln!(list, "    visitor.visit::<{module}::{name}>(\"{}\");", path.display());
+            }
         }
     }
 
@@ -143,8 +152,19 @@ impl Protocols {
              \n/// Shows every protocol in whole steps to a visitor, with the path of its spec.\n\
              pub fn visit_in_steps(visitor: &mut impl Visitor) {{\n{}}}\n\
              \n/// Shows every message that is longer than a frame to a visitor, with the path of its spec.\n\
-             pub fn visit_long(visitor: &mut impl LongVisitor) {{\n{}}}\n",
-            self.modules, self.signals, self.visits, self.switched, self.in_steps, self.long
+             pub fn visit_long(visitor: &mut impl LongVisitor) {{\n{}}}\n\
+             \n/// Shows every message in parts to a visitor, with the path of its spec.\n\
+             pub fn visit_parted(visitor: &mut impl PartedVisitor) {{\n{}}}\n\
+             \n/// Shows every message that a transport carries to a visitor, with the path of its spec.\n\
+             pub fn visit_transferred(visitor: &mut impl TransferredVisitor) {{\n{}}}\n",
+            self.modules,
+            self.signals,
+            self.visits,
+            self.switched,
+            self.in_steps,
+            self.long,
+            self.parted,
+            self.transferred
         )
     }
 }

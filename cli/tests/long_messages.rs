@@ -21,6 +21,9 @@ const BY_MODEL: &str = "parts_by_model.yaml";
 /// The spec of a transport.
 const TRANSPORT: &str = "transport.yaml";
 
+/// The spec of messages that go in one frame if that is enough.
+const OR_FRAME: &str = "transport_or_frame.yaml";
+
 /// The vehicle sends 14 bytes: ACME, 400 V, 180 Ah, 515 cycles, April 2022, and a byte without a name.
 const TRANSFER: &str = "\
 (1.0) can0 1CEC56F4#100E000201000200
@@ -188,7 +191,7 @@ fn a_long_message_in_a_call_becomes_an_announcement_and_packets() {
     let (frames, _) = canspec_with(TRANSPORT, &[&to("everybody")[..], &battery, &["month=4"]].concat(), "");
     assert_eq!(frames.lines().last(), Some("1CEBFFF4#02070302002504FF"), "2022 is the year's default");
     let few = ["encode", "--kind", "report", "--to", "peer", "cells", "voltage=4.01V,4.02V", "group=0,1"];
-    assert_eq!(canspec_with(TRANSPORT, &few, "").0, "181556F4#91019211\n");
+    assert_eq!(canspec_with(OR_FRAME, &few, "").0, "181556F4#91019211\n");
     let beyond = ["encode", "profile", "current=10A,20A,250.1A,0A,0A"];
     let (frames, complaints) = canspec_with(TRANSPORT, &beyond, "");
     assert_eq!(

@@ -14,8 +14,10 @@ use std::path::{Path, PathBuf};
 use canspec_codegen::interpret::{Form, Frame};
 use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol, Signal};
 use canspec_codegen::{Outcome, compile, source::Source};
+use canspec_runtime::LongLayout;
 use canspec_runtime::parts::Parted;
 use canspec_runtime::plumbing::{Physical, Raw};
+use canspec_runtime::transfers::Transferred;
 use canspec_runtime::{Error, Payload, Problem, Received, WriteSignal};
 
 include!(concat!(env!("OUT_DIR"), "/protocols.rs"));
@@ -40,6 +42,11 @@ struct Controllers;
 #[doc = include_str!("../../docs/how-to/parts.md")]
 struct Parts;
 
+/// The Rust of the page on transports compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/transport.md")]
+struct Transports;
+
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
@@ -57,7 +64,19 @@ pub trait SwitchedVisitor {
 /// Runs a test on each message that is longer than a frame.
 pub trait LongVisitor {
     /// Runs on the message whose struct is `L` and whose spec stands at `path`.
+    fn visit<L: LongLayout + Optional + PartialEq + Debug>(&mut self, path: &str);
+}
+
+/// Runs a test on each message in parts.
+pub trait PartedVisitor {
+    /// Runs on the message whose struct is `L` and whose spec stands at `path`.
     fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str);
+}
+
+/// Runs a test on each message that a transport carries.
+pub trait TransferredVisitor {
+    /// Runs on the message whose struct is `L` and whose spec stands at `path`.
+    fn visit<L: Transferred + Optional + PartialEq + Debug>(&mut self, path: &str);
 }
 
 /// The signals of a protocol's generated code, to be written by tests that do not know their types.

@@ -8,7 +8,7 @@ use canspec_codegen::model::{
 };
 use canspec_runtime::parts::{Assembler, Outcome, Parted};
 use canspec_tests::long::{is_same, long, member};
-use canspec_tests::{LongVisitor, Optional, models, number, protocol, received, visit_long};
+use canspec_tests::{Optional, PartedVisitor, models, number, protocol, received, visit_parted};
 use embedded_can::Frame as _;
 use fastrand::Rng;
 
@@ -207,7 +207,7 @@ fn frame_of<L: Parted>(outcome: &Outcome<L>) -> canspec_runtime::Frame {
     }
 }
 
-impl LongVisitor for Agreement {
+impl PartedVisitor for Agreement {
     fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str) {
         let protocol = protocol(path);
         for model in models(&protocol) {
@@ -219,7 +219,7 @@ impl LongVisitor for Agreement {
 #[test]
 fn both_engines_put_the_same_messages_together() {
     let mut agreement = Agreement { whole: 0, incomplete: 0 };
-    visit_long(&mut agreement);
+    visit_parted(&mut agreement);
     let Agreement { whole, incomplete } = agreement;
     assert!(whole > 2_000 && incomplete > 2_000, "{whole} whole and {incomplete} incomplete messages");
 }

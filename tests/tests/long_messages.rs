@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use canspec_codegen::interpret::{self, Assembly, Form, decode};
-use canspec_codegen::model::{LongExample, LongMessage, Protocol};
-use canspec_runtime::parts::{Assembler, Outcome, Parted};
+use canspec_codegen::model::{LongExample, LongMessage, Protocol, Signal};
+use canspec_runtime::parts::{Assembler, Outcome, Parted as _};
 use canspec_runtime::{Elements, Frame, Kind, LongLayout, Text};
 use canspec_tests::features_parts_by_model::{self as by_model, Model};
 use canspec_tests::features_parts_until_marker::{self as until_marker, LabelPart};
@@ -21,14 +21,16 @@ fn elements(long: &LongMessage, length: usize) -> Option<usize> {
     Some((0..most).take_while(|count| long.bytes_with(Some(count + 1)) <= length).count())
 }
 
-/// Returns the bits of data that some signal has.
+/// Returns data with the bits of signals, and elsewhere those that are sent.
 fn covered(long: &LongMessage, data: &[u8], count: Option<usize>) -> Vec<u8> {
-    let mut mask = vec![0; long.bytes_with(count)];
-    for signal in long.content.signals.iter().filter(|signal| long.is_among(count, signal)) {
+    let mut mask = vec![0; if long.lengths.is_empty() { long.bytes_with(count) } else { data.len() }];
+    let is_there = |signal: &&Signal| long.is_among(count, signal) && signal.reach() <= mask.len();
+    for signal in long.content.signals.iter().filter(is_there).collect::<Vec<_>>() {
         let bytes = mask.iter_mut().skip(signal.window.into());
         bytes.zip(signal.place.mask()).for_each(|(byte, own)| *byte |= own);
     }
-    mask.iter().zip(data).map(|(mask, byte)| mask & byte).collect()
+    let blank = if long.content.reserved.are_ones { 0xFF } else { 0 };
+    mask.iter().zip(data).map(|(mask, byte)| mask & byte | blank & !mask).collect()
 }
 
 struct Random {
@@ -36,13 +38,16 @@ struct Random {
 }
 
 impl LongVisitor for Random {
-    fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str) {
+    fn visit<L: LongLayout + Optional + PartialEq + Debug>(&mut self, path: &str) {
         let protocol = protocol(path);
         let long = long::<L>(&protocol);
-        assert_eq!((L::SHORTEST, L::LONGEST), (long.bytes_with(Some(0)), long.longest()), "{path}");
+        let shortest = long.lengths.first().map_or_else(|| long.bytes_with(Some(0)), |length| usize::from(*length));
+        assert_eq!((L::SHORTEST, L::LONGEST), (shortest, long.longest()), "{path}");
         let mut rng = Rng::with_seed(0x10E6);
         for _ in 0..DATA {
-            let length = rng.usize(..L::LONGEST + 8);
+            let any = rng.usize(..L::LONGEST + 8);
+            let length =
+                if any < L::SHORTEST { any } else { rng.choice(&long.lengths).map_or(any, |one| (*one).into()) };
             let data: Vec<_> = std::iter::repeat_with(|| rng.u8(..)).take(length).collect();
             let Some(values) = L::decode(&data) else {
                 assert!(data.len() < L::SHORTEST, "{path}: {data:X?}");
@@ -51,6 +56,10 @@ impl LongVisitor for Random {
             let count = elements(long, data.len());
             let mut buffer = vec![0xFF; L::LONGEST];
             match values.encode(&mut buffer) {
+                // Values that say that they are missing need not be sent at the end.
+                Ok(bytes) if bytes.len() < data.len() && !long.lengths.is_empty() => {
+                    assert_eq!(L::decode(bytes).as_ref(), Some(&values), "{path}");
+                }
                 Ok(bytes) => assert_eq!(bytes, covered(long, &data, count), "{path}: {values:?}"),
                 Err(error) => {
                     assert!(count < long.varying().and_then(|array| array.least), "{path}: {error}");
@@ -89,7 +98,9 @@ impl Examples {
         let [message] = ended.as_slice() else { panic!("{}: {} messages", example.doc.path, ended.len()) };
         let Some(mut data) = message.data.clone() else { return };
         let count = example.count.map(usize::from);
-        data.truncate(protocol[example.long].bytes_with(count));
+        if protocol[example.long].parts().is_some() {
+            data.truncate(protocol[example.long].bytes_with(count));
+        }
         let values = serde_json::to_value(L::decode(&data).expect("whole data")).expect("every value has JSON");
         for reading in &message.decoded.signals {
             let signal = &content[reading.signal];
@@ -101,7 +112,7 @@ impl Examples {
 }
 
 impl LongVisitor for Examples {
-    fn visit<L: Parted + Optional + PartialEq + Debug>(&mut self, path: &str) {
+    fn visit<L: LongLayout + Optional + PartialEq + Debug>(&mut self, path: &str) {
         let protocol = protocol(path);
         let of_message = |example: &&LongExample| protocol[example.long].content.name == L::MESSAGE;
         protocol.long_examples.iter().filter(of_message).for_each(|example| self.holds::<L>(&protocol, example));

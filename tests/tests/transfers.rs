@@ -4,49 +4,14 @@ use std::collections::VecDeque;
 
 use canspec_codegen::interpret::{Assembled, Assembly, Form, Frame, decode};
 use canspec_codegen::model::Protocol;
-use canspec_codegen::source::Source;
+use canspec_runtime::transfers;
+use canspec_tests::devices_batteries::{Label, Message, Tp};
+use canspec_tests::{received, specs};
 use fastrand::Rng;
 
-/// A battery with an address of its own sends a text of 9 to 30 bytes.
-const SPEC: &str = r#"
-canspec: 1
-protocol: batteries
-title: Batteries
-document: {title: Batteries on J1939, version: "1"}
-length: 8
-identifier:
-  priority: {bits: 28..26, send: 6}
-  page:     {bits: 25..24, const: 0}
-  format:   {bits: 23..16}
-  target:   {bits: 15..8}
-  source:   {bits: 7..0}
-types:
-  battery: {range: 1..8, outside: refused}
-addressing:
-  single:
-    section: "1"
-    request: {target: battery, source: 0x56}
-    one:     {target: 0x56, source: battery}
-  everybody:
-    section: "1"
-    one: {target: 0xFF, source: battery}
-transports:
-  tp: {kind: j1939, group: [page, format, target], target: target, source: source, section: "2"}
-access:
-  report: {report: {}, answers: {single: one, everybody: one}, section: "1"}
-messages:
-  label:
-    section: "3"
-    match: {format: 0x15}
-    access: [report]
-    via: tp
-    fields: {text: {bytes: 0, repeat: 9..30}}
-"#;
-
 fn protocol() -> Protocol {
-    let source = Source::new("batteries.yaml", SPEC.as_bytes().to_vec()).expect("it is text");
-    let outcome = canspec_codegen::compile(source);
-    outcome.protocol.unwrap_or_else(|| panic!("{}", outcome.diagnostics.concise()))
+    let path = specs("tests/specs/devices").into_iter().find(|path| path.ends_with("batteries.yaml"));
+    canspec_tests::protocol(path.expect("the spec of the batteries"))
 }
 
 /// A message that a battery sends, to the charger or to everybody.
@@ -134,22 +99,41 @@ fn assembled(protocol: &Protocol, log: &[Frame]) -> Vec<Assembled<()>> {
     ended
 }
 
+/// Counts the messages that generated code finds whole in a log. Each of them was sent.
+fn whole_in_rust(log: &[Frame], sent: &[Transfer]) -> usize {
+    let mut assembler = transfers::Assembler::<Tp, 16>::new();
+    let mut whole = 0;
+    for (frame, now) in log.iter().zip(0..) {
+        let received = received::<Message>(None, frame).expect("the frame is one of the protocol");
+        let Some(message) = assembler.take(&received, now).whole else { continue };
+        let (identifier, label) = (message.identifier(), message.values::<Label>().expect("it is a label"));
+        let link = (u32::from(identifier.source), u32::from(identifier.target));
+        let is_it = |known: &Transfer| (known.battery, known.target) == link && *known.data == *label.text;
+        assert!(sent.iter().any(is_it), "nobody sent {message:?}");
+        whole += 1;
+    }
+    whole
+}
+
 #[test]
 fn each_transfer_that_is_reported_was_sent_and_each_one_announced_is_reported() {
     let protocol = protocol();
-    let (mut whole, mut incomplete) = (0, 0);
+    let (mut whole, mut incomplete, mut in_rust) = (0, 0, 0);
     for seed in 0..2_000 {
         let mut rng = Rng::with_seed(seed);
         let (mut sent, mut announced, mut queues) = (Vec::new(), 0, Vec::new());
         for battery in 1..=rng.u32(1..=8) {
-            let (mut queue, mut is_whole) = (VecDeque::new(), true);
+            let (mut queue, mut spoiled) = (VecDeque::new(), Vec::new());
             for _ in 0..rng.usize(1..5) {
                 let transfer = Transfer::new(battery, &mut rng);
                 let frames = transfer.frames(&mut rng);
                 // Packets without their announcement would fill up a message before them that is not whole.
-                let is_announced = rng.u8(..10) != 0 || !is_whole;
+                let is_announced = rng.u8(..10) != 0 || spoiled.contains(&transfer.target);
                 announced += usize::from(is_announced);
-                is_whole = frames.len() == transfer.packets().len() + 1;
+                spoiled.retain(|target| *target != transfer.target);
+                if !transfer.packets().iter().all(|packet| frames.contains(packet)) {
+                    spoiled.push(transfer.target);
+                }
                 queue.extend(frames.into_iter().skip(usize::from(!is_announced)));
                 sent.push(transfer);
             }
@@ -162,6 +146,7 @@ fn each_transfer_that_is_reported_was_sent_and_each_one_announced_is_reported() 
                 None => drop(queues.swap_remove(index)),
             }
         }
+        in_rust += whole_in_rust(&log, &sent);
         let ended = assembled(&protocol, &log);
         assert_eq!(ended.len(), announced, "seed {seed}: each message that is announced is reported once");
         for message in ended {
@@ -177,6 +162,7 @@ fn each_transfer_that_is_reported_was_sent_and_each_one_announced_is_reported() 
         }
     }
     assert!(whole > 5_000 && incomplete > 2_000, "{whole} whole and {incomplete} incomplete messages");
+    assert!(in_rust > 5_000, "{in_rust} whole messages in generated code");
 }
 
 /// Identifiers and data of frames.

@@ -19,6 +19,7 @@ mod plan;
 mod protocol;
 mod scales;
 mod set;
+mod transport;
 mod word;
 
 use std::iter;
@@ -80,9 +81,10 @@ fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
         Some(set) => set::set(message, set, derives),
     });
     let types = enumerations.chain(status_words).chain(packed);
+    let transports = plan.transports.iter().map(transport::transport);
     let protocol = iter::once_with(move || protocol::protocol(plan, derives)).flatten();
     let entries = iter::once_with(|| entries::entries(&plan.messages));
-    iter::once(head(plan, derives)).chain(types).chain(messages).chain(protocol).chain(entries)
+    iter::once(head(plan, derives)).chain(types).chain(messages).chain(transports).chain(protocol).chain(entries)
 }
 
 /// Emits what comes before the types and messages: imports, identifier, addresses, accesses and device models.

@@ -147,6 +147,11 @@ impl Protocol {
         message.long.filter(|long| self[*long].parts().is_some())
     }
 
+    /// Returns the long message that a transport carries, if the message travels so.
+    pub fn by_transport(&self, message: &Message) -> Option<LongMessageId> {
+        message.long.filter(|long| self[*long].transport().is_some())
+    }
+
     /// Returns the frames of a message. Of a message by a transport, they are what its frames would be if one were
     /// enough.
     pub fn layouts_of<'a>(&'a self, message: &'a Message) -> impl Iterator<Item = &'a FrameLayout> + Clone {

@@ -77,7 +77,7 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
         get(&self.signal, &self.window(data, 0), self.there(data, 0))
     }
 
-    /// Reads the values of `N` elements, some of which short data lack.
+    /// Reads the values of `N` elements. Short data lack some of them.
     pub fn read_optional_array<T, const N: usize>(
         &self,
         data: &[u8],

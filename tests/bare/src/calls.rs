@@ -6,6 +6,7 @@ use core::hint::black_box;
 use canspec_runtime::assembler::{Assembler, Partial};
 use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
+use canspec_runtime::transfers::{self, Transferred, Transport};
 use canspec_runtime::{
     AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading, Received,
     Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
@@ -164,6 +165,44 @@ pub fn transport() {
     }
     sink(sender.bam());
     sender.for_each(sink);
+}
+
+/// Puts the messages of a transport together, and asks for all that is known of them.
+pub fn transfers<T: Transport>() {
+    let mut assembler = transfers::Assembler::<T, 3>::new();
+    for _ in 0..unknown::<u8>() {
+        event(assembler.receive(&unknown_frame(), unknown()));
+        assembler.timed_out(unknown()).into_iter().for_each(event);
+    }
+}
+
+fn event<T: Transport>(event: transfers::Event<T>) {
+    if let Some(whole) = &event.whole {
+        sink((whole.data(), whole.exchange(), whole.kind()));
+        sink(whole.identifier());
+    }
+    sink((event.broken, event.refused, event.answer));
+}
+
+/// Puts a message together that a transport carries, and makes its frames.
+pub fn transferred<L: Transferred + Unknown>() {
+    let mut assembler = transfers::Assembler::<L::Transport, 1>::new();
+    if let Some(whole) = assembler.receive(&unknown_frame(), unknown()).whole {
+        sink(whole.values::<L>());
+    }
+    let mut data: [u8; 2048] = unknown();
+    let (values, blank): (L, _) = (unknown(), unknown_frame());
+    let sender = if unknown() {
+        values.sender(&blank, &mut data)
+    } else {
+        values.sender_for(unknown::<u8>(), &blank, &mut data)
+    };
+    let Ok(mut sender) = sender else { return };
+    for _ in 0..unknown::<u8>() {
+        (&mut sender).for_each(sink);
+        sink(sender.receive(&unknown_frame()));
+    }
+    sink(sender.abort(transfers::Reason::OTHER));
 }
 
 fn packets<M: tp::Memory>(event: &tp::Event<M>) {

@@ -146,13 +146,11 @@ pub const EVERYBODY_MODE: Mode = Mode {
 };
 
 /// Of vehicle. Section 1.
-pub const OF_VEHICLE_ACCESS: Exchange = Exchange::new("of_vehicle", &[Some(Who::One), Some(Who::One)]);
-
-/// Of vehicle. Section 1.
-pub const OF_VEHICLE_ACCESS_2: Exchange = Exchange::new("of_vehicle", &[Some(Who::One), Some(Who::One)]).report(FRAME);
+pub const OF_VEHICLE_ACCESS: Exchange = Exchange::new("of_vehicle", &[Some(Who::One), Some(Who::One)]).report(FRAME);
 
 /// Of charger. Section 1.
-pub const OF_CHARGER_ACCESS: Exchange = Exchange::new("of_charger", &[Some(Who::One), None]).from_controller();
+pub const OF_CHARGER_ACCESS: Exchange =
+    Exchange::new("of_charger", &[Some(Who::One), None]).with_values().report(FRAME).from_controller();
 
 /// Frames of the transport, sent by the module. Section 2.
 pub const TP_OF_MODULE_ACCESS: Exchange =
@@ -174,114 +172,115 @@ pub const TP_OF_CONTROLLER_ACCESS_2: Exchange =
 
 /// Battery, with the date only in the longer form: `format` 0x02. Section 3.
 /// - [`of_vehicle`](OF_VEHICLE_ACCESS): the vehicle sends it (`peer`, `everybody`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Battery;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Battery {
+    /// Maker: bytes 0..3.
+    pub maker: Text<4>,
+    /// Voltage in V: bytes 5..4, steps of 0.1 V.
+    pub voltage_v: f64,
+    /// Capacity in Ah: bytes 7..6, steps of 0.1 Ah.
+    pub capacity_ah: f64,
+    /// Cycles: bytes 10..8.
+    pub cycles: u32,
+    /// Year of production: byte 11, only in messages of 14 bytes, raw 0 is 1985.
+    pub year: Option<f64>,
+    /// Month: byte 12, only in messages of 14 bytes.
+    pub month: Option<u8>,
+}
 
 impl Battery {
+    /// The signal `maker`, to read or write it alone, or to ask for its limits.
+    pub const MAKER: LongSignal<Text<4>> = LongSignal::new(0, Signal::new("maker", Place::bytes(0, 3)));
+    /// The signal `voltage`, to read or write it alone, or to ask for its limits.
+    pub const VOLTAGE: LongSignal<u16, f64> =
+        LongSignal::new(4, Signal::new("voltage", Place::bytes(1, 0)).unit("V").scale(1, 10));
+    /// The signal `capacity`, to read or write it alone, or to ask for its limits.
+    pub const CAPACITY: LongSignal<u16, f64> =
+        LongSignal::new(6, Signal::new("capacity", Place::bytes(1, 0)).unit("Ah").scale(1, 10));
+    /// The signal `cycles`, to read or write it alone, or to ask for its limits.
+    pub const CYCLES: LongSignal<u32> = LongSignal::new(8, Signal::new("cycles", Place::bytes(2, 0)));
+    /// The signal `year`, to read or write it alone, or to ask for its limits.
+    pub const YEAR: LongSignal<u8, f64> = LongSignal::new(11, Signal::new("year", Place::byte(0)).offset(1985, 1));
+    /// The signal `month`, to read or write it alone, or to ask for its limits.
+    pub const MONTH: LongSignal<u8> = LongSignal::new(12, Signal::new("month", Place::byte(0)));
     /// The access `of_vehicle`, for filters and blank frames of it.
     pub const OF_VEHICLE: Exchange = OF_VEHICLE_ACCESS.of("battery", FRAME.id(Identifier::FORMAT, 0x02));
 }
 
-/// Cell voltages, one frame if there are few: `format` 0x15. Section 4.
-/// - [`of_vehicle`](OF_VEHICLE_ACCESS_2): the vehicle sends it (`peer`, `everybody`).
-/// - Report `181556F4#91019211`: `voltage_1` 4.01 V, `voltage_2` 4.02 V, `group_1` 0, `group_2` 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cells {
-    /// Voltage in V: bytes 1..0, bits 11..0 to bytes 7..6, bits 11..0, not all of them in shorter frames,
-    /// steps of 0.01 V.
-    pub voltage_v: [Option<f64>; 4],
-    /// Group: byte 1, bits 7..4 to byte 7, bits 7..4, not all of them in shorter frames.
-    pub group: [Option<u8>; 4],
-}
-
-impl Cells {
-    /// The signal `voltage_1`, to read or write it alone, or to ask for its limits.
-    pub const VOLTAGE_1: Signal<u16, f64> =
-        Signal::new("voltage_1", Place::bytes(1, 0).bits(11, 0)).unit("V").scale(1, 100);
-    /// The signal `group_1`, to read or write it alone, or to ask for its limits.
-    pub const GROUP_1: Signal<u8> = Signal::new("group_1", Place::byte(1).bits(7, 4));
-    /// The signal `voltage_2`, to read or write it alone, or to ask for its limits.
-    pub const VOLTAGE_2: Signal<u16, f64> =
-        Signal::new("voltage_2", Place::bytes(3, 2).bits(11, 0)).unit("V").scale(1, 100);
-    /// The signal `group_2`, to read or write it alone, or to ask for its limits.
-    pub const GROUP_2: Signal<u8> = Signal::new("group_2", Place::byte(3).bits(7, 4));
-    /// The signal `voltage_3`, to read or write it alone, or to ask for its limits.
-    pub const VOLTAGE_3: Signal<u16, f64> =
-        Signal::new("voltage_3", Place::bytes(5, 4).bits(11, 0)).unit("V").scale(1, 100);
-    /// The signal `group_3`, to read or write it alone, or to ask for its limits.
-    pub const GROUP_3: Signal<u8> = Signal::new("group_3", Place::byte(5).bits(7, 4));
-    /// The signal `voltage_4`, to read or write it alone, or to ask for its limits.
-    pub const VOLTAGE_4: Signal<u16, f64> =
-        Signal::new("voltage_4", Place::bytes(7, 6).bits(11, 0)).unit("V").scale(1, 100);
-    /// The signal `group_4`, to read or write it alone, or to ask for its limits.
-    pub const GROUP_4: Signal<u8> = Signal::new("group_4", Place::byte(7).bits(7, 4));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
-    /// The access `of_vehicle`, for filters and blank frames of it.
-    pub const OF_VEHICLE: Exchange = OF_VEHICLE_ACCESS_2.of("cells", FRAME.id(Identifier::FORMAT, 0x15)).length(2);
-}
-
-impl Layout for Cells {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
-        &Self::VOLTAGE_1,
-        &Self::GROUP_1,
-        &Self::VOLTAGE_2,
-        &Self::GROUP_2,
-        &Self::VOLTAGE_3,
-        &Self::GROUP_3,
-        &Self::VOLTAGE_4,
-        &Self::GROUP_4,
-    ];
-    const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
-    const ENCODE: Encode<Self> = |message, payload| {
-        payload.end_after(2);
-        if message.voltage_v[1].is_some() || message.group[1].is_some() {
-            payload.end_after(4);
-        }
-        if message.voltage_v[2].is_some() || message.group[2].is_some() {
-            payload.end_after(6);
-        }
-        if message.voltage_v[3].is_some() || message.group[3].is_some() {
-            payload.end_after(8);
-        }
-        Self::VOLTAGE_1.encode_some(message.voltage_v[0], payload)?;
-        Self::VOLTAGE_2.encode_some(message.voltage_v[1], payload)?;
-        Self::VOLTAGE_3.encode_some(message.voltage_v[2], payload)?;
-        Self::VOLTAGE_4.encode_some(message.voltage_v[3], payload)?;
-        Self::GROUP_1.put_some(message.group[0], payload)?;
-        Self::GROUP_2.put_some(message.group[1], payload)?;
-        Self::GROUP_3.put_some(message.group[2], payload)?;
-        Self::GROUP_4.put_some(message.group[3], payload)
+impl LongLayout for Battery {
+    const MESSAGE: &'static str = "battery";
+    const SHORTEST: usize = 11;
+    const LONGEST: usize = 14;
+    const BLANK: u8 = 0xFF;
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        maker: Self::MAKER.read(data, Signal::get),
+        voltage_v: Self::VOLTAGE.read(data, Signal::decode),
+        capacity_ah: Self::CAPACITY.read(data, Signal::decode),
+        cycles: Self::CYCLES.read(data, Signal::get),
+        year: Self::YEAR.read_optional(data, Signal::decode_some),
+        month: Self::MONTH.read_optional(data, Signal::get_some),
     };
-    const LENGTHS: &'static [u8] = &[2, 4, 6, 8];
-
-    #[inline]
-    fn read_some(data: &Data, length: usize) -> Self {
-        Self {
-            voltage_v: [
-                Self::VOLTAGE_1.decode_some(data, length),
-                Self::VOLTAGE_2.decode_some(data, length),
-                Self::VOLTAGE_3.decode_some(data, length),
-                Self::VOLTAGE_4.decode_some(data, length),
-            ],
-            group: [
-                Self::GROUP_1.get_some(data, length),
-                Self::GROUP_2.get_some(data, length),
-                Self::GROUP_3.get_some(data, length),
-                Self::GROUP_4.get_some(data, length),
-            ],
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        payload.end_after(11);
+        if message.year.is_some() || message.month.is_some() {
+            payload.end_after(14);
         }
-    }
+        Self::MAKER.write(message.maker, payload, Signal::put)?;
+        Self::VOLTAGE.write(message.voltage_v, payload, Signal::encode)?;
+        Self::CAPACITY.write(message.capacity_ah, payload, Signal::encode)?;
+        Self::CYCLES.write(message.cycles, payload, Signal::put)?;
+        Self::YEAR.write(message.year, payload, Signal::encode_some)?;
+        Self::MONTH.write(message.month, payload, Signal::put_some)
+    };
+}
+
+impl Transferred for Battery {
+    type Transport = Tp;
+    const SIZES: &'static [usize] = &[11, 14];
 }
 
 /// Currents that the charger asks for: `format` 0x16. Section 5.
 /// - [`of_charger`](OF_CHARGER_ACCESS): the charger sends it (`peer`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Profile;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile {
+    /// Current in A: bytes 1..0 to bytes 9..8, steps of 0.1 A, `0..=250`.
+    pub current_a: [f64; 5],
+}
 
 impl Profile {
+    /// The elements of `current`, to read or write one alone, or to ask for their limits.
+    pub const CURRENT: LongSignal<u16, f64> =
+        LongSignal::new(0, Signal::new("current", Place::bytes(1, 0)).unit("A").scale(1, 10).limits(0.0, 250.0))
+            .every(2);
     /// The access `of_charger`, for filters and blank frames of it.
     pub const OF_CHARGER: Exchange = OF_CHARGER_ACCESS.of("profile", FRAME.id(Identifier::FORMAT, 0x16));
+
+    /// Returns what sends the report [`of_charger`](OF_CHARGER_ACCESS) with these values. The data are
+    /// written to `buffer`, for which `LONGEST` bytes are enough.
+    ///
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
+    /// with too few bytes.
+    pub fn of_charger<'a>(
+        &self,
+        route: impl Into<Route<Target>>,
+        buffer: &'a mut [u8],
+    ) -> Result<transfers::Sender<'a, Tp>, Error> {
+        Self::OF_CHARGER.transfer_to(route, self, buffer)
+    }
+}
+
+impl LongLayout for Profile {
+    const MESSAGE: &'static str = "profile";
+    const SHORTEST: usize = 10;
+    const LONGEST: usize = 10;
+    const DECODE: fn(&[u8]) -> Self = |data| Self { current_a: Self::CURRENT.read_array(data, Signal::decode) };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::CURRENT.write_all(&message.current_a, payload, Signal::encode);
+}
+
+impl Transferred for Profile {
+    type Transport = Tp;
 }
 
 /// Announcement of a long message to one node: `format` 0xEC, `control` 0x10. Section 2.
@@ -591,11 +590,24 @@ impl Layout for TpData {
     };
 }
 
+/// Tp. Section 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Tp;
+
+impl transfers::Transport for Tp {
+    type Protocol = Message;
+    type Memory = [u8; 15];
+    const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
+    const TARGET: Bits = Identifier::TARGET;
+    const SOURCE: Bits = Identifier::SOURCE;
+    const SENDS: &'static [(Bits, u32)] = &[(Identifier::PRIORITY, 0x7)];
+    const CARRIES: &'static [(&'static Exchange, Kind)] =
+        &[(&Battery::OF_VEHICLE, Kind::Report), (&Profile::OF_CHARGER, Kind::Report)];
+}
+
 /// Every message that a frame can carry.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Message {
-    /// Cell voltages, one frame if there are few.
-    Cells(Cells),
     /// Announcement of a long message to one node.
     TpRequestToSend(TpRequestToSend),
     /// Permission to send some packets.
@@ -634,6 +646,7 @@ impl Protocol for Message {
     type Identifier = Identifier;
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
+    const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[PEER_MODE, EVERYBODY_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const CONTROLLER_REPORTS: bool = true;
@@ -660,7 +673,6 @@ impl Protocol for Message {
             (0xEC, 0x13) => frame.report(&TpEndOfMessage::TP_OF_MODULE, Self::TpEndOfMessage(frame.values())),
             (0xEC, 0x20) => frame.report(&TpBroadcast::TP_OF_MODULE, Self::TpBroadcast(frame.values())),
             (0xEC, 0xFF) => frame.report(&TpAbort::TP_OF_MODULE, Self::TpAbort(frame.values())),
-            (0x15, _) => frame.of_lengths(Cells::LENGTHS).report(&Cells::OF_VEHICLE, Self::Cells(frame.values())),
             (0xEB, _) => frame.report(&TpData::TP_OF_MODULE, Self::TpData(frame.values())),
             _ => frame.unknown(),
         }
@@ -675,7 +687,6 @@ impl Protocol for Message {
 
     fn reply_lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::FORMAT) {
-            0x15 => &[2, 4, 6, 8],
             0xEB | 0xEC => &[8],
             _ => &[],
         }
@@ -683,7 +694,6 @@ impl Protocol for Message {
 
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
-            Self::Cells(message) => task.run(message),
             Self::TpRequestToSend(message) => task.run(message),
             Self::TpClearToSend(message) => task.run(message),
             Self::TpEndOfMessage(message) => task.run(message),
@@ -697,7 +707,6 @@ impl Protocol for Message {
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::new("Battery, with the date only in the longer form", &[("format", 0x02)], &[], &[&Battery::OF_VEHICLE]),
-    Entry::of::<Cells>("Cell voltages, one frame if there are few", &[("format", 0x15)], &[&Cells::OF_VEHICLE]),
     Entry::new("Currents that the charger asks for", &[("format", 0x16)], &[], &[&Profile::OF_CHARGER]),
     Entry::of::<TpRequestToSend>(
         "Announcement of a long message to one node",

@@ -216,11 +216,6 @@ pub const CHARGER_CYCLE_ACCESS: Exchange =
 /// A message whose fields are all optional may be left out.
 pub const BMS_CYCLE_ACCESS: Exchange = Exchange::new("bms_cycle", &[Some(Who::One), None]).report(FRAME);
 
-/// What the BMS sends in cycles. Section 3.5, 4, 8.1.
-///
-/// A message whose fields are all optional may be left out.
-pub const BMS_CYCLE_ACCESS_2: Exchange = Exchange::new("bms_cycle", &[Some(Who::One), None]);
-
 /// What the charger sends on an event. Section 6.1.
 ///
 /// Erratum N6: printed is "not which side sends the diagnostic and general messages", used is "either
@@ -1798,7 +1793,7 @@ impl Layout for Crm {
 }
 
 /// Recognition of the BMS and the vehicle (BRM): `format` 0x02. Section 5.4.
-/// - [`bms_cycle`](BMS_CYCLE_ACCESS_2): the bms sends it (`peer`). It comes every 250 ms.
+/// - [`bms_cycle`](BMS_CYCLE_ACCESS): the bms sends it (`peer`). It comes every 250 ms.
 ///
 /// The version is SPN 2565, coded as in `chm`; byte 24 is SPN 2574, which is reserved.
 ///
@@ -1811,24 +1806,404 @@ impl Layout for Crm {
 ///
 /// Erratum X8: printed is "the label of SPN 2565 in D as the version of the charger", used is "the
 /// version of the BMS", because the BMS sends it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Brm;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brm {
+    /// Minor number of the version: byte 0.
+    pub version_minor: u8,
+    /// Major number of the version: bytes 2..1.
+    pub version_major: u16,
+    /// Type of the battery: byte 3.
+    ///
+    /// SPN 2566.
+    pub battery_type: BatteryType,
+    /// Rated capacity of the battery in Ah: bytes 5..4, steps of 0.1 Ah.
+    ///
+    /// SPN 2567.
+    ///
+    /// Erratum N7: printed is "ranges of pack voltages, capacities and currents of the edition of 2011,
+    /// from memory", used is "no range", because they are not confirmed for 2015.
+    pub rated_capacity_ah: f64,
+    /// Rated total voltage of the battery in V: bytes 7..6, steps of 0.1 V.
+    ///
+    /// SPN 2568.
+    pub rated_voltage_v: f64,
+    /// Name of the maker of the battery: bytes 8..11.
+    ///
+    /// SPN 2569.
+    ///
+    /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
+    /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
+    /// ones.
+    pub manufacturer: Text<4, 0xFF>,
+    /// Serial number of the battery pack: bytes 15..12, raw 4294967295 is `not_available`.
+    ///
+    /// SPN 2570; its maker defines it; read as a number, low byte first.
+    pub pack_number: Option<u32>,
+    /// Year of production: byte 16, raw 0 is 1985, `1985..=2235`, raw 255 is `not_available`.
+    ///
+    /// SPN 2571.
+    pub production_year: Option<f64>,
+    /// Month of production: byte 17, `1..=12`, raw 255 is `not_available`.
+    ///
+    /// SPN 2571.
+    pub production_month: Option<u8>,
+    /// Day of production: byte 18, `1..=31`, raw 255 is `not_available`.
+    ///
+    /// SPN 2571.
+    pub production_day: Option<u8>,
+    /// How often the pack was charged: bytes 21..19, raw 16777215 is `not_available`.
+    ///
+    /// SPN 2572.
+    pub charge_count: Option<u32>,
+    /// Whether the battery is leased or belongs to the vehicle: byte 22.
+    ///
+    /// SPN 2573.
+    pub ownership: Ownership,
+    /// Vehicle identification number (VIN), first part: bytes 24..31.
+    ///
+    /// SPN 2575.
+    ///
+    /// Erratum X7: printed is "the VIN as optional or mandatory, 10 ms beside the cycle of 250 ms, FF FF FF
+    /// or FF FF 00 at the end", used is "an empty text as no VIN, both times, any last bytes", because
+    /// nothing decides; a receiver bears all of them.
+    ///
+    /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
+    /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
+    /// ones.
+    pub vin_1: Text<8, 0xFF>,
+    /// VIN, second part: bytes 32..39.
+    ///
+    /// SPN 2575.
+    ///
+    /// Erratum X7: printed is "the VIN as optional or mandatory, 10 ms beside the cycle of 250 ms, FF FF FF
+    /// or FF FF 00 at the end", used is "an empty text as no VIN, both times, any last bytes", because
+    /// nothing decides; a receiver bears all of them.
+    ///
+    /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
+    /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
+    /// ones.
+    pub vin_2: Text<8, 0xFF>,
+    /// VIN, last character: byte 40.
+    ///
+    /// SPN 2575.
+    ///
+    /// Erratum X7: printed is "the VIN as optional or mandatory, 10 ms beside the cycle of 250 ms, FF FF FF
+    /// or FF FF 00 at the end", used is "an empty text as no VIN, both times, any last bytes", because
+    /// nothing decides; a receiver bears all of them.
+    ///
+    /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
+    /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
+    /// ones.
+    pub vin_3: Text<1, 0xFF>,
+    /// Serial number of the software of the BMS: byte 41, only in messages of 49 bytes, raw 255 is
+    /// `not_available`.
+    ///
+    /// SPN 2576.
+    ///
+    /// Erratum N14: printed is "limits of the number and the year of the software from memory", used is "no
+    /// limits", because they are not confirmed.
+    pub software_number: Option<u8>,
+    /// Day on which the software was compiled: byte 42, only in messages of 49 bytes, `1..=31`, raw 255 is
+    /// `not_available`.
+    ///
+    /// SPN 2576.
+    pub software_day: Option<u8>,
+    /// Month in which the software was compiled: byte 43, only in messages of 49 bytes, `1..=12`, raw 255
+    /// is `not_available`.
+    ///
+    /// SPN 2576.
+    pub software_month: Option<u8>,
+    /// Year in which the software was compiled: bytes 45..44, only in messages of 49 bytes, raw 65535 is
+    /// `not_available`.
+    ///
+    /// SPN 2576.
+    ///
+    /// Erratum N14: printed is "limits of the number and the year of the software from memory", used is "no
+    /// limits", because they are not confirmed.
+    pub software_year: Option<u16>,
+}
 
 impl Brm {
+    /// The signal `version_minor`, to read or write it alone, or to ask for its limits.
+    pub const VERSION_MINOR: LongSignal<u8> = LongSignal::new(0, Signal::new("version_minor", Place::byte(0)));
+    /// The signal `version_major`, to read or write it alone, or to ask for its limits.
+    pub const VERSION_MAJOR: LongSignal<u16> = LongSignal::new(0, Signal::new("version_major", Place::bytes(2, 1)));
+    /// The signal `battery_type`, to read or write it alone, or to ask for its limits.
+    pub const BATTERY_TYPE: LongSignal<BatteryType> = LongSignal::new(3, Signal::new("battery_type", Place::byte(0)));
+    /// The signal `rated_capacity`, to read or write it alone, or to ask for its limits.
+    pub const RATED_CAPACITY: LongSignal<u16, f64> =
+        LongSignal::new(4, Signal::new("rated_capacity", Place::bytes(1, 0)).unit("Ah").scale(1, 10));
+    /// The signal `rated_voltage`, to read or write it alone, or to ask for its limits.
+    pub const RATED_VOLTAGE: LongSignal<u16, f64> =
+        LongSignal::new(6, Signal::new("rated_voltage", Place::bytes(1, 0)).unit("V").scale(1, 10));
+    /// The signal `manufacturer`, to read or write it alone, or to ask for its limits.
+    pub const MANUFACTURER: LongSignal<Text<4, 0xFF>> =
+        LongSignal::new(8, Signal::new("manufacturer", Place::bytes(0, 3)));
+    /// The signal `pack_number`, to read or write it alone, or to ask for its limits.
+    pub const PACK_NUMBER: LongSignal<u32> = LongSignal::new(
+        12,
+        Signal::new("pack_number", Place::bytes(3, 0)).specials(&[(4_294_967_295, "not_available")]).absent(),
+    );
+    /// The signal `production_year`, to read or write it alone, or to ask for its limits.
+    pub const PRODUCTION_YEAR: LongSignal<u8, f64> = LongSignal::new(
+        16,
+        Signal::new("production_year", Place::byte(0))
+            .offset(1985, 1)
+            .limits(1985.0, 2235.0)
+            .specials(&[(255, "not_available")])
+            .absent(),
+    );
+    /// The signal `production_month`, to read or write it alone, or to ask for its limits.
+    pub const PRODUCTION_MONTH: LongSignal<u8> = LongSignal::new(
+        17,
+        Signal::new("production_month", Place::byte(0)).limits(1, 12).specials(&[(255, "not_available")]).absent(),
+    );
+    /// The signal `production_day`, to read or write it alone, or to ask for its limits.
+    pub const PRODUCTION_DAY: LongSignal<u8> = LongSignal::new(
+        18,
+        Signal::new("production_day", Place::byte(0)).limits(1, 31).specials(&[(255, "not_available")]).absent(),
+    );
+    /// The signal `charge_count`, to read or write it alone, or to ask for its limits.
+    pub const CHARGE_COUNT: LongSignal<u32> = LongSignal::new(
+        19,
+        Signal::new("charge_count", Place::bytes(2, 0)).specials(&[(16_777_215, "not_available")]).absent(),
+    );
+    /// The signal `ownership`, to read or write it alone, or to ask for its limits.
+    pub const OWNERSHIP: LongSignal<Ownership> = LongSignal::new(22, Signal::new("ownership", Place::byte(0)));
+    /// The signal `vin_1`, to read or write it alone, or to ask for its limits.
+    pub const VIN_1: LongSignal<Text<8, 0xFF>> = LongSignal::new(24, Signal::new("vin_1", Place::bytes(0, 7)));
+    /// The signal `vin_2`, to read or write it alone, or to ask for its limits.
+    pub const VIN_2: LongSignal<Text<8, 0xFF>> = LongSignal::new(32, Signal::new("vin_2", Place::bytes(0, 7)));
+    /// The signal `vin_3`, to read or write it alone, or to ask for its limits.
+    pub const VIN_3: LongSignal<Text<1, 0xFF>> = LongSignal::new(40, Signal::new("vin_3", Place::byte(0)));
+    /// The signal `software_number`, to read or write it alone, or to ask for its limits.
+    pub const SOFTWARE_NUMBER: LongSignal<u8> = LongSignal::new(
+        41,
+        Signal::new("software_number", Place::byte(0)).specials(&[(255, "not_available")]).absent(),
+    );
+    /// The signal `software_day`, to read or write it alone, or to ask for its limits.
+    pub const SOFTWARE_DAY: LongSignal<u8> = LongSignal::new(
+        42,
+        Signal::new("software_day", Place::byte(0)).limits(1, 31).specials(&[(255, "not_available")]).absent(),
+    );
+    /// The signal `software_month`, to read or write it alone, or to ask for its limits.
+    pub const SOFTWARE_MONTH: LongSignal<u8> = LongSignal::new(
+        43,
+        Signal::new("software_month", Place::byte(0)).limits(1, 12).specials(&[(255, "not_available")]).absent(),
+    );
+    /// The signal `software_year`, to read or write it alone, or to ask for its limits.
+    pub const SOFTWARE_YEAR: LongSignal<u16> = LongSignal::new(
+        44,
+        Signal::new("software_year", Place::bytes(1, 0)).specials(&[(65_535, "not_available")]).absent(),
+    );
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS_2.of("brm", FRAME.id(Identifier::FORMAT, 0x02)).send_id(Identifier::PRIORITY, 0x7);
+        BMS_CYCLE_ACCESS.of("brm", FRAME.id(Identifier::FORMAT, 0x02)).send_id(Identifier::PRIORITY, 0x7);
+}
+
+impl LongLayout for Brm {
+    const MESSAGE: &'static str = "brm";
+    const SHORTEST: usize = 41;
+    const LONGEST: usize = 49;
+    const BLANK: u8 = 0xFF;
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        version_minor: Self::VERSION_MINOR.read(data, Signal::get),
+        version_major: Self::VERSION_MAJOR.read(data, Signal::get),
+        battery_type: Self::BATTERY_TYPE.read(data, Signal::get),
+        rated_capacity_ah: Self::RATED_CAPACITY.read(data, Signal::decode),
+        rated_voltage_v: Self::RATED_VOLTAGE.read(data, Signal::decode),
+        manufacturer: Self::MANUFACTURER.read(data, Signal::get),
+        pack_number: Self::PACK_NUMBER.read(data, |signal, data| signal.get_some(data, 8)),
+        production_year: Self::PRODUCTION_YEAR.read(data, |signal, data| signal.decode_some(data, 8)),
+        production_month: Self::PRODUCTION_MONTH.read(data, |signal, data| signal.get_some(data, 8)),
+        production_day: Self::PRODUCTION_DAY.read(data, |signal, data| signal.get_some(data, 8)),
+        charge_count: Self::CHARGE_COUNT.read(data, |signal, data| signal.get_some(data, 8)),
+        ownership: Self::OWNERSHIP.read(data, Signal::get),
+        vin_1: Self::VIN_1.read(data, Signal::get),
+        vin_2: Self::VIN_2.read(data, Signal::get),
+        vin_3: Self::VIN_3.read(data, Signal::get),
+        software_number: Self::SOFTWARE_NUMBER.read_optional(data, Signal::get_some),
+        software_day: Self::SOFTWARE_DAY.read_optional(data, Signal::get_some),
+        software_month: Self::SOFTWARE_MONTH.read_optional(data, Signal::get_some),
+        software_year: Self::SOFTWARE_YEAR.read_optional(data, Signal::get_some),
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        payload.end_after(41);
+        if message.software_number.is_some()
+            || message.software_day.is_some()
+            || message.software_month.is_some()
+            || message.software_year.is_some()
+        {
+            payload.end_after(49);
+        }
+        Self::VERSION_MINOR.write(message.version_minor, payload, Signal::put)?;
+        Self::VERSION_MAJOR.write(message.version_major, payload, Signal::put)?;
+        Self::BATTERY_TYPE.write(message.battery_type, payload, Signal::put)?;
+        Self::RATED_CAPACITY.write(message.rated_capacity_ah, payload, Signal::encode)?;
+        Self::RATED_VOLTAGE.write(message.rated_voltage_v, payload, Signal::encode)?;
+        Self::MANUFACTURER.write(message.manufacturer, payload, Signal::put)?;
+        Self::PACK_NUMBER.write(message.pack_number, payload, Signal::put_some)?;
+        Self::PRODUCTION_YEAR.write(message.production_year, payload, Signal::encode_some)?;
+        Self::PRODUCTION_MONTH.write(message.production_month, payload, Signal::put_some)?;
+        Self::PRODUCTION_DAY.write(message.production_day, payload, Signal::put_some)?;
+        Self::CHARGE_COUNT.write(message.charge_count, payload, Signal::put_some)?;
+        Self::OWNERSHIP.write(message.ownership, payload, Signal::put)?;
+        Self::VIN_1.write(message.vin_1, payload, Signal::put)?;
+        Self::VIN_2.write(message.vin_2, payload, Signal::put)?;
+        Self::VIN_3.write(message.vin_3, payload, Signal::put)?;
+        Self::SOFTWARE_NUMBER.write(message.software_number, payload, Signal::put_some)?;
+        Self::SOFTWARE_DAY.write(message.software_day, payload, Signal::put_some)?;
+        Self::SOFTWARE_MONTH.write(message.software_month, payload, Signal::put_some)?;
+        Self::SOFTWARE_YEAR.write(message.software_year, payload, Signal::put_some)
+    };
+}
+
+impl Transferred for Brm {
+    type Transport = Tp;
+    const SIZES: &'static [usize] = &[41, 49];
 }
 
 /// Charging parameters of the battery (BCP): `format` 0x06. Section 5.5.
-/// - [`bms_cycle`](BMS_CYCLE_ACCESS_2): the bms sends it (`peer`). It comes every 500 ms.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Bcp;
+/// - [`bms_cycle`](BMS_CYCLE_ACCESS): the bms sends it (`peer`). It comes every 500 ms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bcp {
+    /// Voltage that charging may give a cell in V: bytes 1..0, steps of 0.01 V, `0..=24`, raw 65535 is
+    /// `not_available`.
+    ///
+    /// SPN 2816.
+    pub maximum_cell_voltage_v: Option<f64>,
+    /// Charging current at most in A: bytes 3..2, steps of 0.1 A, raw 0 is -400 A, raw 65535 is
+    /// `not_available`.
+    ///
+    /// SPN 2817; negative while charging, positive while discharging.
+    pub maximum_current_a: Option<f64>,
+    /// Nominal energy in all in Wh: bytes 5..4, steps of 100 Wh, `0..=1000000`, raw 65535 is
+    /// `not_available`.
+    ///
+    /// SPN 2818.
+    pub nominal_energy_wh: Option<f64>,
+    /// Total voltage that charging may reach in V: bytes 7..6, steps of 0.1 V, raw 65535 is
+    /// `not_available`.
+    ///
+    /// SPN 2819.
+    pub maximum_voltage_v: Option<f64>,
+    /// Temperature that charging may reach in °C: byte 8, raw 0 is -50 °C, `-50..=200`, raw 255 is
+    /// `not_available`.
+    ///
+    /// SPN 2820.
+    pub maximum_temperature_c: Option<f64>,
+    /// State of charge in %: bytes 10..9, steps of 0.1 %, `0..=100`, raw 65535 is `not_available`.
+    ///
+    /// SPN 2821.
+    pub state_of_charge_percent: Option<f64>,
+    /// Present voltage of the battery in V: bytes 12..11, steps of 0.1 V, raw 65535 is `not_available`.
+    ///
+    /// SPN 2822.
+    pub battery_voltage_v: Option<f64>,
+}
 
 impl Bcp {
+    /// The signal `maximum_cell_voltage`, to read or write it alone, or to ask for its limits.
+    pub const MAXIMUM_CELL_VOLTAGE: LongSignal<u16, f64> = LongSignal::new(
+        0,
+        Signal::new("maximum_cell_voltage", Place::bytes(1, 0))
+            .unit("V")
+            .scale(1, 100)
+            .limits(0.0, 24.0)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `maximum_current`, to read or write it alone, or to ask for its limits.
+    pub const MAXIMUM_CURRENT: LongSignal<u16, f64> = LongSignal::new(
+        2,
+        Signal::new("maximum_current", Place::bytes(1, 0))
+            .unit("A")
+            .scale(1, 10)
+            .offset(-400, 1)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `nominal_energy`, to read or write it alone, or to ask for its limits.
+    pub const NOMINAL_ENERGY: LongSignal<u16, f64> = LongSignal::new(
+        4,
+        Signal::new("nominal_energy", Place::bytes(1, 0))
+            .unit("Wh")
+            .scale(100, 1)
+            .limits(0.0, 1_000_000.0)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `maximum_voltage`, to read or write it alone, or to ask for its limits.
+    pub const MAXIMUM_VOLTAGE: LongSignal<u16, f64> = LongSignal::new(
+        6,
+        Signal::new("maximum_voltage", Place::bytes(1, 0))
+            .unit("V")
+            .scale(1, 10)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `maximum_temperature`, to read or write it alone, or to ask for its limits.
+    pub const MAXIMUM_TEMPERATURE: LongSignal<u8, f64> = LongSignal::new(
+        8,
+        Signal::new("maximum_temperature", Place::byte(0))
+            .unit("°C")
+            .offset(-50, 1)
+            .limits(-50.0, 200.0)
+            .specials(&[(255, "not_available")])
+            .absent(),
+    );
+    /// The signal `state_of_charge`, to read or write it alone, or to ask for its limits.
+    pub const STATE_OF_CHARGE: LongSignal<u16, f64> = LongSignal::new(
+        9,
+        Signal::new("state_of_charge", Place::bytes(1, 0))
+            .unit("%")
+            .scale(1, 10)
+            .limits(0.0, 100.0)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `battery_voltage`, to read or write it alone, or to ask for its limits.
+    pub const BATTERY_VOLTAGE: LongSignal<u16, f64> = LongSignal::new(
+        11,
+        Signal::new("battery_voltage", Place::bytes(1, 0))
+            .unit("V")
+            .scale(1, 10)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS_2.of("bcp", FRAME.id(Identifier::FORMAT, 0x06)).send_id(Identifier::PRIORITY, 0x7);
+        BMS_CYCLE_ACCESS.of("bcp", FRAME.id(Identifier::FORMAT, 0x06)).send_id(Identifier::PRIORITY, 0x7);
+}
+
+impl LongLayout for Bcp {
+    const MESSAGE: &'static str = "bcp";
+    const SHORTEST: usize = 13;
+    const LONGEST: usize = 13;
+    const BLANK: u8 = 0xFF;
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        maximum_cell_voltage_v: Self::MAXIMUM_CELL_VOLTAGE.read(data, |signal, data| signal.decode_some(data, 8)),
+        maximum_current_a: Self::MAXIMUM_CURRENT.read(data, |signal, data| signal.decode_some(data, 8)),
+        nominal_energy_wh: Self::NOMINAL_ENERGY.read(data, |signal, data| signal.decode_some(data, 8)),
+        maximum_voltage_v: Self::MAXIMUM_VOLTAGE.read(data, |signal, data| signal.decode_some(data, 8)),
+        maximum_temperature_c: Self::MAXIMUM_TEMPERATURE.read(data, |signal, data| signal.decode_some(data, 8)),
+        state_of_charge_percent: Self::STATE_OF_CHARGE.read(data, |signal, data| signal.decode_some(data, 8)),
+        battery_voltage_v: Self::BATTERY_VOLTAGE.read(data, |signal, data| signal.decode_some(data, 8)),
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::MAXIMUM_CELL_VOLTAGE.write(message.maximum_cell_voltage_v, payload, Signal::encode_some)?;
+        Self::MAXIMUM_CURRENT.write(message.maximum_current_a, payload, Signal::encode_some)?;
+        Self::NOMINAL_ENERGY.write(message.nominal_energy_wh, payload, Signal::encode_some)?;
+        Self::MAXIMUM_VOLTAGE.write(message.maximum_voltage_v, payload, Signal::encode_some)?;
+        Self::MAXIMUM_TEMPERATURE.write(message.maximum_temperature_c, payload, Signal::encode_some)?;
+        Self::STATE_OF_CHARGE.write(message.state_of_charge_percent, payload, Signal::encode_some)?;
+        Self::BATTERY_VOLTAGE.write(message.battery_voltage_v, payload, Signal::encode_some)
+    };
+}
+
+impl Transferred for Bcp {
+    type Transport = Tp;
+    const SIZES: &'static [usize] = &[13];
 }
 
 /// Time of the charger (CTS): `format` 0x07. Section 5.6.
@@ -2131,19 +2506,120 @@ impl Layout for Bcl {
 }
 
 /// State of the charging (BCS): `format` 0x11. Section 5.11.
-/// - [`bms_cycle`](BMS_CYCLE_ACCESS_2): the bms sends it (`peer`). It comes every 250 ms.
+/// - [`bms_cycle`](BMS_CYCLE_ACCESS): the bms sends it (`peer`). It comes every 250 ms.
 ///
 /// The highest voltage of a cell and its group are SPN 3077.
 ///
 /// Erratum X9: printed is "6.4 as the start of the group in D, bits 13 to 16 in T and C", used is "bits
 /// 13 to 16", because 6.4 would share a bit with the voltage of 12 bits; the examples have it so.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Bcs;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bcs {
+    /// Charging voltage measured in V: bytes 1..0, steps of 0.1 V, raw 65535 is `not_available`.
+    ///
+    /// SPN 3075.
+    pub voltage_v: Option<f64>,
+    /// Charging current measured in A: bytes 3..2, steps of 0.1 A, raw 0 is -400 A, raw 65535 is
+    /// `not_available`.
+    ///
+    /// SPN 3076; negative while charging, positive while discharging.
+    pub current_a: Option<f64>,
+    /// Voltage of a cell in V: bytes 5..4, bits 11..0, steps of 0.01 V, `0..=24`, raw 4095 is
+    /// `not_available`.
+    pub highest_cell_voltage_v: Option<f64>,
+    /// Number of the group: byte 5, bits 7..4.
+    pub highest_cell_group: u8,
+    /// State of charge in %: byte 6, `0..=100`, raw 255 is `not_available`.
+    ///
+    /// SPN 3078.
+    pub state_of_charge_percent: Option<u8>,
+    /// Estimated time until the end in min: bytes 8..7, `0..=600`, raw 65535 is `not_available`.
+    ///
+    /// SPN 3079; more than 600 min is sent as 600 min.
+    pub remaining_time_min: Option<u16>,
+}
 
 impl Bcs {
+    /// The signal `voltage`, to read or write it alone, or to ask for its limits.
+    pub const VOLTAGE: LongSignal<u16, f64> = LongSignal::new(
+        0,
+        Signal::new("voltage", Place::bytes(1, 0))
+            .unit("V")
+            .scale(1, 10)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `current`, to read or write it alone, or to ask for its limits.
+    pub const CURRENT: LongSignal<u16, f64> = LongSignal::new(
+        2,
+        Signal::new("current", Place::bytes(1, 0))
+            .unit("A")
+            .scale(1, 10)
+            .offset(-400, 1)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
+    /// The signal `highest_cell_voltage`, to read or write it alone, or to ask for its limits.
+    pub const HIGHEST_CELL_VOLTAGE: LongSignal<u16, f64> = LongSignal::new(
+        4,
+        Signal::new("highest_cell_voltage", Place::bytes(1, 0).bits(11, 0))
+            .unit("V")
+            .scale(1, 100)
+            .limits(0.0, 24.0)
+            .specials(&[(4095, "not_available")])
+            .absent(),
+    );
+    /// The signal `highest_cell_group`, to read or write it alone, or to ask for its limits.
+    pub const HIGHEST_CELL_GROUP: LongSignal<u8> =
+        LongSignal::new(4, Signal::new("highest_cell_group", Place::byte(1).bits(7, 4)));
+    /// The signal `state_of_charge`, to read or write it alone, or to ask for its limits.
+    pub const STATE_OF_CHARGE: LongSignal<u8> = LongSignal::new(
+        6,
+        Signal::new("state_of_charge", Place::byte(0))
+            .unit("%")
+            .limits(0, 100)
+            .specials(&[(255, "not_available")])
+            .absent(),
+    );
+    /// The signal `remaining_time`, to read or write it alone, or to ask for its limits.
+    pub const REMAINING_TIME: LongSignal<u16> = LongSignal::new(
+        7,
+        Signal::new("remaining_time", Place::bytes(1, 0))
+            .unit("min")
+            .limits(0, 600)
+            .specials(&[(65_535, "not_available")])
+            .absent(),
+    );
     /// The access `bms_cycle`, for filters and blank frames of it.
     pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS_2.of("bcs", FRAME.id(Identifier::FORMAT, 0x11)).send_id(Identifier::PRIORITY, 0x7);
+        BMS_CYCLE_ACCESS.of("bcs", FRAME.id(Identifier::FORMAT, 0x11)).send_id(Identifier::PRIORITY, 0x7);
+}
+
+impl LongLayout for Bcs {
+    const MESSAGE: &'static str = "bcs";
+    const SHORTEST: usize = 9;
+    const LONGEST: usize = 9;
+    const BLANK: u8 = 0xFF;
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        voltage_v: Self::VOLTAGE.read(data, |signal, data| signal.decode_some(data, 8)),
+        current_a: Self::CURRENT.read(data, |signal, data| signal.decode_some(data, 8)),
+        highest_cell_voltage_v: Self::HIGHEST_CELL_VOLTAGE.read(data, |signal, data| signal.decode_some(data, 8)),
+        highest_cell_group: Self::HIGHEST_CELL_GROUP.read(data, Signal::get),
+        state_of_charge_percent: Self::STATE_OF_CHARGE.read(data, |signal, data| signal.get_some(data, 8)),
+        remaining_time_min: Self::REMAINING_TIME.read(data, |signal, data| signal.get_some(data, 8)),
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::VOLTAGE.write(message.voltage_v, payload, Signal::encode_some)?;
+        Self::CURRENT.write(message.current_a, payload, Signal::encode_some)?;
+        Self::HIGHEST_CELL_VOLTAGE.write(message.highest_cell_voltage_v, payload, Signal::encode_some)?;
+        Self::HIGHEST_CELL_GROUP.write(message.highest_cell_group, payload, Signal::put)?;
+        Self::STATE_OF_CHARGE.write(message.state_of_charge_percent, payload, Signal::put_some)?;
+        Self::REMAINING_TIME.write(message.remaining_time_min, payload, Signal::put_some)
+    };
+}
+
+impl Transferred for Bcs {
+    type Transport = Tp;
+    const SIZES: &'static [usize] = &[9];
 }
 
 /// State of the charger while it charges (CCS): `format` 0x12. Section 5.12.
@@ -2423,6 +2899,61 @@ impl Layout for Bsm {
 /// 13 to 16", because 6.4 would share a bit with the voltage of 12 bits; the examples have it so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bmv {
+    /// Voltage of a cell in V: bytes 1..0, bits 11..0 to bytes 511..510, bits 11..0, 1 to 256 elements,
+    /// steps of 0.01 V, `0..=24`, raw 4095 is `not_available`.
+    pub cell_voltage_v: Elements<Option<f64>, 256>,
+    /// Number of the group: byte 1, bits 7..4 to byte 511, bits 7..4, 1 to 256 elements.
+    pub cell_group: Elements<u8, 256>,
+}
+
+impl Bmv {
+    /// The elements of `cell_voltage`, to read or write one alone, or to ask for their limits.
+    pub const CELL_VOLTAGE: LongSignal<u16, f64> = LongSignal::new(
+        0,
+        Signal::new("cell_voltage", Place::bytes(1, 0).bits(11, 0))
+            .unit("V")
+            .scale(1, 100)
+            .limits(0.0, 24.0)
+            .specials(&[(4095, "not_available")])
+            .absent(),
+    )
+    .every(2);
+    /// The elements of `cell_group`, to read or write one alone, or to ask for their limits.
+    pub const CELL_GROUP: LongSignal<u8> =
+        LongSignal::new(0, Signal::new("cell_group", Place::byte(1).bits(7, 4))).every(2);
+    /// The access `bms_cycle`, for filters and blank frames of it.
+    pub const BMS_CYCLE: Exchange =
+        BMS_CYCLE_ACCESS.of("bmv", FRAME.id(Identifier::FORMAT, 0x15)).length(2).send_id(Identifier::PRIORITY, 0x7);
+}
+
+impl LongLayout for Bmv {
+    const MESSAGE: &'static str = "bmv";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 512;
+    const BLANK: u8 = 0xFF;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 256));
+    const BYTES: fn(usize) -> usize =
+        |elements| Self::CELL_VOLTAGE.reach(elements).max(Self::CELL_GROUP.reach(elements));
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::CELL_VOLTAGE.fitting(data.len()).min(Self::CELL_GROUP.fitting(data.len()));
+        Self {
+            cell_voltage_v: Self::CELL_VOLTAGE.read_some(data, count, |signal, data| signal.decode_some(data, 8)),
+            cell_group: Self::CELL_GROUP.read_some(data, count, Signal::get),
+        }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::CELL_VOLTAGE.write_some(&message.cell_voltage_v, payload, Signal::encode_some)?;
+        Self::CELL_GROUP.write_some(&message.cell_group, payload, Signal::put)
+    };
+}
+
+impl Transferred for Bmv {
+    type Transport = Tp;
+}
+
+/// [`Bmv`] in one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BmvFrame {
     /// Voltage of a cell in V: bytes 1..0, bits 11..0 to bytes 7..6, bits 11..0, not all of them in shorter
     /// frames, steps of 0.01 V, `0..=24`, raw 4095 is `not_available`.
     pub cell_voltage_v: [Option<f64>; 4],
@@ -2430,7 +2961,7 @@ pub struct Bmv {
     pub cell_group: [Option<u8>; 4],
 }
 
-impl Bmv {
+impl BmvFrame {
     /// The signal `cell_voltage_1`, to read or write it alone, or to ask for its limits.
     pub const CELL_VOLTAGE_1: Signal<u16, f64> = Signal::new("cell_voltage_1", Place::bytes(1, 0).bits(11, 0))
         .unit("V")
@@ -2469,12 +3000,9 @@ impl Bmv {
     pub const CELL_GROUP_4: Signal<u8> = Signal::new("cell_group_4", Place::byte(7).bits(7, 4));
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
-    /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bmv", FRAME.id(Identifier::FORMAT, 0x15)).length(2).send_id(Identifier::PRIORITY, 0x7);
 }
 
-impl Layout for Bmv {
+impl Layout for BmvFrame {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[
         &Self::CELL_VOLTAGE_1,
         &Self::CELL_GROUP_1,
@@ -2533,6 +3061,52 @@ impl Layout for Bmv {
 /// Optional; the charger does not wait for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bmt {
+    /// Temperature of a point in °C: byte 0 to byte 127, 1 to 128 elements, raw 0 is -50 °C, `-50..=200`,
+    /// raw 255 is `not_available`.
+    ///
+    /// SPN 3361 to 3488.
+    pub temperature_c: Elements<Option<f64>, 128>,
+}
+
+impl Bmt {
+    /// The elements of `temperature`, to read or write one alone, or to ask for their limits.
+    pub const TEMPERATURE: LongSignal<u8, f64> = LongSignal::new(
+        0,
+        Signal::new("temperature", Place::byte(0))
+            .unit("°C")
+            .offset(-50, 1)
+            .limits(-50.0, 200.0)
+            .specials(&[(255, "not_available")])
+            .absent(),
+    )
+    .every(1);
+    /// The access `bms_cycle`, for filters and blank frames of it.
+    pub const BMS_CYCLE: Exchange =
+        BMS_CYCLE_ACCESS.of("bmt", FRAME.id(Identifier::FORMAT, 0x16)).length(1).send_id(Identifier::PRIORITY, 0x7);
+}
+
+impl LongLayout for Bmt {
+    const MESSAGE: &'static str = "bmt";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 128;
+    const BLANK: u8 = 0xFF;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 128));
+    const BYTES: fn(usize) -> usize = |elements| Self::TEMPERATURE.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::TEMPERATURE.fitting(data.len());
+        Self { temperature_c: Self::TEMPERATURE.read_some(data, count, |signal, data| signal.decode_some(data, 8)) }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::TEMPERATURE.write_some(&message.temperature_c, payload, Signal::encode_some);
+}
+
+impl Transferred for Bmt {
+    type Transport = Tp;
+}
+
+/// [`Bmt`] in one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BmtFrame {
     /// Temperature of a point in °C: byte 0 to byte 7, not all of them in shorter frames, raw 0 is -50 °C,
     /// `-50..=200`, raw 255 is `not_available`.
     ///
@@ -2540,7 +3114,7 @@ pub struct Bmt {
     pub temperature_c: [Option<f64>; 8],
 }
 
-impl Bmt {
+impl BmtFrame {
     /// The signal `temperature_1`, to read or write it alone, or to ask for its limits.
     pub const TEMPERATURE_1: Signal<u8, f64> = Signal::new("temperature_1", Place::byte(0))
         .unit("°C")
@@ -2599,12 +3173,9 @@ impl Bmt {
         .absent();
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
-    /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bmt", FRAME.id(Identifier::FORMAT, 0x16)).length(1).send_id(Identifier::PRIORITY, 0x7);
 }
 
-impl Layout for Bmt {
+impl Layout for BmtFrame {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[
         &Self::TEMPERATURE_1,
         &Self::TEMPERATURE_2,
@@ -2673,13 +3244,50 @@ impl Layout for Bmt {
 /// Optional; the charger does not wait for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Bsp {
+    /// Field without a meaning: byte 0 to byte 15, 1 to 16 elements.
+    ///
+    /// SPN 3491 to 3506.
+    pub reserved: Elements<Bytes<1>, 16>,
+}
+
+impl Bsp {
+    /// The elements of `reserved`, to read or write one alone, or to ask for their limits.
+    pub const RESERVED_SIGNAL: LongSignal<Bytes<1>> =
+        LongSignal::new(0, Signal::new("reserved", Place::byte(0))).every(1);
+    /// The access `bms_cycle`, for filters and blank frames of it.
+    pub const BMS_CYCLE: Exchange =
+        BMS_CYCLE_ACCESS.of("bsp", FRAME.id(Identifier::FORMAT, 0x17)).length(1).send_id(Identifier::PRIORITY, 0x7);
+}
+
+impl LongLayout for Bsp {
+    const MESSAGE: &'static str = "bsp";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 16;
+    const BLANK: u8 = 0xFF;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 16));
+    const BYTES: fn(usize) -> usize = |elements| Self::RESERVED_SIGNAL.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::RESERVED_SIGNAL.fitting(data.len());
+        Self { reserved: Self::RESERVED_SIGNAL.read_some(data, count, Signal::get) }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::RESERVED_SIGNAL.write_some(&message.reserved, payload, Signal::put);
+}
+
+impl Transferred for Bsp {
+    type Transport = Tp;
+}
+
+/// [`Bsp`] in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BspFrame {
     /// Field without a meaning: byte 0 to byte 7, not all of them in shorter frames.
     ///
     /// SPN 3491 to 3506.
     pub reserved: [Option<Bytes<1>>; 8],
 }
 
-impl Bsp {
+impl BspFrame {
     /// The signal `reserved_1`, to read or write it alone, or to ask for its limits.
     pub const RESERVED_1: Signal<Bytes<1>> = Signal::new("reserved_1", Place::byte(0));
     /// The signal `reserved_2`, to read or write it alone, or to ask for its limits.
@@ -2698,12 +3306,9 @@ impl Bsp {
     pub const RESERVED_8: Signal<Bytes<1>> = Signal::new("reserved_8", Place::byte(7));
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
-    /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bsp", FRAME.id(Identifier::FORMAT, 0x17)).length(1).send_id(Identifier::PRIORITY, 0x7);
 }
 
-impl Layout for Bsp {
+impl Layout for BspFrame {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[
         &Self::RESERVED_1,
         &Self::RESERVED_2,
@@ -3454,6 +4059,105 @@ impl Layout for Cem {
 /// elements; more is shown as incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm1 {
+    /// Lower 16 bits of the number of the parameter that failed: bytes 1..0 to bytes 17..16, 1 to 5
+    /// elements.
+    pub code_spn_low: Elements<u16, 5>,
+    /// Kind of failure: byte 2, bits 4..0 to byte 18, bits 4..0, 1 to 5 elements.
+    pub code_fmi: Elements<u8, 5>,
+    /// Upper 3 bits of the number of the parameter that failed: byte 2, bits 7..5 to byte 18, bits 7..5, 1
+    /// to 5 elements.
+    pub code_spn_high: Elements<u8, 5>,
+    /// How often it occurred: byte 3, bits 6..0 to byte 19, bits 6..0, 1 to 5 elements, raw 127 is
+    /// `not_available`.
+    pub code_occurrence: Elements<Option<u8>, 5>,
+    /// Order of the bytes of the number: byte 3, bit 7 to byte 19, bit 7, 1 to 5 elements.
+    pub code_conversion: Elements<TroubleCodeConversion, 5>,
+}
+
+impl Dm1 {
+    /// The elements of `code_spn_low`, to read or write one alone, or to ask for their limits.
+    pub const CODE_SPN_LOW: LongSignal<u16> =
+        LongSignal::new(0, Signal::new("code_spn_low", Place::bytes(1, 0))).every(4);
+    /// The elements of `code_fmi`, to read or write one alone, or to ask for their limits.
+    pub const CODE_FMI: LongSignal<u8> =
+        LongSignal::new(0, Signal::new("code_fmi", Place::byte(2).bits(4, 0))).every(4);
+    /// The elements of `code_spn_high`, to read or write one alone, or to ask for their limits.
+    pub const CODE_SPN_HIGH: LongSignal<u8> =
+        LongSignal::new(0, Signal::new("code_spn_high", Place::byte(2).bits(7, 5))).every(4);
+    /// The elements of `code_occurrence`, to read or write one alone, or to ask for their limits.
+    pub const CODE_OCCURRENCE: LongSignal<u8> = LongSignal::new(
+        0,
+        Signal::new("code_occurrence", Place::byte(3).bits(6, 0)).specials(&[(127, "not_available")]).absent(),
+    )
+    .every(4);
+    /// The elements of `code_conversion`, to read or write one alone, or to ask for their limits.
+    pub const CODE_CONVERSION: LongSignal<TroubleCodeConversion> =
+        LongSignal::new(0, Signal::new("code_conversion", Place::byte(3).bit(7))).every(4);
+    /// The access `charger_event`, for filters and blank frames of it.
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
+    /// The access `bms_event`, for filters and blank frames of it.
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
+
+    /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
+    /// are written to `buffer`, for which `LONGEST` bytes are enough.
+    ///
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
+    /// with too few bytes.
+    pub fn charger_event<'a>(
+        &self,
+        route: impl Into<Route<Target>>,
+        buffer: &'a mut [u8],
+    ) -> Result<transfers::Sender<'a, Tp>, Error> {
+        Self::CHARGER_EVENT.transfer_to(route, self, buffer)
+    }
+}
+
+impl LongLayout for Dm1 {
+    const MESSAGE: &'static str = "dm1";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 20;
+    const BLANK: u8 = 0xFF;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 5));
+    const BYTES: fn(usize) -> usize = |elements| {
+        Self::CODE_SPN_LOW
+            .reach(elements)
+            .max(Self::CODE_FMI.reach(elements))
+            .max(Self::CODE_SPN_HIGH.reach(elements))
+            .max(Self::CODE_OCCURRENCE.reach(elements))
+            .max(Self::CODE_CONVERSION.reach(elements))
+    };
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::CODE_SPN_LOW
+            .fitting(data.len())
+            .min(Self::CODE_FMI.fitting(data.len()))
+            .min(Self::CODE_SPN_HIGH.fitting(data.len()))
+            .min(Self::CODE_OCCURRENCE.fitting(data.len()))
+            .min(Self::CODE_CONVERSION.fitting(data.len()));
+        Self {
+            code_spn_low: Self::CODE_SPN_LOW.read_some(data, count, Signal::get),
+            code_fmi: Self::CODE_FMI.read_some(data, count, Signal::get),
+            code_spn_high: Self::CODE_SPN_HIGH.read_some(data, count, Signal::get),
+            code_occurrence: Self::CODE_OCCURRENCE.read_some(data, count, |signal, data| signal.get_some(data, 8)),
+            code_conversion: Self::CODE_CONVERSION.read_some(data, count, Signal::get),
+        }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::CODE_SPN_LOW.write_some(&message.code_spn_low, payload, Signal::put)?;
+        Self::CODE_FMI.write_some(&message.code_fmi, payload, Signal::put)?;
+        Self::CODE_SPN_HIGH.write_some(&message.code_spn_high, payload, Signal::put)?;
+        Self::CODE_OCCURRENCE.write_some(&message.code_occurrence, payload, Signal::put_some)?;
+        Self::CODE_CONVERSION.write_some(&message.code_conversion, payload, Signal::put)
+    };
+}
+
+impl Transferred for Dm1 {
+    type Transport = Tp;
+}
+
+/// [`Dm1`] in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Dm1Frame {
     /// Lower 16 bits of the number of the parameter that failed: bytes 1..0 to bytes 5..4, not all of them
     /// in shorter frames.
     pub code_spn_low: [Option<u16>; 2],
@@ -3469,7 +4173,7 @@ pub struct Dm1 {
     pub code_conversion: [Option<TroubleCodeConversion>; 2],
 }
 
-impl Dm1 {
+impl Dm1Frame {
     /// The signal `code_spn_low_1`, to read or write it alone, or to ask for its limits.
     pub const CODE_SPN_LOW_1: Signal<u16> = Signal::new("code_spn_low_1", Place::bytes(1, 0));
     /// The signal `code_fmi_1`, to read or write it alone, or to ask for its limits.
@@ -3496,21 +4200,17 @@ impl Dm1 {
         Signal::new("code_conversion_2", Place::byte(7).bit(7));
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
-    /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
-    /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm1", FRAME.id(Identifier::FORMAT, 0x20)).length(4);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, self)
+        Dm1::CHARGER_EVENT.request_to(route, self)
     }
 }
 
-impl Layout for Dm1 {
+impl Layout for Dm1Frame {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[
         &Self::CODE_SPN_LOW_1,
         &Self::CODE_FMI_1,
@@ -3577,6 +4277,105 @@ impl Layout for Dm1 {
 /// elements; more is shown as incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm2 {
+    /// Lower 16 bits of the number of the parameter that failed: bytes 1..0 to bytes 17..16, 1 to 5
+    /// elements.
+    pub code_spn_low: Elements<u16, 5>,
+    /// Kind of failure: byte 2, bits 4..0 to byte 18, bits 4..0, 1 to 5 elements.
+    pub code_fmi: Elements<u8, 5>,
+    /// Upper 3 bits of the number of the parameter that failed: byte 2, bits 7..5 to byte 18, bits 7..5, 1
+    /// to 5 elements.
+    pub code_spn_high: Elements<u8, 5>,
+    /// How often it occurred: byte 3, bits 6..0 to byte 19, bits 6..0, 1 to 5 elements, raw 127 is
+    /// `not_available`.
+    pub code_occurrence: Elements<Option<u8>, 5>,
+    /// Order of the bytes of the number: byte 3, bit 7 to byte 19, bit 7, 1 to 5 elements.
+    pub code_conversion: Elements<TroubleCodeConversion, 5>,
+}
+
+impl Dm2 {
+    /// The elements of `code_spn_low`, to read or write one alone, or to ask for their limits.
+    pub const CODE_SPN_LOW: LongSignal<u16> =
+        LongSignal::new(0, Signal::new("code_spn_low", Place::bytes(1, 0))).every(4);
+    /// The elements of `code_fmi`, to read or write one alone, or to ask for their limits.
+    pub const CODE_FMI: LongSignal<u8> =
+        LongSignal::new(0, Signal::new("code_fmi", Place::byte(2).bits(4, 0))).every(4);
+    /// The elements of `code_spn_high`, to read or write one alone, or to ask for their limits.
+    pub const CODE_SPN_HIGH: LongSignal<u8> =
+        LongSignal::new(0, Signal::new("code_spn_high", Place::byte(2).bits(7, 5))).every(4);
+    /// The elements of `code_occurrence`, to read or write one alone, or to ask for their limits.
+    pub const CODE_OCCURRENCE: LongSignal<u8> = LongSignal::new(
+        0,
+        Signal::new("code_occurrence", Place::byte(3).bits(6, 0)).specials(&[(127, "not_available")]).absent(),
+    )
+    .every(4);
+    /// The elements of `code_conversion`, to read or write one alone, or to ask for their limits.
+    pub const CODE_CONVERSION: LongSignal<TroubleCodeConversion> =
+        LongSignal::new(0, Signal::new("code_conversion", Place::byte(3).bit(7))).every(4);
+    /// The access `charger_event`, for filters and blank frames of it.
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
+    /// The access `bms_event`, for filters and blank frames of it.
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
+
+    /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
+    /// are written to `buffer`, for which `LONGEST` bytes are enough.
+    ///
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
+    /// with too few bytes.
+    pub fn charger_event<'a>(
+        &self,
+        route: impl Into<Route<Target>>,
+        buffer: &'a mut [u8],
+    ) -> Result<transfers::Sender<'a, Tp>, Error> {
+        Self::CHARGER_EVENT.transfer_to(route, self, buffer)
+    }
+}
+
+impl LongLayout for Dm2 {
+    const MESSAGE: &'static str = "dm2";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 20;
+    const BLANK: u8 = 0xFF;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 5));
+    const BYTES: fn(usize) -> usize = |elements| {
+        Self::CODE_SPN_LOW
+            .reach(elements)
+            .max(Self::CODE_FMI.reach(elements))
+            .max(Self::CODE_SPN_HIGH.reach(elements))
+            .max(Self::CODE_OCCURRENCE.reach(elements))
+            .max(Self::CODE_CONVERSION.reach(elements))
+    };
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::CODE_SPN_LOW
+            .fitting(data.len())
+            .min(Self::CODE_FMI.fitting(data.len()))
+            .min(Self::CODE_SPN_HIGH.fitting(data.len()))
+            .min(Self::CODE_OCCURRENCE.fitting(data.len()))
+            .min(Self::CODE_CONVERSION.fitting(data.len()));
+        Self {
+            code_spn_low: Self::CODE_SPN_LOW.read_some(data, count, Signal::get),
+            code_fmi: Self::CODE_FMI.read_some(data, count, Signal::get),
+            code_spn_high: Self::CODE_SPN_HIGH.read_some(data, count, Signal::get),
+            code_occurrence: Self::CODE_OCCURRENCE.read_some(data, count, |signal, data| signal.get_some(data, 8)),
+            code_conversion: Self::CODE_CONVERSION.read_some(data, count, Signal::get),
+        }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::CODE_SPN_LOW.write_some(&message.code_spn_low, payload, Signal::put)?;
+        Self::CODE_FMI.write_some(&message.code_fmi, payload, Signal::put)?;
+        Self::CODE_SPN_HIGH.write_some(&message.code_spn_high, payload, Signal::put)?;
+        Self::CODE_OCCURRENCE.write_some(&message.code_occurrence, payload, Signal::put_some)?;
+        Self::CODE_CONVERSION.write_some(&message.code_conversion, payload, Signal::put)
+    };
+}
+
+impl Transferred for Dm2 {
+    type Transport = Tp;
+}
+
+/// [`Dm2`] in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Dm2Frame {
     /// Lower 16 bits of the number of the parameter that failed: bytes 1..0 to bytes 5..4, not all of them
     /// in shorter frames.
     pub code_spn_low: [Option<u16>; 2],
@@ -3592,7 +4391,7 @@ pub struct Dm2 {
     pub code_conversion: [Option<TroubleCodeConversion>; 2],
 }
 
-impl Dm2 {
+impl Dm2Frame {
     /// The signal `code_spn_low_1`, to read or write it alone, or to ask for its limits.
     pub const CODE_SPN_LOW_1: Signal<u16> = Signal::new("code_spn_low_1", Place::bytes(1, 0));
     /// The signal `code_fmi_1`, to read or write it alone, or to ask for its limits.
@@ -3619,21 +4418,17 @@ impl Dm2 {
         Signal::new("code_conversion_2", Place::byte(7).bit(7));
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
-    /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
-    /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm2", FRAME.id(Identifier::FORMAT, 0x21)).length(4);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, self)
+        Dm2::CHARGER_EVENT.request_to(route, self)
     }
 }
 
-impl Layout for Dm2 {
+impl Layout for Dm2Frame {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[
         &Self::CODE_SPN_LOW_1,
         &Self::CODE_FMI_1,
@@ -3784,11 +4579,60 @@ impl Dm5 {
 /// elements; more is shown as incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dm6 {
+    /// Bytes without a layout: byte 0 to byte 255, 1 to 256 elements.
+    pub data: Elements<Bytes<1>, 256>,
+}
+
+impl Dm6 {
+    /// The elements of `data`, to read or write one alone, or to ask for their limits.
+    pub const DATA: LongSignal<Bytes<1>> = LongSignal::new(0, Signal::new("data", Place::byte(0))).every(1);
+    /// The access `charger_event`, for filters and blank frames of it.
+    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
+    /// The access `bms_event`, for filters and blank frames of it.
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
+
+    /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
+    /// are written to `buffer`, for which `LONGEST` bytes are enough.
+    ///
+    /// # Errors
+    /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
+    /// with too few bytes.
+    pub fn charger_event<'a>(
+        &self,
+        route: impl Into<Route<Target>>,
+        buffer: &'a mut [u8],
+    ) -> Result<transfers::Sender<'a, Tp>, Error> {
+        Self::CHARGER_EVENT.transfer_to(route, self, buffer)
+    }
+}
+
+impl LongLayout for Dm6 {
+    const MESSAGE: &'static str = "dm6";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 256;
+    const BLANK: u8 = 0xFF;
+    const ELEMENTS: Option<(usize, usize)> = Some((1, 256));
+    const BYTES: fn(usize) -> usize = |elements| Self::DATA.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| {
+        let count = Self::DATA.fitting(data.len());
+        Self { data: Self::DATA.read_some(data, count, Signal::get) }
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::DATA.write_some(&message.data, payload, Signal::put);
+}
+
+impl Transferred for Dm6 {
+    type Transport = Tp;
+}
+
+/// [`Dm6`] in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Dm6Frame {
     /// Bytes without a layout: byte 0 to byte 7, not all of them in shorter frames.
     pub data: [Option<Bytes<1>>; 8],
 }
 
-impl Dm6 {
+impl Dm6Frame {
     /// The signal `data_1`, to read or write it alone, or to ask for its limits.
     pub const DATA_1: Signal<Bytes<1>> = Signal::new("data_1", Place::byte(0));
     /// The signal `data_2`, to read or write it alone, or to ask for its limits.
@@ -3807,21 +4651,17 @@ impl Dm6 {
     pub const DATA_8: Signal<Bytes<1>> = Signal::new("data_8", Place::byte(7));
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
-    /// The access `charger_event`, for filters and blank frames of it.
-    pub const CHARGER_EVENT: Exchange = CHARGER_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
-    /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm6", FRAME.id(Identifier::FORMAT, 0x25)).length(1);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
-        Self::CHARGER_EVENT.request_to(route, self)
+        Dm6::CHARGER_EVENT.request_to(route, self)
     }
 }
 
-impl Layout for Dm6 {
+impl Layout for Dm6Frame {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[
         &Self::DATA_1,
         &Self::DATA_2,
@@ -4285,6 +5125,40 @@ impl Layout for TpData {
     };
 }
 
+/// Transport of messages of more than 8 bytes. Section 7.
+///
+/// Erratum X16: printed is "priority 6 and one identifier for both frames in A; 7 and two identifiers
+/// in captures and J1939-21", used is "7, and the format `0xEB` for data", because PGN `0xEB00` is
+/// printed beside it; received frames may have any priority.
+///
+/// Erratum X17: printed is "the reason 255 in captured frames, not in the list", used is "any number as
+/// a reason", because later editions of J1939-21 define more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Tp;
+
+impl transfers::Transport for Tp {
+    type Protocol = Message;
+    type Memory = [u8; 528];
+    const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
+    const TARGET: Bits = Identifier::TARGET;
+    const SOURCE: Bits = Identifier::SOURCE;
+    const SENDS: &'static [(Bits, u32)] = &[(Identifier::PRIORITY, 0x7)];
+    const CARRIES: &'static [(&'static Exchange, Kind)] = &[
+        (&Brm::BMS_CYCLE, Kind::Report),
+        (&Bcp::BMS_CYCLE, Kind::Report),
+        (&Bcs::BMS_CYCLE, Kind::Report),
+        (&Bmv::BMS_CYCLE, Kind::Report),
+        (&Bmt::BMS_CYCLE, Kind::Report),
+        (&Bsp::BMS_CYCLE, Kind::Report),
+        (&Dm1::CHARGER_EVENT, Kind::Report),
+        (&Dm1::BMS_EVENT, Kind::Report),
+        (&Dm2::CHARGER_EVENT, Kind::Report),
+        (&Dm2::BMS_EVENT, Kind::Report),
+        (&Dm6::CHARGER_EVENT, Kind::Report),
+        (&Dm6::BMS_EVENT, Kind::Report),
+    ];
+}
+
 /// Every message that a frame can carry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Message {
@@ -4309,11 +5183,11 @@ pub enum Message {
     /// State of the battery (BSM).
     Bsm(Bsm),
     /// Voltages of the cells (BMV).
-    Bmv(Bmv),
+    BmvFrame(BmvFrame),
     /// Temperatures of the battery (BMT).
-    Bmt(Bmt),
+    BmtFrame(BmtFrame),
     /// Reserved message of the battery (BSP).
-    Bsp(Bsp),
+    BspFrame(BspFrame),
     /// The BMS stops the charging (BST).
     Bst(Bst),
     /// The charger stops the charging (CST).
@@ -4327,9 +5201,9 @@ pub enum Message {
     /// What the charger waited for in vain (CEM).
     Cem(Cem),
     /// Current trouble codes (DM1).
-    Dm1(Dm1),
+    Dm1Frame(Dm1Frame),
     /// Historic trouble codes (DM2).
-    Dm2(Dm2),
+    Dm2Frame(Dm2Frame),
     /// Readiness of the diagnosis (DM3).
     Dm3(Dm3),
     /// The report of `dm4` by `charger_event`.
@@ -4341,7 +5215,7 @@ pub enum Message {
     /// The report of `dm5` by `bms_event`.
     Dm5BmsEventReport,
     /// Freeze frame of a trouble code (DM6).
-    Dm6(Dm6),
+    Dm6Frame(Dm6Frame),
     /// Request for a message (RQST).
     Rqst(Rqst),
     /// Acknowledgment (ACKM).
@@ -4407,12 +5281,18 @@ impl Protocol for Message {
             (0x1A, _) => frame.report(&Cst::CHARGER_CYCLE, Self::Cst(frame.values())),
             (0x1D, _) => frame.report(&Csd::CHARGER_CYCLE, Self::Csd(frame.values())),
             (0x1F, _) => frame.report(&Cem::CHARGER_CYCLE, Self::Cem(frame.values())),
-            (0x20, _) => frame.of_lengths(Dm1::LENGTHS).report(&Dm1::CHARGER_EVENT, Self::Dm1(frame.values())),
-            (0x21, _) => frame.of_lengths(Dm2::LENGTHS).report(&Dm2::CHARGER_EVENT, Self::Dm2(frame.values())),
+            (0x20, _) => {
+                frame.of_lengths(Dm1Frame::LENGTHS).report(&Dm1::CHARGER_EVENT, Self::Dm1Frame(frame.values()))
+            }
+            (0x21, _) => {
+                frame.of_lengths(Dm2Frame::LENGTHS).report(&Dm2::CHARGER_EVENT, Self::Dm2Frame(frame.values()))
+            }
             (0x22, _) => frame.report(&Dm3::CHARGER_EVENT, Self::Dm3(frame.values())),
             (0x23, _) => frame.report(&Dm4::CHARGER_EVENT, Self::Dm4ChargerEventReport),
             (0x24, _) => frame.report(&Dm5::CHARGER_EVENT, Self::Dm5ChargerEventReport),
-            (0x25, _) => frame.of_lengths(Dm6::LENGTHS).report(&Dm6::CHARGER_EVENT, Self::Dm6(frame.values())),
+            (0x25, _) => {
+                frame.of_lengths(Dm6Frame::LENGTHS).report(&Dm6::CHARGER_EVENT, Self::Dm6Frame(frame.values()))
+            }
             (0xEA, _) => frame.report(&Rqst::CHARGER_EVENT, Self::Rqst(frame.values())),
             (0xE8, _) => frame.report(&Ackm::CHARGER_EVENT, Self::Ackm(frame.values())),
             (0xEB, _) => frame.report(&TpData::TP_OF_CONTROLLER, Self::TpData(frame.values())),
@@ -4432,18 +5312,18 @@ impl Protocol for Message {
             (0x09, _) => frame.report(&Bro::BMS_CYCLE, Self::Bro(frame.values())),
             (0x10, _) => frame.report(&Bcl::BMS_CYCLE, Self::Bcl(frame.values())),
             (0x13, _) => frame.report(&Bsm::BMS_CYCLE, Self::Bsm(frame.values())),
-            (0x15, _) => frame.of_lengths(Bmv::LENGTHS).report(&Bmv::BMS_CYCLE, Self::Bmv(frame.values())),
-            (0x16, _) => frame.of_lengths(Bmt::LENGTHS).report(&Bmt::BMS_CYCLE, Self::Bmt(frame.values())),
-            (0x17, _) => frame.of_lengths(Bsp::LENGTHS).report(&Bsp::BMS_CYCLE, Self::Bsp(frame.values())),
+            (0x15, _) => frame.of_lengths(BmvFrame::LENGTHS).report(&Bmv::BMS_CYCLE, Self::BmvFrame(frame.values())),
+            (0x16, _) => frame.of_lengths(BmtFrame::LENGTHS).report(&Bmt::BMS_CYCLE, Self::BmtFrame(frame.values())),
+            (0x17, _) => frame.of_lengths(BspFrame::LENGTHS).report(&Bsp::BMS_CYCLE, Self::BspFrame(frame.values())),
             (0x19, _) => frame.report(&Bst::BMS_CYCLE, Self::Bst(frame.values())),
             (0x1C, _) => frame.report(&Bsd::BMS_CYCLE, Self::Bsd(frame.values())),
             (0x1E, _) => frame.report(&Bem::BMS_CYCLE, Self::Bem(frame.values())),
-            (0x20, _) => frame.of_lengths(Dm1::LENGTHS).report(&Dm1::BMS_EVENT, Self::Dm1(frame.values())),
-            (0x21, _) => frame.of_lengths(Dm2::LENGTHS).report(&Dm2::BMS_EVENT, Self::Dm2(frame.values())),
+            (0x20, _) => frame.of_lengths(Dm1Frame::LENGTHS).report(&Dm1::BMS_EVENT, Self::Dm1Frame(frame.values())),
+            (0x21, _) => frame.of_lengths(Dm2Frame::LENGTHS).report(&Dm2::BMS_EVENT, Self::Dm2Frame(frame.values())),
             (0x22, _) => frame.report(&Dm3::BMS_EVENT, Self::Dm3(frame.values())),
             (0x23, _) => frame.report(&Dm4::BMS_EVENT, Self::Dm4BmsEventReport),
             (0x24, _) => frame.report(&Dm5::BMS_EVENT, Self::Dm5BmsEventReport),
-            (0x25, _) => frame.of_lengths(Dm6::LENGTHS).report(&Dm6::BMS_EVENT, Self::Dm6(frame.values())),
+            (0x25, _) => frame.of_lengths(Dm6Frame::LENGTHS).report(&Dm6::BMS_EVENT, Self::Dm6Frame(frame.values())),
             (0xEA, _) => frame.report(&Rqst::BMS_EVENT, Self::Rqst(frame.values())),
             (0xE8, _) => frame.report(&Ackm::BMS_EVENT, Self::Ackm(frame.values())),
             (0xEB, _) => frame.report(&TpData::TP_OF_MODULE, Self::TpData(frame.values())),
@@ -4496,19 +5376,19 @@ impl Protocol for Message {
             Self::Bcl(message) => task.run(message),
             Self::Ccs(message) => task.run(message),
             Self::Bsm(message) => task.run(message),
-            Self::Bmv(message) => task.run(message),
-            Self::Bmt(message) => task.run(message),
-            Self::Bsp(message) => task.run(message),
+            Self::BmvFrame(message) => task.run(message),
+            Self::BmtFrame(message) => task.run(message),
+            Self::BspFrame(message) => task.run(message),
             Self::Bst(message) => task.run(message),
             Self::Cst(message) => task.run(message),
             Self::Bsd(message) => task.run(message),
             Self::Csd(message) => task.run(message),
             Self::Bem(message) => task.run(message),
             Self::Cem(message) => task.run(message),
-            Self::Dm1(message) => task.run(message),
-            Self::Dm2(message) => task.run(message),
+            Self::Dm1Frame(message) => task.run(message),
+            Self::Dm2Frame(message) => task.run(message),
             Self::Dm3(message) => task.run(message),
-            Self::Dm6(message) => task.run(message),
+            Self::Dm6Frame(message) => task.run(message),
             Self::Rqst(message) => task.run(message),
             Self::Ackm(message) => task.run(message),
             Self::TpRequestToSend(message) => task.run(message),
@@ -4537,17 +5417,17 @@ pub const MESSAGES: &[Entry<Message>] = &[
     Entry::new("State of the charging (BCS)", &[("format", 0x11)], &[], &[&Bcs::BMS_CYCLE]),
     Entry::of::<Ccs>("State of the charger while it charges (CCS)", &[("format", 0x12)], &[&Ccs::CHARGER_CYCLE]),
     Entry::of::<Bsm>("State of the battery (BSM)", &[("format", 0x13)], &[&Bsm::BMS_CYCLE]),
-    Entry::of::<Bmv>("Voltages of the cells (BMV)", &[("format", 0x15)], &[&Bmv::BMS_CYCLE]),
-    Entry::of::<Bmt>("Temperatures of the battery (BMT)", &[("format", 0x16)], &[&Bmt::BMS_CYCLE]),
-    Entry::of::<Bsp>("Reserved message of the battery (BSP)", &[("format", 0x17)], &[&Bsp::BMS_CYCLE]),
+    Entry::of::<BmvFrame>("Voltages of the cells (BMV)", &[("format", 0x15)], &[&Bmv::BMS_CYCLE]),
+    Entry::of::<BmtFrame>("Temperatures of the battery (BMT)", &[("format", 0x16)], &[&Bmt::BMS_CYCLE]),
+    Entry::of::<BspFrame>("Reserved message of the battery (BSP)", &[("format", 0x17)], &[&Bsp::BMS_CYCLE]),
     Entry::of::<Bst>("The BMS stops the charging (BST)", &[("format", 0x19)], &[&Bst::BMS_CYCLE]),
     Entry::of::<Cst>("The charger stops the charging (CST)", &[("format", 0x1A)], &[&Cst::CHARGER_CYCLE]),
     Entry::of::<Bsd>("Statistics of the BMS (BSD)", &[("format", 0x1C)], &[&Bsd::BMS_CYCLE]),
     Entry::of::<Csd>("Statistics of the charger (CSD)", &[("format", 0x1D)], &[&Csd::CHARGER_CYCLE]),
     Entry::of::<Bem>("What the BMS waited for in vain (BEM)", &[("format", 0x1E)], &[&Bem::BMS_CYCLE]),
     Entry::of::<Cem>("What the charger waited for in vain (CEM)", &[("format", 0x1F)], &[&Cem::CHARGER_CYCLE]),
-    Entry::of::<Dm1>("Current trouble codes (DM1)", &[("format", 0x20)], &[&Dm1::CHARGER_EVENT, &Dm1::BMS_EVENT]),
-    Entry::of::<Dm2>("Historic trouble codes (DM2)", &[("format", 0x21)], &[&Dm2::CHARGER_EVENT, &Dm2::BMS_EVENT]),
+    Entry::of::<Dm1Frame>("Current trouble codes (DM1)", &[("format", 0x20)], &[&Dm1::CHARGER_EVENT, &Dm1::BMS_EVENT]),
+    Entry::of::<Dm2Frame>("Historic trouble codes (DM2)", &[("format", 0x21)], &[&Dm2::CHARGER_EVENT, &Dm2::BMS_EVENT]),
     Entry::of::<Dm3>("Readiness of the diagnosis (DM3)", &[("format", 0x22)], &[&Dm3::CHARGER_EVENT, &Dm3::BMS_EVENT]),
     Entry::new(
         "Clear or reset the current trouble codes (DM4)",
@@ -4561,7 +5441,7 @@ pub const MESSAGES: &[Entry<Message>] = &[
         &[],
         &[&Dm5::CHARGER_EVENT, &Dm5::BMS_EVENT],
     ),
-    Entry::of::<Dm6>(
+    Entry::of::<Dm6Frame>(
         "Freeze frame of a trouble code (DM6)",
         &[("format", 0x25)],
         &[&Dm6::CHARGER_EVENT, &Dm6::BMS_EVENT],

@@ -41,7 +41,7 @@ impl Module {
     pub fn everything(&self) -> TokenStream {
         // What has parameters of its own is called by the runtime.
         let is_called = |function: &Function<'_>| {
-            function.signature.ident != "fmt" && function.signature.generics.params.is_empty()
+            function.signature.ident != "fmt" && function.signature.generics.type_params().next().is_none()
         };
         let functions = self.functions().filter(is_called).map(Function::call);
         let transport = quote!(calls::transport(); calls::isotp(););
@@ -152,6 +152,7 @@ fn unknown_receiver(kind: &ReceiverKind) -> TokenStream {
 fn unknown(argument: &Type) -> TokenStream {
     match argument {
         Type::Reference(reference) if text(&reference.elem) == "str" => quote!(unknown()),
+        Type::Reference(reference) if text(&reference.elem) == "[u8]" => quote!(&mut unknown::<[u8; 2048]>()),
         Type::Reference(reference) => {
             let (mutability, value) = (&reference.mutability, unknown(&reference.elem));
             quote!(&#mutability #value)
@@ -172,6 +173,8 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("Layout") => quote!(calls::layout::<#owner>();),
         Some("LongLayout") => quote!(calls::long_layout::<#owner>();),
         Some("Parted") => quote!(calls::parted::<#owner>();),
+        Some("Transport") => quote!(calls::transfers::<#owner>();),
+        Some("Transferred") => quote!(calls::transferred::<#owner>();),
         Some("Destination") => quote!(calls::questions::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
         Some("FrameSet") => quote!(calls::assembler::<#owner>();),

@@ -37,10 +37,10 @@ fn decoded(candidates: &[Candidate]) -> TokenStream {
 }
 
 /// Decodes the message of a kind of frame from the data.
-fn candidate(Candidate { kind, home, exchange, variant, carries, sized }: &Candidate) -> TokenStream {
+fn candidate(Candidate { kind, owner, exchange, variant, carries, sized }: &Candidate) -> TokenStream {
     let carried = carries.then(|| quote!((frame.values())));
     let lengths = sized.iter().map(|own| quote!(.of_lengths(#own::LENGTHS)));
-    quote!(frame #(#lengths)* .#kind(&#home::#exchange, Self::#variant #carried))
+    quote!(frame #(#lengths)* .#kind(&#owner::#exchange, Self::#variant #carried))
 }
 
 /// Emits the functions that return the lengths of frames by the constants of the identifier.

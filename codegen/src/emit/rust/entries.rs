@@ -14,13 +14,13 @@ pub fn entries(messages: &[Message]) -> TokenStream {
     }
 }
 
-fn entry(Message { home, title, constants, signals, exchanges, structs, .. }: &Message) -> TokenStream {
+fn entry(Message { home, owner, title, constants, signals, exchanges, structs, .. }: &Message) -> TokenStream {
     let has_all = structs.iter().any(|own| own.is_home && own.signals.len() == signals.len());
     let exchanges = exchanges.iter().map(|exchange| &exchange.constant);
     let constants = constants.iter().map(|(name, value)| quote!((#name, #value)));
     if has_all && !signals.is_empty() {
-        return quote!(Entry::of::<#home>(#title, &[#(#constants),*], &[#(&#home::#exchanges),*]));
+        return quote!(Entry::of::<#home>(#title, &[#(#constants),*], &[#(&#owner::#exchanges),*]));
     }
     let signals = signals.iter().map(|signal| &signal.constant);
-    quote!(Entry::new(#title, &[#(#constants),*], &[#(&#home::#signals),*], &[#(&#home::#exchanges),*]))
+    quote!(Entry::new(#title, &[#(#constants),*], &[#(&#home::#signals),*], &[#(&#owner::#exchanges),*]))
 }

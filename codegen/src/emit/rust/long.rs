@@ -4,24 +4,36 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::derives::Derives;
+use super::exchange::exchange;
 use super::message::{kinds, request, special_value, value};
 use super::plan::literal::decimal;
-use super::plan::long::{Field, Long, Row, Step};
+use super::plan::long::{Field, Length, Long, Row, Step};
+use super::plan::message::Message;
 use super::plan::signal::Member;
 use super::scales;
+use super::transport::{sent, transferred};
 
 /// The longest array that `serde` knows.
 const LONGEST_OF_SERDE: usize = 32;
 
 /// Emits the struct of a long message.
-pub fn long(long: &Long, derives: Derives) -> TokenStream {
+pub fn long(message: &Message, long: &Long, derives: Derives) -> TokenStream {
     let (definition, layout) = (definition(long, derives), layout(long));
-    let Long { name, fields, requests, .. } = long;
+    let Long { name, fields, requests, transfer, .. } = long;
+    let exchanges = message.exchanges.iter().filter(|_| *name == message.owner).map(exchange);
+    let transfers = transfer.iter().flat_map(|transfer| transfer.requests.iter().map(|own| sent(own, transfer)));
+    let transferred = transfer.as_ref().map(|transfer| transferred(name, transfer));
     let (signals, requests) = (fields.iter().map(signal), requests.iter().map(request));
     let by_model = fields.iter().filter(|field| field.row.is_none());
     let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));
     let optional = derives.long_message(name);
-    quote!(#definition impl #name { #(#signals)* #(#requests)* #(#by_model)* } #layout #optional)
+    quote! {
+        #definition
+        impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#transfers)* #(#by_model)* }
+        #layout
+        #transferred
+        #optional
+    }
 }
 
 fn definition(Long { name, comment, fields, is_exact, .. }: &Long, derives: Derives) -> TokenStream {
@@ -75,6 +87,12 @@ fn signal(Field { signal, start, row }: &Field) -> TokenStream {
 /// Emits how the joined data are read and written.
 fn layout(long: &Long) -> TokenStream {
     let Long { name, message, fields, shortest, longest, .. } = long;
+    let blank = long.are_ones.then(|| {
+        quote!(
+            const BLANK: u8 = 0xFF;
+        )
+    });
+    let end = end(long);
     let [shortest, longest] = [shortest, longest].map(|length| Literal::usize_unsuffixed(*length));
     let varying = long.elements.map(|elements| varying(long, elements));
     let Varying { constants, count } = varying.unwrap_or_default();
@@ -83,12 +101,14 @@ fn layout(long: &Long) -> TokenStream {
     let decode = if count.is_empty() { values } else { quote!({ #count #values }) };
     let mut writes: Vec<_> = fields.iter().map(write).collect();
     let last = writes.pop();
-    let encode = if writes.is_empty() { quote!(#last) } else { quote!({ #(#writes?;)* #last }) };
+    let is_short = writes.is_empty() && end.is_none();
+    let encode = if is_short { quote!(#last) } else { quote!({ #end #(#writes?;)* #last }) };
     quote! {
         impl LongLayout for #name {
             const MESSAGE: &'static str = #message;
             const SHORTEST: usize = #shortest;
             const LONGEST: usize = #longest;
+            #blank
             #constants
             const DECODE: fn(&[u8]) -> Self = |data| #decode;
             const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| #encode;
@@ -125,7 +145,11 @@ fn varying(Long { fields, shortest, .. }: &Long, [least, most]: [usize; 2]) -> V
 
 /// Emits how a field is read.
 fn read(Field { signal, row, .. }: &Field) -> TokenStream {
-    let (constant, Member { name, get, is_optional, .. }) = (&signal.constant, &signal.member);
+    let (constant, Member { name, get, is_optional, is_at_end, .. }) = (&signal.constant, &signal.member);
+    if *is_at_end {
+        let method = if row.is_some() { quote!(read_optional_array) } else { quote!(read_optional) };
+        return quote!(#name: Self::#constant.#method(data, Signal::#get));
+    }
     // All eight bytes are there, so only the value can be missing.
     let get = if *is_optional { quote!(|signal, data| signal.#get(data, 8)) } else { quote!(Signal::#get) };
     let value = match row {
@@ -144,4 +168,18 @@ fn write(Field { signal, row, .. }: &Field) -> TokenStream {
         Some(Row { varies: true, .. }) => quote!(Self::#constant.write_some(&message.#name, payload, Signal::#put)),
         Some(Row { varies: false, .. }) => quote!(Self::#constant.write_all(&message.#name, payload, Signal::#put)),
     }
+}
+
+/// Emits how long the message is that has the values which are there.
+fn end(Long { fields, shortest, lengths, .. }: &Long) -> Option<TokenStream> {
+    let cases = lengths.iter().filter(|length| !length.added.is_empty()).map(|Length { bytes, added }| {
+        let bytes = Literal::usize_unsuffixed(*bytes);
+        let members = added.iter().map(|(field, index)| {
+            let (name, index) = (&fields[*field].signal.member.name, index.map(Literal::usize_unsuffixed).into_iter());
+            quote!(message.#name #([#index])*)
+        });
+        quote!(if #(#members.is_some())||* { payload.end_after(#bytes); })
+    });
+    let shortest = Literal::usize_unsuffixed(*shortest);
+    (!lengths.is_empty()).then(|| quote!(payload.end_after(#shortest); #(#cases)*))
 }

@@ -18,7 +18,7 @@ pub fn message(message: &Message, derives: Derives) -> TokenStream {
         let optional = derives.message(&own.name, own.signals.is_empty());
         quote!(#definition #constants #layout #optional)
     });
-    let whole = message.long.as_ref().map(|whole| long(whole, derives));
+    let whole = message.long.as_ref().map(|whole| long(message, whole, derives));
     quote!(#whole #(#structs)*)
 }
 
@@ -46,7 +46,7 @@ fn constants(message: &Message, own: &Struct) -> TokenStream {
     let owner = if *is_home { quote!(Self) } else { message.home.to_token_stream() };
     let by_model = own.signals.iter().filter_map(|id| scales::methods(&message.signals[*id], &owner));
     let reserved = reserved.iter().map(|(comment, bits)| quote!(#comment pub const RESERVED: Data = #bits;));
-    let exchanges = message.exchanges.iter().filter(|_| *is_home).map(exchange);
+    let exchanges = message.exchanges.iter().filter(|_| *name == message.owner).map(exchange);
     let requests = requests.iter().map(request);
     let of_model = within.as_ref().map(|Within { requests, .. }| {
         let requests = requests.iter().map(request_of_model);

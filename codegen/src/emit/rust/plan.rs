@@ -19,6 +19,7 @@ pub mod scales;
 pub mod selector;
 pub mod set;
 pub mod signal;
+pub mod transport;
 mod types;
 mod unit;
 pub mod usage;
@@ -40,6 +41,7 @@ use recognition::Direction;
 use selector::{InData, Selectors, Source};
 use set::Set;
 use signal::Context;
+use transport::Transport;
 use types::Types;
 use variant::Variant;
 use word::{Enumeration, Packed, StatusWord};
@@ -78,6 +80,8 @@ pub struct Plan {
     pub sets: Table<MessageId, Option<Set>>,
     /// How frames carry long messages.
     pub carriers: Table<LongMessageId, Option<Carrier>>,
+    /// Transports of long messages.
+    pub transports: Vec<Transport>,
     /// The variants of the enum of all messages.
     pub variants: Vec<Variant>,
     /// How requests are recognised, if there are any.
@@ -111,6 +115,7 @@ impl Plan {
         let planner_of_parts =
             carrier::Planner { protocol, types, models: &models, messages: &messages, variants: &variants };
         let carriers = protocol.long_messages.ids().map(|id| planner_of_parts.carrier(id)).collect();
+        let transports = protocol.transports.ids().map(|id| Transport::new(protocol, types, &messages, id)).collect();
         let address_types = protocol.address_types.iter().zip(addresses);
         Self {
             base: Base::new(&protocol.identifier),
@@ -127,6 +132,7 @@ impl Plan {
             packed: Packed::all(protocol, types),
             sets,
             carriers,
+            transports,
             variants,
             requests: planner.direction(&course.requests),
             replies: planner.direction(&course.replies),

@@ -64,7 +64,7 @@ impl Planner<'_> {
         let known: Vec<_> = parts.iter().chain(counting).cloned().collect();
         let count = long.parts_of(long.longest());
         Some(Carrier {
-            whole: self.types.long[&id].clone(),
+            whole: self.types.long[id].clone(),
             part: frame.home.clone(),
             number: frame.signals[rule.number].constant.clone(),
             data: frame.signals[rule.data].constant.clone(),

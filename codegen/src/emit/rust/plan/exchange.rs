@@ -134,16 +134,16 @@ impl Way {
 }
 
 fn frames(protocol: &Protocol, message: &Message, exchange: ExchangeId) -> Vec<Shown> {
-    let frames = protocol.frames_of(message).filter(|frame| frame.exchange == exchange);
-    let frames = frames.map(|frame| Shown::new(message, frame));
+    let frames = protocol.layouts_of(message).filter(|frame| frame.exchange == exchange);
+    let frames = frames.map(|frame| Shown::new(message, frame, protocol.carried(frame).is_some()));
     frames.chain(Shown::whole(protocol, message)).collect()
 }
 
 impl Shown {
-    fn new(message: &Message, frame: &FrameLayout) -> Self {
+    fn new(message: &Message, frame: &FrameLayout, is_long: bool) -> Self {
         Self {
             kind: frame.kind,
-            has_values: frame.is_to_module() && !frame.signals.is_empty(),
+            has_values: frame.is_to_module() && (is_long || !frame.signals.is_empty()),
             selectors: frame.selectors.clone(),
             constants: frame.constants.iter().copied().filter(|known| !message.constants.contains(known)).collect(),
         }

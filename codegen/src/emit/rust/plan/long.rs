@@ -28,8 +28,32 @@ pub struct Long {
     pub longest: usize,
     /// The least and the greatest number of elements of arrays that vary in length.
     pub elements: Option<[usize; 2]>,
+    /// The numbers of data bytes that it can have beside the shortest, the least first.
+    pub lengths: Vec<Length>,
+    /// Whether bits that no field has are sent as 1.
+    pub are_ones: bool,
     /// The methods that build requests.
     pub requests: Vec<Request>,
+    /// How it travels, if a transport carries it.
+    pub transfer: Option<Transfer>,
+}
+
+/// How a transport carries a long message.
+pub struct Transfer {
+    /// The transport.
+    pub transport: Ident,
+    /// The numbers of data bytes that it can have, if the spec lists them.
+    pub sizes: Vec<u16>,
+    /// The methods that send it to a module.
+    pub requests: Vec<Request>,
+}
+
+/// A number of data bytes that a message can have.
+pub struct Length {
+    /// The number.
+    pub bytes: usize,
+    /// The fields that end there, or the numbers of elements from 0.
+    pub added: Vec<(usize, Option<usize>)>,
 }
 
 /// A signal that stands alone, or an array.
@@ -67,7 +91,9 @@ impl Long {
         name: &Ident,
         (comment, requests): (Comment, Vec<Request>),
         signals: Vec<(Signal, SignalId)>,
+        transfer: Option<Transfer>,
     ) -> Self {
+        let lengths = lengths(long, &signals);
         let fields: Vec<_> = signals.into_iter().map(|(signal, id)| Field::new(&long.content, signal, id)).collect();
         Self {
             id,
@@ -76,12 +102,32 @@ impl Long {
             message: long.content.name.clone(),
             is_exact: fields.iter().all(|field| field.signal.coding.is_exact()),
             fields,
-            shortest: long.bytes_with(Some(0)),
+            shortest: long.lengths.first().map_or_else(|| long.bytes_with(Some(0)), |length| usize::from(*length)),
             longest: long.longest(),
             elements: long.varying().and_then(|array| Some([array.least?, array.elements.len()])),
+            lengths,
+            are_ones: long.content.reserved.are_ones,
             requests,
+            transfer,
         }
     }
+}
+
+/// Returns the lengths of a message but for the shortest, and what shorter messages lack.
+fn lengths(long: &LongMessage, fields: &[(Signal, SignalId)]) -> Vec<Length> {
+    let lengths = || long.lengths.iter().map(|length| usize::from(*length));
+    let longer = lengths().zip(lengths().skip(1)).map(|(shorter, bytes)| {
+        let ends_here = |id: &SignalId| (shorter + 1..=bytes).contains(&long.content[*id].reach());
+        let added = fields.iter().enumerate().flat_map(|(place, (_, first))| {
+            let array = long.content.array_of(&long.content[*first]);
+            let alone = (array.is_none() && ends_here(first)).then_some((place, None));
+            let elements = array.into_iter().flat_map(|array| array.elements.iter().enumerate());
+            let elements = elements.filter(move |(_, id)| ends_here(id)).map(move |(index, _)| (place, Some(index)));
+            alone.into_iter().chain(elements)
+        });
+        Length { bytes, added: added.collect() }
+    });
+    longer.collect()
 }
 
 impl Field {

@@ -6,7 +6,7 @@ use quote::quote;
 use super::doc::{self, Comment};
 use super::exchange::{Accesses, Exchange, exchange_name};
 use super::literal;
-use super::long::Long;
+use super::long::{Long, Transfer};
 use super::models::depends_on_model;
 use super::naming::Pool;
 use super::selector::Selectors;
@@ -18,6 +18,8 @@ use crate::model::{self, ExchangeId, FrameLayout, Kind, LongMessageId, MessageId
 pub struct Message {
     /// The struct of its own.
     pub home: Ident,
+    /// The struct that has its exchanges.
+    pub owner: Ident,
     /// First paragraphs of the comment of its own struct.
     pub paragraphs: Vec<String>,
     /// Its title in the list of all messages.
@@ -32,7 +34,7 @@ pub struct Message {
     pub methods: Table<ExchangeId, Ident>,
     /// Its structs.
     pub structs: Vec<Struct>,
-    /// What its frames carry together, if each carries a part.
+    /// What its frames carry together, if it can be longer than one.
     pub long: Option<Long>,
 }
 
@@ -118,10 +120,13 @@ impl Planner<'_> {
         let constants = names.map(|name| members.take(name.to_ascii_uppercase(), "_EXCHANGE"));
         let methods = names.map(|name| members.take(name.clone(), "_request"));
         let ways = Ways { constants: &constants, methods: &methods };
-        let structs = types.structs[id].iter().map(|own| self.structure(id, &signals, &ways, own)).collect();
-        let long = protocol.in_parts(known).map(|long| self.long(id, long, &ways));
+        let long = known.long.map(|long| self.long(id, long, &ways));
+        let is_other = |own: &&types::Struct| long.as_ref().is_none_or(|long| long.name != own.name);
+        let structs = types.structs[id].iter().filter(is_other);
+        let structs = structs.map(|own| self.structure(id, &signals, &ways, own)).collect();
         Message {
             home: home.clone(),
+            owner: types.owner(protocol, id).clone(),
             paragraphs: usage::paragraphs(protocol, self.accesses, id),
             title: doc::plain_title(&known.doc, &known.name),
             constants: self.constants(known),
@@ -149,8 +154,8 @@ impl Planner<'_> {
         let Context { protocol, types, .. } = *self.context;
         let home = types.home(id);
         let is_home = own.name == *home;
-        let host =
-            Host { id, name: &own.name, is_home, is_whole: is_home && protocol.in_parts(&protocol[id]).is_none() };
+        let is_whole = is_home && protocol[id].long.is_none();
+        let host = Host { id, name: &own.name, is_home, is_whole };
         let hosted: Vec<_> = self.hosted(&host).collect();
         let dependent: Vec<_> = hosted.iter().filter(|frame| depends_on_model(protocol, frame)).copied().collect();
         let frame = protocol.frames_of(&protocol[id]).find(|frame| frame.signals == own.signals);
@@ -175,8 +180,10 @@ impl Planner<'_> {
     /// Describes a struct; what holds for the whole message stands at its own.
     fn comment(&self, host: &Host, own: &types::Struct) -> Comment {
         let Context { protocol, types, .. } = *self.context;
-        if let Some(long) = protocol.in_parts(&protocol[host.id]) {
-            return Comment::line(format!("A part of [`{}`], as a frame carries it.", types.long[&long]));
+        if let Some(long) = protocol[host.id].long {
+            let (whole, is_part) = (&types.long[long], protocol[long].parts().is_some());
+            let sentence = if is_part { "A part of [`{}`], as a frame carries it." } else { "[`{}`] in one frame." };
+            return Comment::line(sentence.replace("{}", &whole.to_string()));
         }
         if host.is_home {
             return Comment::new(usage::paragraphs(protocol, self.accesses, host.id));
@@ -203,12 +210,41 @@ impl Planner<'_> {
     /// Plans what the frames of a message carry together.
     fn long(&self, id: MessageId, long: LongMessageId, ways: &Ways) -> Long {
         let Context { protocol, types, .. } = *self.context;
-        let mut members = Pool::with_members(ways.methods.iter().map(Ident::to_string));
-        let host = Host { id, name: &types.long[&long], is_home: false, is_whole: true };
+        let of_transport = ways.constants.iter().filter(|_| protocol[long].transport().is_some());
+        let mut members = Pool::with_members(ways.methods.iter().chain(of_transport).map(Ident::to_string));
+        let host = Host { id, name: &types.long[long], is_home: false, is_whole: true };
         let comment = Comment::new(usage::paragraphs(protocol, self.accesses, id));
         let requests = self.hosted(&host).map(|frame| self.request(&host, ways, frame)).collect();
-        let signals = self.context.long_signals(&protocol[long].content, &mut members);
-        Long::new((long, &protocol[long]), host.name, (comment, requests), signals)
+        let signals = self.context.long_signals(&protocol[long], &mut members);
+        let transfer = self.transfer(&host, long, ways);
+        Long::new((long, &protocol[long]), host.name, (comment, requests), signals, transfer)
+    }
+
+    /// Plans how a transport carries a long message.
+    fn transfer(&self, host: &Host, long: LongMessageId, ways: &Ways) -> Option<Transfer> {
+        let Context { protocol, types, .. } = *self.context;
+        let transport = protocol[long].transport()?;
+        let to_module = protocol[long].frames.iter().filter(|frame| frame.is_to_module() && frame.set.is_none());
+        Some(Transfer {
+            transport: types.transports[transport].clone(),
+            sizes: protocol[long].lengths.clone(),
+            requests: to_module.map(|frame| self.sending(host, ways, frame)).collect(),
+        })
+    }
+
+    /// Plans the method that sends what can be longer than a frame.
+    fn sending(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
+        let shared = self.accesses.constant(frame.message, frame.exchange);
+        let access = &self.context.protocol[frame.access].name;
+        let first = format!(
+            "Returns what sends the {} [`{access}`]({shared}) with these values. The data are written to \
+             `buffer`, for which `LONGEST` bytes are enough.",
+            frame.kind.name()
+        );
+        let errors = "Refuses values outside their limits, other addressing modes, undocumented addresses, and a \
+                      buffer with too few bytes.";
+        let comment = Comment::new([first, "# Errors".to_owned(), errors.to_owned()]);
+        Request { comment, carries: true, ..self.request(host, ways, frame) }
     }
 
     fn request(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
@@ -231,12 +267,12 @@ impl Planner<'_> {
 
     /// Plans the method that builds a request to a device model.
     fn request_of_model(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
-        let home = self.context.types.home(host.id);
+        let owner = self.context.types.owner(self.context.protocol, host.id);
         let exchange = &ways.constants[frame.exchange];
         let reply = self.reply(frame).map_or_else(|| quote!(()), |name| quote!(#name));
         Request {
             comment: Comment::new(self.request_comment(frame, " with these values", "")),
-            exchange: quote!(#home::#exchange),
+            exchange: quote!(#owner::#exchange),
             reply,
             ..self.request(host, ways, frame)
         }
@@ -264,8 +300,9 @@ impl Planner<'_> {
 
     /// Returns the path to the exchange by which a kind of frame travels, from the struct that hosts its method.
     fn exchange_path(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> TokenStream {
-        let (home, exchange) = (self.context.types.home(host.id), &ways.constants[frame.exchange]);
-        if host.is_home { quote!(Self::#exchange) } else { quote!(#home::#exchange) }
+        let owner = self.context.types.owner(self.context.protocol, host.id);
+        let exchange = &ways.constants[frame.exchange];
+        if host.name == owner { quote!(Self::#exchange) } else { quote!(#owner::#exchange) }
     }
 }
 

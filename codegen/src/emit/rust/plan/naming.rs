@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 84] = [
+const TAKEN: [&str; 85] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -92,6 +92,7 @@ const TAKEN: [&str; 84] = [
     "Target",
     "Task",
     "Text",
+    "Transferred",
     "Who",
     "Within",
     "Word",

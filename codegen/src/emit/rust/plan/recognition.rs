@@ -37,7 +37,7 @@ pub struct Candidate {
     /// The function for its kind.
     pub kind: Ident,
     /// The struct that has its exchange.
-    pub home: Ident,
+    pub owner: Ident,
     /// The exchange.
     pub exchange: Ident,
     /// The variant.
@@ -81,7 +81,7 @@ impl Planner<'_> {
         let message = &self.messages[layout.message];
         Candidate {
             kind: ident(layout.kind.name()),
-            home: message.home.clone(),
+            owner: message.owner.clone(),
             exchange: message.exchanges[layout.exchange].constant.clone(),
             variant: frame.variant.clone(),
             carries: frame.carried.is_some(),

@@ -107,14 +107,14 @@ impl Planner<'_> {
         };
         let reply = *message.frames.iter().find(is_reply)?;
         let FrameTypes { variant, carried, .. } = &self.types.frames[reply];
-        let (home, exchange) = (&known.home, &known.exchanges[self.protocol[reply].exchange].constant);
+        let (owner, exchange) = (&known.owner, &known.exchanges[self.protocol[reply].exchange].constant);
         Some(Member {
             field: ident(&message.name),
             comment: Comment::line(doc::sentence_of(&doc::title(&message.doc, &message.name))),
             name: message.name.clone(),
-            kind: carried.as_ref().unwrap_or(home).clone(),
+            kind: carried.as_ref().unwrap_or(&known.home).clone(),
             variant: variant.clone(),
-            exchange: quote!(#home::#exchange),
+            exchange: quote!(#owner::#exchange),
         })
     }
 

@@ -13,7 +13,9 @@ use super::scales::Scales;
 use super::types::Types;
 use super::unit::Unit;
 use crate::emit::Scaled;
-use crate::model::{self, Array, Lacking, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table};
+use crate::model::{
+    self, Array, Lacking, LongMessage, Message, MessageId, NamedValue, Protocol, Range, SignalId, Table,
+};
 use crate::syntax::tree::Path;
 
 /// A signal.
@@ -98,6 +100,32 @@ struct Names {
     values: Vec<Ident>,
 }
 
+/// What carries signals, and the numbers of data bytes that it can have.
+struct Content<'a> {
+    message: &'a Message,
+    /// The least first.
+    lengths: Vec<usize>,
+    /// What it is in texts.
+    carriers: &'static str,
+}
+
+impl<'a> Content<'a> {
+    fn of_frames(message: &'a Message) -> Self {
+        let lengths = message.lengths.iter().map(|length| usize::from(*length)).collect();
+        Self { message, lengths, carriers: "frames" }
+    }
+
+    fn of_long(long: &'a LongMessage) -> Self {
+        let lengths = long.lengths.iter().map(|length| usize::from(*length)).collect();
+        Self { message: &long.content, lengths, carriers: "messages" }
+    }
+
+    /// Tests whether it can lack a signal because it is short.
+    fn lacks(&self, signal: &model::Signal) -> bool {
+        self.lengths.first().is_some_and(|shortest| signal.reach() > *shortest)
+    }
+}
+
 /// What the signals of a protocol are planned from.
 pub struct Context<'a> {
     /// The protocol.
@@ -117,26 +145,27 @@ impl Context<'_> {
         let constants = message.signals.map(|known| constant(&known.name, members));
         let of_array = |array: &Array, fields: &mut Pool| fields.take(self.name(message, array.elements[0]), "_");
         let arrays = message.arrays.map(|array| of_array(array, &mut fields));
+        let content = Content::of_frames(message);
         let signals = message.signals.entries().map(|(signal, known)| {
             let field = match known.element {
                 Some(element) => arrays[element.array].clone(),
                 None => fields.take(self.name(message, signal), "_"),
             };
             let words = self.types.words(self.types.packed[id][signal].as_ref());
-            self.named(message, known, (constants[signal].clone(), field), &words, members)
+            self.named(&content, known, (constants[signal].clone(), field), &words, members)
         });
         signals.collect()
     }
 
     /// Plans the signals of what several frames carry together. The elements of an array are one.
-    pub fn long_signals(&self, message: &Message, members: &mut Pool) -> Vec<(Signal, SignalId)> {
-        let mut fields = Pool::default();
+    pub fn long_signals(&self, long: &LongMessage, members: &mut Pool) -> Vec<(Signal, SignalId)> {
+        let (content, message, mut fields) = (Content::of_long(long), &long.content, Pool::default());
         let is_first = |signal: &model::Signal| signal.element.is_none_or(|element| element.index == 0);
         let first = message.signals.entries().filter(|(_, signal)| is_first(signal));
         let signals = first.map(|(id, known)| {
             let row = model::Signal { name: message.field_name(known).to_owned(), ..known.clone() };
             let names = (constant(&row.name, members), fields.take(self.name(message, id), "_"));
-            (self.named(message, &row, names, &self.types.words(None), members), id)
+            (self.named(&content, &row, names, &self.types.words(None), members), id)
         });
         signals.collect()
     }
@@ -144,20 +173,20 @@ impl Context<'_> {
     /// Plans a signal that has the names of its constant and of its member.
     fn named(
         &self,
-        message: &Message,
+        content: &Content,
         known: &model::Signal,
         (constant, field): (Ident, Ident),
         words: &WordTypes,
         members: &mut Pool,
     ) -> Signal {
         let values = named_values(known).iter().map(|special| {
-            let name = format!("{}_{}", message.field_name(known), special.name);
+            let name = format!("{}_{}", content.message.field_name(known), special.name);
             members.take(name.to_ascii_uppercase(), "_VALUE")
         });
         let names = Names { constant, field, values: values.collect() };
         let coding = Coding::new(self.protocol, words, known, self.scaled);
-        let scales = Scales::new(self.protocol, (self.models, self.scaled), message, known, members);
-        self.signal(message, known, (names, scales), coding)
+        let scales = Scales::new(self.protocol, (self.models, self.scaled), content.message, known, members);
+        self.signal(content, known, (names, scales), coding)
     }
 
     /// Names the member of a signal.
@@ -167,11 +196,12 @@ impl Context<'_> {
 
     fn signal(
         &self,
-        message: &Message,
+        content: &Content,
         signal: &model::Signal,
         (Names { constant, field, values }, scales): (Names, Option<Scales>),
         coding: Coding,
     ) -> Signal {
+        let message = content.message;
         let range = signal.hull(self.protocol.models_of(message));
         let range = range.map(|range| coding.limits.range(signal, range));
         let special = |(special, name)| Special::new(name, message, signal, &coding, special);
@@ -192,7 +222,7 @@ impl Context<'_> {
             is_by_model: !signal.encoding.by_model().is_empty(),
             scales,
             values: named_values(signal).iter().zip(values).map(special).collect(),
-            member: self.member(message, signal, field, &coding, range),
+            member: self.member(content, signal, field, &coding, range),
             constant,
             coding,
         }
@@ -209,16 +239,17 @@ impl Context<'_> {
 
     fn member(
         &self,
-        message: &Message,
+        content: &Content,
         signal: &model::Signal,
         name: Ident,
         coding: &Coding,
         range: Option<Range>,
     ) -> Member {
-        let is_at_end = elements(message, signal).any(|element| message.is_optional(element));
+        let message = content.message;
+        let is_at_end = elements(message, signal).any(|element| content.lacks(element));
         let is_optional = is_at_end || signal.has_absent;
         let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
-        let sentence = self.sentence(message, signal, coding, range);
+        let sentence = self.sentence(content, signal, coding, range);
         let paragraphs = doc::paragraphs(self.protocol, doc, &sentence, Some(&message.doc));
         let comment = Comment::new(paragraphs.into_iter().chain(type_notes(self.protocol, signal, coding)));
         let [get, put] = coding.methods().map(|name| if is_optional { format_ident!("{name}_some") } else { name });
@@ -226,11 +257,12 @@ impl Context<'_> {
         Member { name, index, comment, kind: coding.value(), is_optional, is_at_end, get, put }
     }
 
-    fn sentence(&self, message: &Message, signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
+    fn sentence(&self, content: &Content, signal: &model::Signal, coding: &Coding, range: Option<Range>) -> String {
+        let message = content.message;
         let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
         let (title, unit) = (doc::title(doc, message.field_name(signal)), Unit::new(signal, self.scaled).phrase);
         let range = range.map(|range| format!("`{}..={}`", range.minimum, range.maximum));
-        let (place, optional) = (Some(places(message, signal)), optional(message, signal));
+        let (place, optional) = (Some(places(message, signal)), optional(content, signal));
         let only = only_on(self.protocol, signal);
         let facts = [place, varying(message, signal), optional, coding.step.clone(), range, specials(signal), only];
         let facts: Vec<_> = facts.into_iter().flatten().collect();
@@ -291,20 +323,21 @@ fn varying(message: &Message, signal: &model::Signal) -> Option<String> {
     Some(format!("{} to {} elements", array.least?, array.elements.len()))
 }
 
-/// Says which frames lack a signal, or elements of its array.
-fn optional(message: &Message, signal: &model::Signal) -> Option<String> {
-    let mut all: Vec<_> = elements(message, signal).map(|element| least(message, element)).collect();
+/// Says which frames or messages lack a signal, or elements of its array.
+fn optional(content: &Content, signal: &model::Signal) -> Option<String> {
+    let carriers = content.carriers;
+    let mut all: Vec<_> = elements(content.message, signal).map(|element| least(content, element)).collect();
     all.dedup();
     match all.as_slice() {
-        [frames] => message.is_optional(signal).then(|| format!("only in frames of {frames} bytes")),
-        _ => Some("not all of them in shorter frames".to_owned()),
+        [bytes] => content.lacks(signal).then(|| format!("only in {carriers} of {bytes} bytes")),
+        _ => Some(format!("not all of them in shorter {carriers}")),
     }
 }
 
-/// Returns the numbers of data bytes with which a message's frame has a signal.
-fn least(message: &Message, signal: &model::Signal) -> String {
-    let lengths = message.lengths.iter().filter(|length| **length >= signal.end());
-    lengths.map(u8::to_string).collect::<Vec<_>>().join(" or ")
+/// Returns the numbers of data bytes with which a signal is there.
+fn least(content: &Content, signal: &model::Signal) -> String {
+    let lengths = content.lengths.iter().filter(|length| **length >= signal.reach());
+    lengths.map(usize::to_string).collect::<Vec<_>>().join(" or ")
 }
 
 /// Names the only device models that have a signal.

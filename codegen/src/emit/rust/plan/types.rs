@@ -1,7 +1,5 @@
 //! The types of a module, each with its own name, and the type that each frame carries.
 
-use std::collections::BTreeMap;
-
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
@@ -9,7 +7,7 @@ use super::encoding::WordTypes;
 use super::naming::{Pool, camel_case};
 use crate::model::{
     EnumerationId, FrameId, FrameLayout, Kind, LongMessageId, Message, MessageId, Protocol, Signal, SignalId,
-    StatusWordId, Table,
+    StatusWordId, Table, TransportId,
 };
 
 /// The types of a module.
@@ -23,8 +21,10 @@ pub struct Types {
     /// Structs of messages, one for each set of signals that some frame carries. The first one is
     /// the message's own.
     pub structs: Table<MessageId, Vec<Struct>>,
-    /// Structs of what the parts of messages carry together.
-    pub long: BTreeMap<LongMessageId, Ident>,
+    /// Structs of what several frames carry together.
+    pub long: Table<LongMessageId, Ident>,
+    /// Transports.
+    pub transports: Table<TransportId, Ident>,
     /// How frames look in the enum of all messages.
     pub frames: Table<FrameId, FrameTypes>,
 }
@@ -53,9 +53,9 @@ impl Types {
     /// Names the types.
     pub fn new(protocol: &Protocol) -> Self {
         let mut pool = Pool::of_types();
-        let in_parts = protocol.long_messages.entries().filter(|(_, long)| long.parts().is_some());
-        let long = in_parts.map(|(id, long)| (id, pool.take(camel_case(&long.content.name), "Message"))).collect();
-        let structs = protocol.messages.map(|message| structs(protocol, message, &mut pool));
+        let long = protocol.long_messages.map(|long| pool.take(camel_case(&long.content.name), "Message"));
+        let structs = protocol.messages.map(|message| structs(protocol, message, &long, &mut pool));
+        let transports = protocol.transports.map(|known| pool.take(camel_case(&known.name), "Transport"));
         let mut named = |name: &str, suffix| pool.take(camel_case(name), suffix);
         let enumerations = protocol.enumerations.map(|known| named(&known.name, "Value"));
         let status_words = protocol.status_words.map(|word| named(&word.name, "Word"));
@@ -63,7 +63,13 @@ impl Types {
         let taken = structs.iter().flatten().map(|known: &Struct| known.name.to_string());
         let mut variants = Pool::without(taken);
         let frames = protocol.frames.map(|frame| FrameTypes::new(protocol, &structs, frame, &mut variants));
-        Self { enumerations, status_words, packed, structs, long, frames }
+        Self { enumerations, status_words, packed, structs, long, transports, frames }
+    }
+
+    /// Returns the struct that has the exchanges of a message: that of the whole, if a transport carries it, or else
+    /// the message's own.
+    pub fn owner(&self, protocol: &Protocol, message: MessageId) -> &Ident {
+        protocol.by_transport(&protocol[message]).map_or_else(|| self.home(message), |long| &self.long[long])
     }
 
     /// Returns the message's own struct.
@@ -85,7 +91,13 @@ impl Types {
 
 /// Names a struct for each set of signals, the largest first. A message without signals has an
 /// empty struct. What several frames carry together has the name of the message, and each frame a part.
-fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Struct> {
+/// A message that no frame has room for has only that struct.
+fn structs(
+    protocol: &Protocol,
+    message: &Message,
+    long: &Table<LongMessageId, Ident>,
+    types: &mut Pool,
+) -> Vec<Struct> {
     let mut sets: Vec<&FrameLayout> = Vec::new();
     for frame in protocol.frames_of(message) {
         if !frame.signals.is_empty() && !sets.iter().any(|known| known.signals == frame.signals) {
@@ -94,11 +106,19 @@ fn structs(protocol: &Protocol, message: &Message, types: &mut Pool) -> Vec<Stru
     }
     sets.sort_by_key(|frame| std::cmp::Reverse(frame.signals.len()));
     let first = sets.first().map(|frame| frame.signals.clone()).unwrap_or_default();
+    let transferred = protocol.by_transport(message);
+    if let (Some(id), true) = (transferred, first.is_empty()) {
+        return vec![Struct { name: long[id].clone(), text: message.name.clone(), signals: first }];
+    }
     let mut named = |text: String, signals| {
         let name = types.take(camel_case(&text), "Message");
         Struct { name, text, signals }
     };
-    let part = if protocol.in_parts(message).is_some() { "_part" } else { "" };
+    let part = match (protocol.in_parts(message), transferred) {
+        (Some(_), _) => "_part",
+        (None, Some(_)) => "_frame",
+        (None, None) => "",
+    };
     let own = named(format!("{}{part}", message.name), first);
     let others = sets
         .iter()
