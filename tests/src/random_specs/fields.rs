@@ -255,7 +255,7 @@ impl Draft {
         if self.chance(10) {
             return field.put("status", status);
         }
-        let row = if bits > 4 && self.chance(20) { self.random.u8(2..bits) } else { 0 };
+        let row = if bits > 4 && self.chance(35) { self.random.u8(2..bits) } else { 0 };
         if row > 0 {
             let mut known = self.status_bit(0);
             known.put("repeat", row.to_string());

@@ -305,7 +305,8 @@ impl Draft {
 
     /// Adds data bytes that choose messages.
     fn header(&mut self, bus: &mut Bus, scope: &mut Scope) {
-        if bus.function.is_none() && self.chance(60) {
+        // A transport announces nothing that the data choose.
+        if bus.function.is_none() && bus.transport.is_none() && self.chance(60) {
             let name = self.header_field(bus, scope, 1, |draft, field| {
                 if draft.chance(30) {
                     draft.named_numbers(field, 8);
