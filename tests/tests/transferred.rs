@@ -373,12 +373,9 @@ mod by_hand {
 /// The greatest message of a charging is that of 256 cells: 512 bytes in 74 packets, and a bit for each packet.
 #[test]
 fn there_is_memory_for_the_longest_message() {
-    fn bytes<T: Transport<Memory = [u8; N]>, const N: usize>() -> usize {
-        N
-    }
     let longest = protocol(specs_of("gbt27930.yaml")).long_messages.iter().map(LongMessage::longest).max();
     let packets = longest.expect("it has long messages").div_ceil(7);
-    assert_eq!(bytes::<gbt27930::Tp, _>(), packets * 7 + packets.div_ceil(8));
+    assert_eq!(size_of::<<gbt27930::Tp as Transport>::Memory>(), packets * 7 + packets.div_ceil(8));
 }
 
 fn specs_of(name: &str) -> std::path::PathBuf {

@@ -135,7 +135,7 @@ impl<T: Transport, const N: usize, M: Memory> Assembler<T, N, M> {
     pub fn take(&mut self, received: &Received<T::Protocol>, now: u32) -> Event<T, M> {
         let (id, data) = (received.frame().raw_id(), received.frame().bytes());
         let event = match group_of::<T>(id) {
-            CONTROL_GROUP => self.control(id, &data, now),
+            CONTROL_GROUP => self.control(id, data, now),
             DATA_GROUP => self.packets.packet(link::<T>(id), &data, now),
             _ => return Event { whole: Whole::of_frame(received), ..Event::NONE },
         };
@@ -149,13 +149,13 @@ impl<T: Transport, const N: usize, M: Memory> Assembler<T, N, M> {
     }
 
     /// Takes a control frame. A message that the transport does not carry is not put together.
-    fn control(&mut self, id: u32, data: &Data, now: u32) -> tp::Event<M> {
+    fn control(&mut self, id: u32, data: Data, now: u32) -> tp::Event<M> {
         let link: Link = link::<T>(id);
-        match Control::decode(data) {
+        match Control::decode(&data) {
             Some((Control::Rts { .. } | Control::Bam { .. }, group)) if Carried::find::<T>(id, group).is_none() => {
                 self.packets.interrupt(link)
             }
-            _ => self.packets.control(link, data, now),
+            _ => self.packets.control(link, &data, now),
         }
     }
 }

@@ -41,16 +41,13 @@ impl<'a, T: Transport> Sender<'a, T> {
     ) -> Result<Self, Error> {
         let id = blank.raw_id();
         let data = values.encode_by(rules::<L>(id, model), buffer)?;
-        let frames = match u8::try_from(data.len()) {
-            Ok(length @ 0..=8) => {
-                let extended = T::Protocol::FRAME.is_extended();
-                Frames::One(Some(Frame::new_raw(id, extended, padded(data), length)))
-            }
-            _ => {
-                let room = Error::Room { message: L::MESSAGE, length: data.len(), room: *SIZES.end() };
-                let packets = tp::Sender::new(group_of::<T>(id), data, LIMIT).ok_or(room)?;
-                Frames::Packets { packets, is_announced: false }
-            }
+        let frames = if let Ok(length @ 0..=8) = u8::try_from(data.len()) {
+            let extended = T::Protocol::FRAME.is_extended();
+            Frames::One(Some(Frame::new_raw(id, extended, padded(data), length)))
+        } else {
+            let room = Error::Room { message: L::MESSAGE, length: data.len(), room: *SIZES.end() };
+            let packets = tp::Sender::new(group_of::<T>(id), data, LIMIT).ok_or(room)?;
+            Frames::Packets { packets, is_announced: false }
         };
         Ok(Self { id, frames, transport: PhantomData })
     }
@@ -73,7 +70,7 @@ impl<'a, T: Transport> Sender<'a, T> {
             Frames::Packets { packets, .. } if self.link().target != ALL => {
                 Some(self.frame(CONTROL_GROUP, packets.abort(reason)))
             }
-            _ => None,
+            Frames::One(_) | Frames::Packets { .. } => None,
         }
     }
 

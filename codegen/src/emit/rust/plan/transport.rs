@@ -8,7 +8,7 @@ use super::literal::hexadecimal;
 use super::message::Message;
 use super::naming::{camel_case, ident, screaming};
 use super::types::Types;
-use crate::model::{FieldId, FrameLayout, MessageId, Protocol, Table, TransportId};
+use crate::model::{FieldId, FrameLayout, LongMessage, MessageId, Protocol, Table, TransportId};
 
 /// A transport of long messages.
 pub struct Transport {
@@ -47,7 +47,7 @@ impl Transport {
         Self {
             name: types.transports[id].clone(),
             comment: Comment::item(protocol, &known.doc, &sentence, None),
-            memory: canspec_runtime::tp::memory(carried().map(|long| long.longest()).max().unwrap_or(0)),
+            memory: canspec_runtime::tp::memory(carried().map(LongMessage::longest).max().unwrap_or(0)),
             group: known.group.iter().copied().map(field).collect(),
             target: field(known.target),
             source: field(known.source),
