@@ -6,6 +6,7 @@ use canspec_codegen::interpret::{self, Assembly, Form, decode};
 use canspec_codegen::model::{LongExample, LongMessage, Protocol, Signal};
 use canspec_runtime::parts::{Assembler, Outcome, Parted as _};
 use canspec_runtime::{Elements, Frame, Kind, LongLayout, Text};
+use canspec_tests::features_long_fields::Pack;
 use canspec_tests::features_parts_by_model::{self as by_model, Model};
 use canspec_tests::features_parts_until_marker::{self as until_marker, LabelPart};
 use canspec_tests::long::{is_same, long, member};
@@ -141,6 +142,17 @@ fn a_message_is_sent_in_the_frames_that_the_document_prints() {
     let ended: Vec<_> = frames.iter().flat_map(|frame| assembler.receive(frame, 0)).collect();
     let [Outcome::Whole(whole)] = ended.as_slice() else { panic!("{ended:?}") };
     assert_eq!((&*whole.values.text, whole.is_counted), (&texts[..], true));
+}
+
+#[test]
+fn bits_without_a_field_are_sent_as_the_spec_says_also_behind_the_message() {
+    let protocol = protocol("specs/features/long_fields.yaml");
+    let [example] = protocol.long_examples.as_slice() else { panic!("one example") };
+    let frames: Vec<_> = example.frames.iter().map(|(_, data)| data.clone()).collect();
+    let data: Vec<_> = frames.iter().flat_map(|frame| &frame[1..]).copied().collect();
+    let pack = Pack::decode(&data).expect("whole data");
+    let made = pack.frames(&Frame::new_raw(0x611, false, [0; 8], 8)).expect("it fits");
+    assert_eq!(made.map(|frame| frame.bytes().to_vec()).collect::<Vec<_>>(), frames);
 }
 
 #[test]

@@ -167,10 +167,10 @@ pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<
         let text = "the first part has another number on each model; choose a model";
         refuse(&long.content, text)
     })?;
-    let size = long.size();
+    let (size, fill) = (long.size(), if long.content.reserved.are_ones { 0xFF } else { 0 });
     let chunks = data.chunks(size).map(|chunk| {
         let mut whole = chunk.to_vec();
-        whole.resize(size, 0);
+        whole.resize(size, fill);
         hex::digits(&whole)
     });
     Ok((first..).zip(chunks).collect())

@@ -171,6 +171,7 @@ impl LongLayout for Pack {
     const MESSAGE: &'static str = "pack";
     const SHORTEST: usize = 78;
     const LONGEST: usize = 78;
+    const BLANK: u8 = 0xFF;
     const DECODE: fn(&[u8]) -> Self = |data| Self {
         state: Self::STATE.read(data, Signal::get),
         energy_wh: Self::ENERGY.read(data, Signal::get),
@@ -205,7 +206,7 @@ impl PackPart {
     pub const PART: Signal<u8> = Signal::new("part", Place::byte(0)).limits(0, 11);
     /// The signal `data`, to read or write it alone, or to ask for its limits.
     pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
+    /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00; 8];
     /// The access `report`, for filters and blank frames of it.
     pub const REPORT: Exchange = REPORT_ACCESS.of("pack", FRAME.id(Identifier::COMMAND, 0x21));
