@@ -15,7 +15,8 @@ use table::Value;
 use crate::model::{FrameLayout, IdentifierField, Kind, Message, Protocol, Selector, SelectorPlace, Set};
 
 /// The Lua that is the same for every protocol. Each part needs those before it.
-const INTERPRETER: [&str; 6] = [
+const INTERPRETER: [&str; 7] = [
+    include_str!("lua/values.lua"),
     include_str!("lua/decode.lua"),
     include_str!("lua/link.lua"),
     include_str!("lua/long.lua"),
