@@ -1,10 +1,12 @@
 //! Runs the examples of long messages: all frames together must say what the example says.
 
+use canspec_runtime::Place;
+
 use super::{Checked, misfitting, shown, wrong};
 use crate::diagnostic::{At, Diagnostic};
 use crate::hex;
 use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, decode, encode_long};
-use crate::model::{LongExample, LongMessage, Protocol, TransportFrame, TransportId};
+use crate::model::{LongExample, LongMessage, Protocol, TransportFrame};
 use crate::resolve::rules;
 
 /// Decodes the frames, joins their parts, compares the values, and makes the frames again.
@@ -146,8 +148,8 @@ impl Checker<'_> {
         let frames: Vec<_> = assembled.marks.iter().map(|mark| all[*mark].clone()).collect();
         let mut made = encode_long(self.protocol, self.example.model, &content)
             .map_err(|refusal| wrong(self.frames_at(), format!("it does not encode back: {refusal}")))?;
-        if let (Some(transport), Some(made), Some(frame)) = (self.long.transport(), made.first_mut(), frames.first()) {
-            keep_free_number(self.protocol, transport, frame, made);
+        if let (Some(made), Some(frame)) = (made.first_mut(), frames.first()) {
+            self.keep_free_number(frame, made);
         }
         let differing = made.iter().zip(&frames).position(|(made, frame)| made != frame);
         match differing.or_else(|| (made.len() != frames.len()).then_some(made.len().min(frames.len()))) {
@@ -161,16 +163,22 @@ impl Checker<'_> {
             }
         }
     }
-}
 
-/// Takes over how many packets may come at once. Every sender chooses that for itself.
-fn keep_free_number(protocol: &Protocol, transport: TransportId, frame: &Frame, made: &mut Frame) {
-    let announcement = protocol[transport].message(TransportFrame::RequestToSend).map(|id| &protocol[id]);
-    let most = announcement.and_then(|message| message.signals.iter().find(|signal| signal.name == "most"));
-    let is_announced = |frame: &Frame| frame.data.first() == Some(&0x10);
-    if let Some(most) = most.filter(|_| is_announced(frame) && is_announced(made)) {
-        let mut data = made.padded();
-        most.place.put(&mut data, most.place.get(&frame.padded()));
-        made.data = data.to_vec();
+    /// Takes over how many packets may come at once. Every sender chooses that for itself.
+    fn keep_free_number(&self, frame: &Frame, made: &mut Frame) {
+        if let (Some(place), Some(_)) = (self.free_place(frame), self.free_place(made)) {
+            let mut data = made.padded();
+            place.put(&mut data, place.get(&frame.padded()));
+            made.data = data.to_vec();
+        }
+    }
+
+    /// Returns where an announcement has that number.
+    fn free_place(&self, frame: &Frame) -> Option<Place> {
+        let decoded = decode(self.protocol, self.example.model, frame).ok()?;
+        let (_, _, kind) = self.protocol.transport_frame(decoded.message)?;
+        let message = &self.protocol[decoded.message];
+        let most = message.signals.iter().find(|signal| signal.name == "most")?;
+        (kind == TransportFrame::RequestToSend).then_some(most.place)
     }
 }
