@@ -359,3 +359,22 @@ fn a_reply_of_a_module_is_the_printed_frame_and_says_that_all_is_well() {
     let report = Sent { message: "output_values", ..reply(None) };
     assert_eq!(report.is_of_module(&trio).ok(), Some(true));
 }
+
+/// Returns the data of the last frame of a message in parts that a module sends.
+fn last_part(spec: &str, (message, kind): (&str, Kind), signals: &[(&str, &str)]) -> Option<String> {
+    let protocol = feature(spec);
+    let message = Sent { kind: Some(kind), access: None, model: None, message, to: None, source: Some(1) };
+    let signals: Vec<_> = signals.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    sent(&protocol, message, &signals).expect("it has all values").iter().map(printed).next_back()
+}
+
+#[test]
+fn the_last_part_is_filled_up_with_bits_as_they_are_sent() {
+    // Cycles 258; the voltages in the lower bits, the group above: 0x114B is 331 of group 1.
+    let cells = [("cycles", "258"), ("voltage", "10V,0.1V,0.11V,0.12V,3.3V,3.31V"), ("group", "0,0,0,0,0,1")];
+    assert_eq!(last_part("parts", ("cells", Kind::Reply), &cells).as_deref(), Some("051#034B110000000000"));
+    let voltages = ["1 V"; 33].join(",");
+    let pack = [("state", "idle"), ("energy", "0"), ("valve", "0,0,0,0"), ("fan", "0,0,0,0,0")];
+    let pack = [&pack[..], &[("voltage", voltages.as_str()), ("group", "3,2")]].concat();
+    assert_eq!(last_part("long_fields", ("pack", Kind::Report), &pack).as_deref(), Some("611#0B03FFFFFFFFFFFF"));
+}
