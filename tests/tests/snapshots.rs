@@ -62,7 +62,7 @@ fn each_option_adds_the_rust_that_was_reviewed() {
 /// Returns the part of a dissector that is not the same for every protocol.
 fn dissector_table(path: &Path) -> String {
     let code = emit::wireshark(&protocol(path));
-    let (table, _) = code.split_once("\n-- Decoding").expect("the interpreter follows the table");
+    let (table, _) = code.split_once("\n-- Values").expect("the interpreter follows the table");
     table.to_owned()
 }
 
