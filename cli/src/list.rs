@@ -68,14 +68,15 @@ fn protocol_row(name: &str, protocol: &Protocol) -> Row {
         words(Some(&protocol.title)),
         count.to_string(),
         format!("{} in {covered} of {count} messages", documented.len()),
-        words(Some(&protocol.document.version)),
+        joined(&protocol.documents, |document| &document.version),
     ];
-    Row { cells, last: vec![words(Some(&protocol.document.title))], separator: "" }
+    Row { cells, last: vec![joined(&protocol.documents, |document| &document.title)], separator: "" }
 }
 
 /// Writes a table of messages, each followed by its signals.
 fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    writeln!(out, "{}: {}\n{}", protocol.name, protocol.title.for_people(), document(&protocol.document))?;
+    writeln!(out, "{}: {}", protocol.name, protocol.title.for_people())?;
+    protocol.documents.iter().try_for_each(|known| writeln!(out, "{}", document(known)))?;
     protocol.sides.sentence().map_or(Ok(()), |sentence| writeln!(out, "{sentence}"))?;
     writeln!(out)?;
     let selectors = selectors(protocol);
@@ -140,7 +141,13 @@ fn model_row(model: &DeviceModel) -> Row {
 
 fn document(document: &Document) -> String {
     let date = document.date.as_ref().map_or(String::new(), |date| format!(", {}", date.for_people()));
-    format!("{}, {}{date}", document.title.for_people(), document.version.for_people())
+    let name = document.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
+    format!("{name}{}, {}{date}", document.title.for_people(), document.version.for_people())
+}
+
+/// Writes what is printed on each document.
+fn joined(documents: &[Document], printed: impl Fn(&Document) -> &Text) -> String {
+    documents.iter().map(|document| printed(document).for_people()).collect::<Vec<_>>().join("; ")
 }
 
 /// Returns the selectors whose constants choose a message, whatever its access.

@@ -3,6 +3,7 @@
 mod ambiguous;
 mod default_value;
 mod direction;
+mod document;
 mod erratum;
 mod example;
 mod grid;
@@ -42,7 +43,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 29] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 30] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -66,6 +67,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 29] = [
     (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),
     (&rust_name::RUST_NAME, Some(rust_name::check)),
     (&erratum::ERRATUM, Some(erratum::check)),
+    (&document::DOCUMENT, Some(document::check)),
     (&section::SECTION, Some(section::check)),
     (&reply::REPLY, None),
     (&rules::EXAMPLE, None),

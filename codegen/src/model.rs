@@ -61,8 +61,8 @@ pub struct Protocol {
     pub file: Text,
     /// What the devices are, without a full stop.
     pub title: Text,
-    /// The vendor document that the spec follows.
-    pub document: Document,
+    /// The documents that the spec follows. At most one has no name, and is the first.
+    pub documents: Vec<Document>,
     /// What the two sides are called in texts.
     pub sides: Sides,
     /// Bit rates of the bus in bit/s.

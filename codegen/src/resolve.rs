@@ -120,7 +120,7 @@ impl Resolver<'_> {
         let foreign = self.foreign(&identifier);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
-        let (sequences, types, document) = (self.sequences(), self.type_docs(), self.document());
+        let (sequences, types, documents) = (self.sequences(), self.type_docs(), self.documents());
         self.check_types_used();
         self.check_units_used();
         self.check_allowances();
@@ -128,7 +128,7 @@ impl Resolver<'_> {
             name,
             file,
             title: Text::new(&self.spec.title),
-            document,
+            documents,
             sides,
             bit_rates,
             identifier,

@@ -68,7 +68,13 @@ impl Draft {
         let mut root = Map::of([("canspec", "1")]);
         root.put("protocol", self.names.plain(&mut Scope::default()));
         root.put("title", self.text());
-        root.put("document", self.document());
+        let documents = self.named_documents();
+        if documents.is_empty() || self.chance(50) {
+            root.put("document", self.document());
+        }
+        if !documents.is_empty() {
+            root.put("documents", documents);
+        }
         if self.chance(15) {
             let sides = self.some(&[("module", "battery"), ("controller", "inverter")]);
             root.put("sides", Map::of(sides));
@@ -116,6 +122,18 @@ impl Draft {
         root.into()
     }
 
+    /// Makes documents with names, in few specs.
+    fn named_documents(&mut self) -> Map {
+        let (mut documents, mut scope) = (Map::default(), Scope::default());
+        let count = if self.chance(15) { self.random.u8(1..=3) } else { 0 };
+        for _ in 0..count {
+            let name = self.names.of_document(&mut scope);
+            self.documents.push(name.clone());
+            documents.put(name, self.document());
+        }
+        documents
+    }
+
     fn document(&mut self) -> Map {
         let mut document = Map::of([("title", self.text()), ("version", self.text())]);
         for key in ["date", "file"] {
@@ -150,8 +168,8 @@ impl Draft {
                 erratum.put(key, text);
             }
             if self.chance(30) {
-                let text = self.text();
-                erratum.put("section", text);
+                let section = self.section();
+                erratum.put("section", section);
             }
             let name = self.names.of_document(&mut scope);
             self.errata.push(name.clone());

@@ -51,10 +51,12 @@ impl Sides {
     }
 }
 
-/// The vendor document.
+/// A document that the spec follows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Document {
+    /// Name that begins its sections, unless it is the document of all others.
+    pub name: Option<String>,
     /// Title as printed.
     pub title: Text,
     /// Version as printed.

@@ -32,14 +32,15 @@ impl Resolver<'_> {
         name
     }
 
-    pub fn document(&self) -> Document {
-        let ast::Document { title, version, date, file } = &self.spec.document;
-        Document {
-            title: Text::new(title),
-            version: Text::new(version),
-            date: text(date.as_ref()),
-            file: text(file.as_ref()),
+    /// Reads the document that has no name, then those that have one.
+    pub fn documents(&mut self) -> Vec<Document> {
+        self.check_not_empty(&Path::default(), &["documents"]);
+        let (root, spec) = (Path::default().key("documents"), self.spec);
+        for name in spec.documents.keys() {
+            self.check_document_name(&root.key(name), name);
         }
+        let first = spec.document.iter().map(|written| document(None, written));
+        first.chain(spec.documents.iter().map(|(name, written)| document(Some(name), written))).collect()
     }
 
     /// Reads bit rates such as `125 kbit/s`, in bit/s.
@@ -191,6 +192,12 @@ impl Resolver<'_> {
         let (name, kind, section) = (Text::new(name), erratum.kind.clone(), text(erratum.section.as_ref()));
         Erratum { name, kind, section, prints, uses, because, path: path.clone() }
     }
+}
+
+fn document(name: Option<&String>, written: &ast::Document) -> Document {
+    let ast::Document { title, version, date, file } = written;
+    let [title, version] = [title, version].map(|written| Text::new(written));
+    Document { name: name.cloned(), title, version, date: text(date.as_ref()), file: text(file.as_ref()) }
 }
 
 fn texts(written: &[String]) -> Vec<Text> {

@@ -28,7 +28,12 @@ pub struct Spec {
     /// What the devices are, in a few words without a full stop: `Charging modules`.
     pub title: String,
     /// The vendor document that the spec follows: `{title: Charging module CAN protocol, version: V1.0}`.
-    pub document: Document,
+    /// It may be absent if `documents` names others.
+    pub document: Option<Document>,
+    /// Other documents by name: `{C: {title: Captured frames, version: not stated}}`. Sections in them
+    /// begin with that name: `"C 2.1"`. None if absent.
+    #[serde(default)]
+    pub documents: Map<Document>,
     /// What the two sides are called in texts: `{module: battery, controller: inverter}`; `module` and
     /// `controller` if absent.
     pub sides: Option<Sides>,

@@ -28,7 +28,6 @@ fn all_missing_keys_are_reported_at_their_parent() {
             "mini.yaml:1:1: error[missing_key]: missing key `canspec`",
             "mini.yaml:1:1: error[missing_key]: missing key `protocol`",
             "mini.yaml:1:1: error[missing_key]: missing key `title`",
-            "mini.yaml:1:1: error[missing_key]: missing key `document`",
             "mini.yaml:1:1: error[missing_key]: missing key `length`",
             "mini.yaml:1:1: error[missing_key]: missing key `identifier`",
             "mini.yaml:1:1: error[missing_key]: missing key `access`",

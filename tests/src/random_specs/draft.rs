@@ -15,6 +15,8 @@ const OWN: [&str; 4] = ["note", "section", "erratum", "type"];
 pub struct Draft {
     pub random: Rng,
     pub names: Names,
+    /// Names that begin sections.
+    pub documents: Vec<String>,
     pub errata: Vec<String>,
     pub types: Map,
     /// Names of types.
@@ -54,6 +56,7 @@ impl Draft {
         Self {
             random,
             names,
+            documents: Vec::new(),
             errata: Vec::new(),
             types: Map::default(),
             type_scope: Scope::default(),
@@ -114,13 +117,19 @@ impl Draft {
     /// Adds the remarks that refer to something.
     pub fn refer(&mut self, item: &mut Map) {
         if self.chance(15) {
-            let section = self.text();
+            let section = self.section();
             item.put("section", section);
         }
         if self.chance(10) {
             let erratum = self.erratum();
             item.put("erratum", erratum);
         }
+    }
+
+    /// Returns a section, in one of the documents if they have names.
+    pub fn section(&mut self) -> String {
+        let (documents, text) = (self.documents.clone(), self.text());
+        if documents.is_empty() { text } else { format!("{} {}", self.one(&documents), text.replace(';', ",")) }
     }
 
     fn erratum(&mut self) -> Value {

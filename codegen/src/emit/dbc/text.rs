@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::model::{Doc, Protocol, Sides, Unit};
+use crate::model::{Doc, Document, Protocol, Sides, Unit};
 use crate::text::Text;
 
 /// Returns the symbol of a unit, in ASCII.
@@ -23,21 +23,26 @@ pub fn remarks(doc: &Doc) -> String {
 
 /// Returns the comment of the whole file.
 pub fn header(protocol: &Protocol, mask: u32, losses: &[String]) -> String {
-    let document = &protocol.document;
-    let printed = [Some(&document.title), Some(&document.version), document.date.as_ref(), document.file.as_ref()];
-    let printed: Vec<_> = printed.into_iter().flatten().map(Text::in_dbc).collect();
-    let mut lines = vec![
-        format!("{}: {}", protocol.name, protocol.title.in_dbc()),
-        format!("Document: {}", printed.join(", ")),
+    let mut lines = vec![format!("{}: {}", protocol.name, protocol.title.in_dbc())];
+    lines.extend(protocol.documents.iter().map(document));
+    lines.extend([
         format!("Made by canspec from {}", protocol.file.in_dbc()),
         format!("Frame-id mask: {mask:#010X}. Compare only these bits of an identifier; the other ones vary"),
-    ];
+    ]);
     lines.extend(protocol.sides.sentence());
     if !losses.is_empty() {
         lines.push("What a DBC cannot say:".to_owned());
         lines.extend(losses.iter().map(|loss| format!("- {loss}")));
     }
     lines.join("\n")
+}
+
+/// Says which document it is.
+fn document(document: &Document) -> String {
+    let Document { name, title, version, date, file } = document;
+    let printed = [Some(title), Some(version), date.as_ref(), file.as_ref()].into_iter().flatten().map(Text::in_dbc);
+    let name = name.as_ref().map_or(String::new(), |name| format!(" {name}"));
+    format!("Document{name}: {}", printed.collect::<Vec<_>>().join(", "))
 }
 
 /// Returns the name of a module, or of all.

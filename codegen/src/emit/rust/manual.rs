@@ -7,7 +7,7 @@ use super::plan::Plan;
 use super::plan::doc::{self, Comment};
 use super::plan::usage::time;
 use crate::emit::Scaled;
-use crate::model::{Doc, Protocol, Quantity, Timing};
+use crate::model::{Doc, Document, Protocol, Quantity, Timing};
 use crate::text::Text;
 
 /// What the documentation is written from.
@@ -24,7 +24,7 @@ impl Manual<'_> {
     /// Returns the documentation as inner doc comments.
     pub fn text(&self) -> String {
         let sides = self.protocol.sides.sentence();
-        let head = Comment::new([self.title(), self.document()].into_iter().chain(sides).chain([SHARED.to_owned()]));
+        let head = Comment::new([self.title(), self.documents()].into_iter().chain(sides).chain([SHARED.to_owned()]));
         let parts = [section(head.lines()), self.example(), self.table(), self.timing()];
         let parts: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         parts.join("//!\n")
@@ -34,14 +34,13 @@ impl Manual<'_> {
         doc::sentence_of(&self.protocol.title.in_rust_doc())
     }
 
-    /// Says which document it is, and how fast the bus is.
-    fn document(&self) -> String {
-        let Protocol { document, bit_rates, .. } = self.protocol;
-        let [title, version] = [&document.title, &document.version].map(Text::within_rust_doc);
-        let date = document.date.as_ref().map_or_else(String::new, |date| format!(" of {}", date.within_rust_doc()));
+    /// Says which documents it follows, and how fast the bus is.
+    fn documents(&self) -> String {
+        let Protocol { documents, bit_rates, .. } = self.protocol;
+        let documents = documents.iter().map(document).collect::<Vec<_>>().join(" ");
         let rates: Vec<_> = bit_rates.iter().map(|rate| format!("{} kbit/s", f64::from(*rate) / 1000.0)).collect();
         let bus = if rates.is_empty() { String::new() } else { format!(" The bus runs at {}.", rates.join(" or ")) };
-        format!("{}{bus}", doc::sentence_of(&format!("Document: {title}, version {version}{date}")))
+        format!("{documents}{bus}")
     }
 
     /// Lists the times that the document states.
@@ -58,6 +57,14 @@ impl Manual<'_> {
         let errata_at_items = Doc { errata: Vec::new(), ..timing.doc.clone() };
         doc::paragraphs(self.protocol, &errata_at_items, &sentence, None).join(" ")
     }
+}
+
+/// Says in a sentence which document it is.
+fn document(document: &Document) -> String {
+    let [title, version] = [&document.title, &document.version].map(Text::within_rust_doc);
+    let date = document.date.as_ref().map_or_else(String::new, |date| format!(" of {}", date.within_rust_doc()));
+    let name = document.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`"));
+    doc::sentence_of(&format!("Document{name}: {title}, version {version}{date}"))
 }
 
 const SHARED: &str = "What all protocols have in common, such as `Frame` and `Error`, is re-exported below.";
