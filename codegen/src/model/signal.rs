@@ -177,6 +177,18 @@ impl Signal {
         own.map_or(self, |own| &own.value)
     }
 
+    /// Changes the signal, and what it is on each device model.
+    #[must_use]
+    pub(crate) fn changed(mut self, change: impl Fn(&mut Self)) -> Self {
+        change(&mut self);
+        if let Encoding::ByModel { signals, .. } = &mut self.encoding {
+            for own in signals {
+                change(&mut own.value);
+            }
+        }
+        self
+    }
+
     /// Returns what the signal is on each device model if its scale depends on the model, or else the signal.
     pub fn on_each(&self) -> impl Iterator<Item = &Self> {
         let own = self.encoding.by_model();

@@ -198,14 +198,12 @@ impl Resolver<'_> {
                 return None;
             };
             let number = row.first + index;
-            leaves.signals.push(Signal {
-                name: format!("{name}_{number}"),
-                doc: numbered(doc, number),
-                window,
-                place,
-                element: Some(Element { array, index: u8::try_from(index).unwrap_or(u8::MAX) }),
-                ..signal.clone()
-            });
+            leaves.signals.push(signal.clone().changed(|element| {
+                element.name = format!("{name}_{number}");
+                element.doc = numbered(doc, number);
+                (element.window, element.place) = (window, place);
+                element.element = Some(Element { array, index: u8::try_from(index).unwrap_or(u8::MAX) });
+            }));
         }
         Some(())
     }

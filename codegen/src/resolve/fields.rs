@@ -226,7 +226,7 @@ impl Resolver<'_> {
         // Each use of a group has the same types of named values.
         let owner = if outer.group.name.is_empty() { outer.owner } else { outer.group.name };
         let signal = self.signal(outer.own_name(name), merged, place, doc, owner)?;
-        let signal = Signal { name: name.to_owned(), window, ..signal };
+        let signal = signal.changed(|signal| (signal.name, signal.window) = (name.to_owned(), window));
         let is_sound = self.is_sound(merged);
         let constant = &merged.field.constant;
         let role = if constant.is_some() { Role::Constant } else { Role::of_field(outer.site, &signal.encoding) };

@@ -187,9 +187,10 @@ impl Resolver<'_> {
         head: Head,
     ) -> (Leaves, Option<LongMessageId>) {
         let is_sound = whole.given_up.is_empty();
+        let (signals, arrays) = in_one_frame(&whole);
         let plain = Leaves {
-            signals: whole.signals.iter().filter_map(in_frame).collect(),
-            arrays: whole.arrays.map(|array| Array { least: None, ..array.clone() }),
+            signals,
+            arrays,
             constants: Vec::new(),
             replies: whole.replies,
             given_up: whole.given_up,
@@ -341,6 +342,21 @@ impl Resolver<'_> {
         self.diagnostics.push(problem.other(known.doc.path.at_key(), "the signal").help(help));
         None
     }
+}
+
+/// Returns the signals of a message that end in one frame, and the arrays that have elements there.
+fn in_one_frame(whole: &Leaves) -> (Vec<Signal>, Table<ArrayId, Array>) {
+    let mut signals: Vec<_> = whole.signals.iter().filter_map(in_frame).collect();
+    let mut arrays = Table::default();
+    for (id, array) in whole.arrays.entries() {
+        let elements = signals.iter_mut().filter_map(|signal| signal.element.as_mut());
+        let mut elements = elements.filter(|element| element.array == id).peekable();
+        if elements.peek().is_some() {
+            let kept = arrays.push(Array { least: None, ..array.clone() });
+            elements.for_each(|element| element.array = kept);
+        }
+    }
+    (signals, arrays)
 }
 
 /// Returns a signal with its place in a frame, if it ends there.

@@ -111,3 +111,17 @@ fn a_module_sends_by_the_scale_of_its_model() {
     let refusal = "current.value: its scale depends on the device model; choose FINE or SHIFTED";
     assert_eq!(reply("OTHER", "12A"), Err(refusal.to_owned()), "nobody says what its steps are");
 }
+
+#[test]
+fn a_note_names_the_element_of_an_array_whose_scale_depends_on_the_model() {
+    let value = "value: {bytes: 0, type: current}";
+    let array = "fields: {phase: {bytes: 0, repeat: 2, type: current}}";
+    let meter = written(&SPEC.replace("length: 1", "length: 2").replace(value, array));
+    let fine = model(&meter, "FINE");
+    let decoded = decode(&meter, Some(fine), &frame("005#0A78")).expect("a reply");
+    let found: Vec<_> = decoded.notes.iter().map(|note| note.text.as_str()).collect();
+    assert_eq!(found, ["phase_2 12 A is outside 0..10 A"]);
+    let on_model = meter[decoded.message].on(Some(fine));
+    let places = on_model.signals.iter().map(|signal| (signal.name.as_str(), signal.bytes()));
+    assert_eq!(places.collect::<Vec<_>>(), [("phase_1", 0..1), ("phase_2", 1..2)]);
+}
