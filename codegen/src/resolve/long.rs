@@ -8,8 +8,8 @@ use super::arrays::Windowed;
 use super::fields::Leaves;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Array, ArrayId, Carrier, Doc, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, ModelId, Numeral,
-    OfModel, Parts, Range, Reserved, Signal, SignalId, Table, TransportId,
+    Array, ArrayId, Carrier, Doc, Element, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, ModelId,
+    Numeral, OfModel, Parts, Range, Reserved, Signal, SignalId, Table, TransportId,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -187,14 +187,9 @@ impl Resolver<'_> {
         head: Head,
     ) -> (Leaves, Option<LongMessageId>) {
         let is_sound = whole.given_up.is_empty();
-        let (signals, arrays) = in_one_frame(&whole);
-        let plain = Leaves {
-            signals,
-            arrays,
-            constants: Vec::new(),
-            replies: whole.replies,
-            given_up: whole.given_up,
-        };
+        let one_frame = lengths.iter().copied().filter(|length| *length <= 8).max().unwrap_or(8);
+        let (signals, arrays) = first_part(&whole, one_frame.into());
+        let plain = Leaves { signals, arrays, constants: Vec::new(), replies: whole.replies, given_up: whole.given_up };
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
         let arrays = self.arrays(whole.arrays, &signals);
         let (content, carrier) = (content(head, signals, arrays), Carrier::Transport(transport));
@@ -344,19 +339,19 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the signals of a message that end in one frame, and the arrays that have elements there.
-fn in_one_frame(whole: &Leaves) -> (Vec<Signal>, Table<ArrayId, Array>) {
-    let mut signals: Vec<_> = whole.signals.iter().filter_map(in_frame).collect();
-    let mut arrays = Table::default();
-    for (id, array) in whole.arrays.entries() {
-        let elements = signals.iter_mut().filter_map(|signal| signal.element.as_mut());
-        let mut elements = elements.filter(|element| element.array == id).peekable();
-        if elements.peek().is_some() {
-            let kept = arrays.push(Array { least: None, ..array.clone() });
-            elements.for_each(|element| element.array = kept);
-        }
-    }
-    (signals, arrays)
+/// Returns the signals that end in the first bytes of a message, and the arrays that have elements there.
+fn first_part(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
+    let signals = whole.signals.iter().filter(|signal| signal.reach() <= bytes);
+    let signals: Vec<_> = signals.filter_map(in_frame).collect();
+    let has_element = |array: &ArrayId| signals.iter().filter_map(|signal| signal.element).any(|of| of.array == *array);
+    let kept: Vec<ArrayId> = whole.arrays.ids().filter(has_element).collect();
+    let arrays = kept.iter().map(|id| Array { least: None, ..whole.arrays[*id].clone() }).collect();
+    let renumber = |element: Element| {
+        let place = kept.iter().position(|id| *id == element.array)?;
+        Some(Element { array: Id::new(place), ..element })
+    };
+    let renumbered = |signal: Signal| signal.changed(|signal| signal.element = signal.element.and_then(renumber));
+    (signals.into_iter().map(renumbered).collect(), arrays)
 }
 
 /// Returns a signal with its place in a frame, if it ends there.
@@ -367,7 +362,8 @@ fn in_frame(signal: &Signal) -> Option<Signal> {
         ByteOrder::Big => (Place::bytes(0, 7), low - moved),
         ByteOrder::Little => (Place::bytes(7, 0), low + moved),
     };
-    Some(Signal { window: 0, place: payload.bits(low + width - 1, low), ..signal.clone() })
+    let place = payload.bits(low + width - 1, low);
+    Some(signal.clone().changed(|signal| (signal.window, signal.place) = (0, place)))
 }
 
 /// Tests whether the bits of a signal are its value.

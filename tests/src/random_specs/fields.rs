@@ -36,8 +36,9 @@ impl Draft {
         fields
     }
 
-    /// Returns the fields of a message that is longer than a frame, and whether the last one varies in length.
-    pub fn long_fields(&mut self) -> (Map, bool) {
+    /// Returns the fields of a message that is longer than a frame. If the last one does not vary in length, it also
+    /// returns how many bytes the message has without and with it.
+    pub fn long_fields(&mut self) -> (Map, Option<[u16; 2]>) {
         let (mut fields, mut scope, mut first) = (Map::default(), Scope::default(), 0);
         for _ in 0..self.random.u8(1..5) {
             let count = self.random.u8(1..=8);
@@ -60,7 +61,8 @@ impl Draft {
         array.put("repeat", if varies { format!("{least}..{most}") } else { most.to_string() });
         let name = self.names.plain(&mut scope);
         fields.put(name, array);
-        (fields, varies)
+        let whole = u16::from(first) + u16::from(size) * u16::from(most);
+        (fields, if varies { None } else { Some([u16::from(first), whole]) })
     }
 
     /// Returns a field of `count` bytes.

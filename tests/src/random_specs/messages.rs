@@ -233,8 +233,11 @@ impl Draft {
         let is_sent = accesses.iter().any(|access| access.sends);
         let is_by_command = !first.has_command && !has_register;
         if bus.transport.is_some() && is_by_command && self.chance(50) {
-            let (fields, _) = self.long_fields();
+            let (fields, lengths) = self.long_fields();
             message.put("via", TRANSPORT);
+            if let Some(lengths) = lengths.filter(|_| self.chance(40)) {
+                message.put("length", list(lengths.map(|length| length.to_string())));
+            }
             message.put("fields", fields);
         } else if bus.header_bytes < 5 && !is_sent && self.chance(25) {
             self.in_parts(bus, traffic, &mut message);
@@ -259,10 +262,10 @@ impl Draft {
         }
         let last = self.random.u8(data..8);
         parts.put("data", format!("{data}..{last}"));
-        let (fields, varies) = self.long_fields();
+        let (fields, lengths) = self.long_fields();
         let ordinary = |access: &&Access| access.role == Role::Ordinary && !access.has_command;
         let access = traffic.accesses.iter().find(ordinary).cloned();
-        if let Some(access) = access.filter(|_| varies && self.random.bool()) {
+        if let Some(access) = access.filter(|_| lengths.is_none() && self.random.bool()) {
             let (name, value) = self.command(bus, traffic);
             let mut counting = Map::of([("match", Map::of([(name, value)]))]);
             counting.put("access", list([access.name]));
