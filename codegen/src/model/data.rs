@@ -55,7 +55,7 @@ impl Sides {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Document {
-    /// Name that begins its sections, unless it is the document of all others.
+    /// Name that begins its sections; none if a section without such a name stands in it.
     pub name: Option<String>,
     /// Title as printed.
     pub title: Text,

@@ -109,7 +109,7 @@ pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)]).reque
 /// - Request `004#0000`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Speed {
-    /// Speed in rpm: bytes 0..1.
+    /// Speed in rpm: bytes 0..1. Section C 4.
     ///
     /// Erratum X1: printed is "revolutions per second and per minute", used is "per minute", because no
     /// such fan turns 3000 times a second.

@@ -67,17 +67,20 @@ impl ToTokens for Comment {
 pub fn paragraphs(protocol: &Protocol, doc: &Doc, sentence: &str, outer: Option<&Doc>) -> Vec<String> {
     let section =
         doc.section.as_ref().filter(|section| outer.is_none_or(|outer| outer.section.as_ref() != Some(section)));
-    let section = section.map(|section| sentence_of(&reference(section)));
+    let section = section.map(|section| sentence_of(&reference(protocol, section)));
     let first = std::iter::once(sentence.to_owned()).chain(section).collect::<Vec<_>>().join(" ");
     let note = doc.note.iter().map(|note| sentence_of(&note.in_rust_doc()));
     let errata = doc.errata.iter().filter_map(|name| erratum(protocol, name));
     std::iter::once(first).chain(note).chain(errata).collect()
 }
 
-/// Returns a section as `Section 2.4`, or as the table that it names.
-fn reference(section: &Text) -> String {
+/// Returns a section as `Section 2.4` or `Section C 2.4`, or as the table that it names.
+fn reference(protocol: &Protocol, section: &Text) -> String {
+    let first = section.for_people().split_whitespace().next().unwrap_or_default();
+    let is_document = protocol.documents.iter().any(|document| document.name.as_deref() == Some(first));
+    let is_number = first.starts_with(|letter: char| letter.is_ascii_digit());
     let section = section.in_rust_doc();
-    if section.starts_with(|first: char| first.is_ascii_digit()) { format!("Section {section}") } else { section }
+    if is_number || is_document { format!("Section {section}") } else { section }
 }
 
 /// Writes an erratum as a paragraph, unless it is about the scan of the document alone.
