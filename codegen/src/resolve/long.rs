@@ -188,7 +188,7 @@ impl Resolver<'_> {
     ) -> (Leaves, Option<LongMessageId>) {
         let is_sound = whole.given_up.is_empty();
         let one_frame = lengths.iter().copied().filter(|length| *length <= 8).max().unwrap_or(8);
-        let (signals, arrays) = first_part(&whole, one_frame.into());
+        let (signals, arrays) = in_one_frame(&whole, one_frame.into());
         let plain = Leaves { signals, arrays, constants: Vec::new(), replies: whole.replies, given_up: whole.given_up };
         let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
         let arrays = self.arrays(whole.arrays, &signals);
@@ -339,10 +339,10 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the signals that end in the first bytes of a message, and the arrays that have elements there.
-fn first_part(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
-    let signals = whole.signals.iter().filter(|signal| signal.reach() <= bytes);
-    let signals: Vec<_> = signals.filter_map(in_frame).collect();
+/// Returns the signals that end in a frame of some bytes, and the arrays that have elements there.
+fn in_one_frame(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
+    let signals: Vec<_> =
+        whole.signals.iter().filter(|signal| signal.reach() <= bytes).filter_map(in_frame).collect();
     let has_element = |array: &ArrayId| signals.iter().filter_map(|signal| signal.element).any(|of| of.array == *array);
     let kept: Vec<ArrayId> = whole.arrays.ids().filter(has_element).collect();
     let arrays = kept.iter().map(|id| Array { least: None, ..whole.arrays[*id].clone() }).collect();
@@ -354,9 +354,9 @@ fn first_part(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Arra
     (signals.into_iter().map(renumbered).collect(), arrays)
 }
 
-/// Returns a signal with its place in a frame, if it ends there.
+/// Returns a signal of the first eight bytes with its place in a frame.
 fn in_frame(signal: &Signal) -> Option<Signal> {
-    let moved = 8 * u8::try_from(signal.window).ok().filter(|_| signal.reach() <= 8)?;
+    let moved = 8 * u8::try_from(signal.window).ok()?;
     let (low, width) = (signal.place.bits_of_payload().shift(), signal.place.width());
     let (payload, low) = match signal.place.order() {
         ByteOrder::Big => (Place::bytes(0, 7), low - moved),
