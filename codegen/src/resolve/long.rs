@@ -341,8 +341,7 @@ impl Resolver<'_> {
 
 /// Returns the signals that end in a frame of some bytes, and the arrays that have elements there.
 fn in_one_frame(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
-    let signals: Vec<_> =
-        whole.signals.iter().filter(|signal| signal.reach() <= bytes).filter_map(in_frame).collect();
+    let signals: Vec<_> = whole.signals.iter().filter(|signal| signal.reach() <= bytes).filter_map(in_frame).collect();
     let has_element = |array: &ArrayId| signals.iter().filter_map(|signal| signal.element).any(|of| of.array == *array);
     let kept: Vec<ArrayId> = whole.arrays.ids().filter(has_element).collect();
     let arrays = kept.iter().map(|id| Array { least: None, ..whole.arrays[*id].clone() }).collect();
