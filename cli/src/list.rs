@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use canspec_codegen::interpret::description;
 use canspec_codegen::model::{
-    Carrier, DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, ModelId, Parts, Protocol,
-    SelectorId, Side, Signal, StatusBit,
+    Carrier, DeviceModel, Doc, Document, Example, Kind, LongMessage, Message, MessageId, ModelId, NamedValue, Parts,
+    Protocol, SelectorId, Side, Signal, StatusBit, only,
 };
 use canspec_codegen::text::Text;
 use canspec_specs::SPECS;
@@ -181,7 +181,7 @@ fn message_row(protocol: &Protocol, selectors: &[SelectorId], message: &Message)
     cells.extend([accesses.collect::<Vec<_>>().join(", "), message.name.clone()]);
     cells.push(value(message).and_then(|signal| signal.unit).map_or(String::new(), |unit| unit.symbol.to_string()));
     cells.push(words(message.doc.section.as_ref()));
-    let models = only(protocol, &message.models).map_or(String::new(), |only| format!(" ({only})"));
+    let models = of_some(protocol, &message.models);
     let carrier = protocol.long_message(message).map_or(String::new(), |(_, long)| carrier(protocol, long));
     let title = format!("{}{models}{carrier}", title(&message.doc).unwrap_or_default());
     let title = Some(title.trim_start()).filter(|title| !title.is_empty());
@@ -269,22 +269,21 @@ fn meaning(protocol: &Protocol, signal: &Signal) -> Vec<String> {
         Some(word) => items.extend(protocol.status_words[word].bits.iter().map(|bit| status_bit(protocol, bit))),
         None => items.extend(description(protocol, signal)),
     }
-    items.extend(only(protocol, &signal.models));
-    items.extend(signal.specials.iter().map(|special| format!("{} = {}", special.raw, special.name)));
+    items.extend(only(&protocol.models, &signal.models));
+    let special = |value: &NamedValue| format!("{} = {}{}", value.raw, value.name, of_some(protocol, &value.models));
+    items.extend(signal.specials.iter().map(special));
     items
 }
 
 /// Returns number, name and severity of a status bit.
 fn status_bit(protocol: &Protocol, bit: &StatusBit) -> String {
     let severity = Severity::of(bit).map_or(String::new(), |severity| format!(" ({})", severity.word()));
-    let only = only(protocol, &bit.models).map_or(String::new(), |only| format!(" ({only})"));
-    format!("bit {} {}{severity}{only}", bit.bit, bit.name)
+    format!("bit {} {}{severity}{}", bit.bit, bit.name, of_some(protocol, &bit.models))
 }
 
-/// Names the only device models that have something.
-fn only(protocol: &Protocol, models: &[ModelId]) -> Option<String> {
-    let names: Vec<_> = models.iter().map(|model| protocol.models[*model].name.as_str()).collect();
-    (!names.is_empty()).then(|| format!("only {}", names.join(", ")))
+/// Names the only device models that have an item, behind it.
+fn of_some(protocol: &Protocol, models: &[ModelId]) -> String {
+    only(&protocol.models, models).map_or(String::new(), |only| format!(" ({only})"))
 }
 
 /// Returns a text of the spec, or nothing.

@@ -125,7 +125,7 @@ impl Words<'_> {
             }
             Encoding::ByModel { signals: own, .. } => ask(&by_model::ByModel { signal, own, models: self.models }),
             Encoding::Float => ask(&float::Float { signal }),
-            Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id] }),
+            Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id], models: self.models }),
             Encoding::Status(id) => ask(&status::Status { signal, word: &self.statuses[*id] }),
             Encoding::Text(form) => ask(&text::Text { signal, form: *form }),
             Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),

@@ -34,7 +34,7 @@ pub use id::{
     MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId, TransportId,
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
-pub use lacking::Lacking;
+pub use lacking::{Lacking, only};
 pub use long::{Carrier, LongMessage, Parts};
 pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};

@@ -10,7 +10,7 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use crate::syntax::ast::{ByModel, Field, Map, Means, Names, Spec};
+use crate::syntax::ast::{ByModel, Field, Map, Means, NamedValue, Names, Spec, ValueOfModels};
 
 /// Returns the schema as indented text that ends in a line feed.
 pub fn schema() -> String {
@@ -99,6 +99,21 @@ impl JsonSchema for Means {
             "description": "One value, a list of status bits or elements, or a value for each signal.",
             "anyOf": [value, list, signals],
         })
+    }
+}
+
+impl JsonSchema for NamedValue {
+    fn schema_name() -> Cow<'static, str> {
+        "NamedValue".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let (name, of_models) = (generator.subschema_for::<String>(), generator.subschema_for::<ValueOfModels>());
+        json_schema!({ "anyOf": [name, of_models] })
     }
 }
 

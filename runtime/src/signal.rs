@@ -66,8 +66,8 @@ pub struct Signal<R: 'static, F: 'static = R> {
     model_limits: &'static [(u8, Option<(F, F)>)],
     specials: &'static [(i64, &'static str)],
     has_absent: bool,
-    /// Bits that device models do not have: number of the model, bits, and what they are there.
-    lacking: &'static [(u8, u64, u64)],
+    /// What device models do not have, by number of the model.
+    lacking: &'static [(u8, Lack)],
     /// Whether a value has a meaning only on a device model.
     is_by_model: bool,
     raw: PhantomData<R>,
@@ -136,10 +136,10 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         Self { has_absent: true, ..self }
     }
 
-    /// Adds the bits that device models do not have: number of the model, bits, and what they are
-    /// there. Requests to such a model do not change them.
+    /// Adds what device models do not have, by number of the model. Requests to such a model do not
+    /// have it.
     #[must_use]
-    pub const fn lacking(self, lacking: &'static [(u8, u64, u64)]) -> Self {
+    pub const fn lacking(self, lacking: &'static [(u8, Lack)]) -> Self {
         Self { lacking, ..self }
     }
 
@@ -222,20 +222,22 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests bits against what the device model has. It returns whether limits apply to them.
     #[inline(always)]
     fn check_model(&self, bits: u64, payload: &Payload) -> Result<bool, Error> {
-        match self.lacking_on(payload) {
-            None => Ok(true),
-            Some((_, mask, blank)) if (bits ^ blank) & mask == 0 => Ok(false),
-            Some(_) => Err(self.meaningless(payload)),
+        if self.lacks(payload, |lack| lack.is_shown_by(bits)) {
+            return Err(self.meaningless(payload));
         }
+        Ok(!self.lacks_bits(payload))
     }
 
-    /// Returns the bits that the device model does not have, if there are any.
+    /// Tests whether the device model does not have bits of the signal.
     #[inline(always)]
-    fn lacking_on(&self, payload: &Payload) -> Option<&(u8, u64, u64)> {
-        if self.lacking.is_empty() {
-            return None;
-        }
-        self.lacking.iter().find(|(model, ..)| Some(*model) == payload.model())
+    fn lacks_bits(&self, payload: &Payload) -> bool {
+        self.lacks(payload, |lack| matches!(lack, Lack::Bits(..)))
+    }
+
+    /// Tests what the device model does not have.
+    #[inline(always)]
+    fn lacks(&self, payload: &Payload, is_meant: impl Fn(&Lack) -> bool) -> bool {
+        self.lacking.iter().any(|(model, lack)| Some(*model) == payload.model() && is_meant(lack))
     }
 
     /// Returns the value that limits apply to.
@@ -320,7 +322,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Tests the value that the caller gave against the limits, if `payload` keeps to them.
     pub(crate) fn check_asked(&self, asked: F, payload: &Payload) -> Result<(), Error> {
-        if payload.keeps_limits() && self.lacking_on(payload).is_none() { self.check(asked, payload) } else { Ok(()) }
+        if payload.keeps_limits() && !self.lacks_bits(payload) { self.check(asked, payload) } else { Ok(()) }
     }
 
     /// Says that a value does not fit, with the limits of what the bits hold.
@@ -348,6 +350,26 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         match self.scale {
             Some(scale) => scale,
             None => Scale::ONE,
+        }
+    }
+}
+
+/// What a device model does not have of a signal.
+#[derive(Clone, Copy, Debug)]
+pub enum Lack {
+    /// Bits, and what they are on such a model.
+    Bits(u64, u64),
+    /// A raw value that has a name on other models.
+    Value(i64),
+}
+
+impl Lack {
+    /// Tests whether the bits of a signal show it.
+    #[inline(always)]
+    const fn is_shown_by(self, bits: u64) -> bool {
+        match self {
+            Self::Bits(mask, blank) => (bits ^ blank) & mask != 0,
+            Self::Value(raw) => raw as u64 == bits,
         }
     }
 }

@@ -4,7 +4,7 @@ use canspec_protocols::{infy, megmeet};
 use canspec_runtime::Frame;
 use canspec_tests::{
     features_model_layouts as layouts, features_model_limits as limits, features_revisions as revisions,
-    features_scales_by_model as scales,
+    features_scales_by_model as scales, features_values_by_model as values,
 };
 
 /// The limits that the INFY document prints for its models in 3.3: voltage and current.
@@ -145,13 +145,28 @@ fn without_a_model_such_a_number_has_no_meaning() {
 #[test]
 fn a_model_refuses_fields_and_bits_that_it_does_not_have() {
     use revisions::{Model, SetLimits, SetLimitsAlarms as Alarms, Target};
-    let takes = |heating_w, alarms, model| SetLimits { current_a: 50, heating_w, alarms }.within(model).is_ok();
+    let takes = |heating, alarms, model| SetLimits { current_a: 50, heating, alarms }.within(model).is_ok();
     assert!(takes(0, Alarms::HOT, Model::V1_2) && takes(100, Alarms::COLD, Model::V1_3));
     assert!(!takes(100, Alarms::HOT, Model::V1_2) && !takes(0, Alarms::COLD, Model::V1_2));
-    assert!(!takes(0, Alarms::HOT, Model::V1_3), "its least power is 10 W");
-    let set = SetLimits { current_a: 50, heating_w: 100, alarms: Alarms::COLD };
+    assert!(!takes(0, Alarms::HOT, Model::V1_3), "its least value is 10");
+    let set = SetLimits { current_a: 50, heating: 100, alarms: Alarms::COLD };
     let frame = set.set(Target::Battery).map(|request| request.frame().to_string());
     assert_eq!(frame.as_deref(), Ok("004#32640200"), "without a model everything counts");
     let error = set.within(Model::V1_2).expect_err("a field too much");
     assert_eq!(error.to_string(), "`heating` of `set_limits` has no such value");
+}
+
+#[test]
+fn a_model_refuses_named_values_that_it_does_not_have() {
+    use values::{Model, SetMode, SetModeMode as Mode, Target};
+    let takes = |mode, delay_s, model| SetMode { mode, delay_s }.within(model).is_ok();
+    assert!(takes(Mode::Idle, SetMode::DELAY_NEVER, Model::V1_2) && takes(Mode::Boost, 5, Model::V1_3));
+    assert!(!takes(Mode::Boost, 5, Model::V1_2) && !takes(Mode::Idle, SetMode::DELAY_AT_ONCE, Model::V1_2));
+    assert!(!takes(Mode::Idle, 101, Model::V1_2), "its limits count all the same");
+    assert!(takes(Mode::Unknown(7), 100, Model::V1_2), "a value without a name is sent as it is");
+    let set = SetMode { mode: Mode::Boost, delay_s: SetMode::DELAY_AT_ONCE };
+    let frame = set.set(Target::Battery).map(|request| request.frame().to_string());
+    assert_eq!(frame.as_deref(), Ok("006#02FE0000"), "without a model everything counts");
+    let error = set.within(Model::V1_2).expect_err("a value too much");
+    assert_eq!(error.to_string(), "`mode` of `set_mode` has no such value");
 }

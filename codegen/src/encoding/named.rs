@@ -1,12 +1,13 @@
 //! Values that have names and are no quantities.
 
 use super::{Allowed, Input, Room, Value, bits, bits_of_spec};
-use crate::model::{Enumeration, Misfit, NamedValue, NoteRule, Signal};
+use crate::model::{DeviceModel, Enumeration, Misfit, ModelId, NamedValue, NoteRule, Signal, Table, only};
 use crate::number::Rational;
 
 pub struct Named<'a> {
     pub signal: &'a Signal,
     pub known: &'a Enumeration,
+    pub models: &'a Table<ModelId, DeviceModel>,
 }
 
 impl Room for Named<'_> {
@@ -36,9 +37,9 @@ impl Room for Named<'_> {
     fn description(&self) -> Vec<String> {
         let digits = usize::from(self.known.width.div_ceil(4));
         let is_small = self.known.values.iter().all(|value| value.raw < 10);
-        let shown = |value: &NamedValue| match value.raw {
-            raw if is_small => format!("{raw} = {}", value.name),
-            raw => format!("0x{raw:0digits$X} = {}", value.name),
+        let shown = |NamedValue { raw, name, models, .. }: &NamedValue| {
+            let only = only(self.models, models).map_or(String::new(), |only| format!(" ({only})"));
+            if is_small { format!("{raw} = {name}{only}") } else { format!("0x{raw:0digits$X} = {name}{only}") }
         };
         self.known.values.iter().map(shown).collect()
     }

@@ -60,7 +60,11 @@ impl<'a> Table<'a> {
         self.entries.iter().filter_map(move |(key, entry)| {
             let path = self.path.key(key);
             Some(if is_of_values {
-                Name { text: entry.value.text()?, at: path.at_value(), title: None }
+                let (text, path) = match entry.value.text() {
+                    Some(text) => (text, path),
+                    None => (entry.value.text_at("name")?, path.key("name")),
+                };
+                Name { text, at: path.at_value(), title: None }
             } else {
                 Name { text: key, at: path.at_key(), title: entry.value.text_at("title") }
             })

@@ -45,6 +45,17 @@ pub struct NamedValue {
     pub raw: i128,
     /// Name in the spec, in `snake_case`.
     pub name: String,
+    /// The only device models that have it; empty if every model has it.
+    pub models: Vec<ModelId>,
+    /// Place of that list in the spec.
+    pub models_path: Path,
+}
+
+impl NamedValue {
+    /// Tests whether a device model has the value.
+    pub fn is_of(&self, model: ModelId) -> bool {
+        self.models.is_empty() || self.models.contains(&model)
+    }
 }
 
 /// A word whose named bits are conditions.

@@ -38,7 +38,8 @@ impl Resolver<'_> {
             self.error_with_help(&rules::NAMED_VALUE, at.at_key(), text, help);
             return None;
         }
-        Some(NamedValue { raw, name: NOT_AVAILABLE.to_owned() })
+        let (name, models, models_path) = (NOT_AVAILABLE.to_owned(), Vec::new(), Path::default());
+        Some(NamedValue { raw, name, models, models_path })
     }
 
     /// Reads what a field or its type says, which must make a difference.

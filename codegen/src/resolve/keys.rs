@@ -88,7 +88,7 @@ impl Role {
 
     /// Tests whether the role reads a key.
     pub fn reads(self, key: Key) -> bool {
-        let signal = SIGNALS.concat().contains(&self);
+        let signal = self.is_signal();
         let among = |roles: &[Self]| roles.contains(&self);
         match key {
             Key::Section | Key::Erratum => true,
@@ -120,6 +120,11 @@ impl Role {
             Key::In => signal || among(&[Self::Constant, Self::Packed]),
             Key::Models => signal || self == Self::Packed,
         }
+    }
+
+    /// Tests whether it is a signal without parts.
+    fn is_signal(self) -> bool {
+        SIGNALS.concat().contains(&self)
     }
 
     /// Returns the keys that the role reads, without those that almost every role reads.
@@ -229,8 +234,18 @@ impl Resolver<'_> {
                 None => self.misplaced(&path, key, role),
             }
         }
+        self.check_values(&merged.path(self.diagnostics, Key::Values), &merged.field, role);
         for source in &merged.sources {
             self.check_nothing_empty(source);
+        }
+    }
+
+    /// Refuses `models` of a named value whose field is no signal.
+    fn check_values(&mut self, path: &Path, field: &Field, role: Role) {
+        for (raw, value) in field.values.iter().filter(|(_, value)| !value.models.is_empty() && !role.is_signal()) {
+            let text = format!("`models` of a named value means nothing for {}", role.name());
+            let help = format!("write the name alone, as in `{raw}: {}`", value.name);
+            self.error_with_help(&rules::MISPLACED_KEY, path.key(raw).key("models").at_key(), text, help);
         }
     }
 
@@ -239,6 +254,7 @@ impl Resolver<'_> {
         for key in field.keys().filter(|key| !role.reads(*key)) {
             self.misplaced(&path.key(key), key, role);
         }
+        self.check_values(&path.key(Key::Values), field, role);
         self.check_nothing_empty(path);
     }
 

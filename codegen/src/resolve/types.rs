@@ -224,14 +224,23 @@ impl Resolver<'_> {
     }
 
     /// Reads `{raw: name}`.
-    pub fn values(&mut self, path: &Path, values: &ast::Map<String>, width: u8, numeral: Numeral) -> Vec<NamedValue> {
+    pub fn values(
+        &mut self,
+        path: &Path,
+        values: &ast::Map<ast::NamedValue>,
+        width: u8,
+        numeral: Numeral,
+    ) -> Vec<NamedValue> {
         let (first, last) = numeral.raw_limits(width);
         let mut named: Vec<NamedValue> = Vec::new();
         let mut places = Vec::new();
         let (mut of_raw, mut of_name) = (HashMap::new(), HashMap::new());
-        for (raw, name) in values {
+        for (raw, ast::NamedValue { name, models }) in values {
             let at = path.key(raw);
             self.check_value_name(&at, name);
+            self.check_not_empty(&at, &["models"]);
+            let models_path = at.key("models");
+            let models = self.models_named(&models_path, models);
             let Some(number) = self.raw_key(&at, raw, first, last) else { continue };
             let repeated: [Option<usize>; 2] = [of_raw.get(&number).copied(), of_name.get(name).copied()];
             if let Some(index) = repeated.into_iter().flatten().min() {
@@ -248,7 +257,7 @@ impl Resolver<'_> {
             of_raw.insert(number, named.len());
             of_name.insert(name, named.len());
             places.push(at);
-            named.push(NamedValue { raw: number, name: name.clone() });
+            named.push(NamedValue { raw: number, name: name.clone(), models, models_path });
         }
         named
     }
@@ -274,6 +283,8 @@ impl Resolver<'_> {
     }
 
     fn check_value_name(&mut self, path: &Path, name: &str) {
+        let own = path.key("name");
+        let path = if self.diagnostics.has(&own) { &own } else { path };
         let plain = name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_');
         if !plain || !name.starts_with(|letter: char| letter.is_ascii_lowercase()) {
             self.report_form(

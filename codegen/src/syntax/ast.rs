@@ -195,6 +195,26 @@ pub struct StatusBit {
     pub erratum: Names,
 }
 
+/// The name of a raw value. It is a map if only some device models have the value.
+#[derive(Clone, Debug)]
+pub struct NamedValue {
+    /// The name.
+    pub name: String,
+    /// The only device models that have the value; empty if every model has it.
+    pub models: Vec<String>,
+}
+
+/// A named raw value that only some device models have.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ValueOfModels {
+    /// Name of the raw value: `boost`.
+    pub name: String,
+    /// List of the only device models that have the value: `[SM_750]`.
+    pub models: Vec<String>,
+}
+
 /// Bytes of a type, and the value that they stand for.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -77,7 +77,8 @@ fn every_leaf_is_the_text_of_the_file() {
     );
     let times: Vec<_> = spec.timing.values().map(|timing| timing.time.as_str()).collect();
     assert_eq!(times, ["0x10", "16", "18E5", "1_000", "010", ".inf"]);
-    let values: Vec<_> = spec.types["a"].values.iter().map(|(raw, name)| (raw.as_str(), name.as_str())).collect();
+    let values: Vec<_> =
+        spec.types["a"].values.iter().map(|(raw, value)| (raw.as_str(), value.name.as_str())).collect();
     assert_eq!(values, [("0x10", "1.50"), ("16", "2024-05-13"), ("0", "on")]);
 }
 

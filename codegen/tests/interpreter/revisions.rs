@@ -1,4 +1,4 @@
-//! Fields and status bits that only some device models have.
+//! Fields, status bits and named values that only some device models have.
 
 use canspec_codegen::interpret::{Content, decode, encode};
 use canspec_codegen::model::Protocol;
@@ -37,7 +37,7 @@ fn what_the_model_does_not_have_gets_a_note_where_bits_show_it() {
     assert_eq!(notes(&battery, "V1_2", "005#32640100"), ["model_dependent: V1_2 has no `heating`"]);
     assert_eq!(notes(&battery, "V1_2", "005#32000300"), ["model_dependent: `alarms` of V1_2 has no `cold`"]);
     assert_eq!(notes(&battery, "V1_2", "005#32000100"), [""; 0]);
-    assert_eq!(notes(&battery, "V1_3", "005#32000300"), ["out_of_range: heating 0 W is outside 10..200 W"]);
+    assert_eq!(notes(&battery, "V1_3", "005#32000300"), ["out_of_range: heating 0 is outside 10..200"]);
     assert_eq!(note_texts(&battery, "005#32640300"), [""; 0]);
 }
 
@@ -48,7 +48,7 @@ fn a_request_to_a_model_leaves_out_what_it_does_not_have() {
         let model = Some(model(&battery, name));
         requested(&battery, model, "set_limits", "battery", signals).map_err(|refusal| refusal.0)
     };
-    let (current, heating) = (("current", "50A"), ("heating", "100W"));
+    let (current, heating) = (("current", "50A"), ("heating", "100"));
     assert_eq!(asked("V1_2", &[current, ("alarms", "[hot]")]).as_deref(), Ok("004#32000100"));
     assert_eq!(asked("V1_3", &[current, heating, ("alarms", "[cold]")]).as_deref(), Ok("004#32640200"));
     let refused = [
@@ -84,4 +84,29 @@ fn a_field_that_a_model_does_not_have_is_sent_as_reserved_bits_are() {
     assert_eq!(made.map_err(|refusal| refusal.0).as_deref(), Ok("004#05FF"));
     assert_eq!(notes(&battery, "OLD", "004#05FF"), [""; 0]);
     assert_eq!(notes(&battery, "OLD", "004#0500"), ["model_dependent: OLD has no `heating`"]);
+}
+
+#[test]
+fn a_named_value_keeps_its_name_on_a_model_that_does_not_have_it_and_is_never_asked_of_it() {
+    let battery = feature("values_by_model");
+    assert_eq!(notes(&battery, "V1_2", "007#02050000"), ["model_dependent: `mode` of V1_2 has no `boost`"]);
+    assert_eq!(notes(&battery, "V1_2", "007#00FE0000"), ["model_dependent: `delay` of V1_2 has no `at_once`"]);
+    assert_eq!(notes(&battery, "V1_2", "007#00FF0000"), [""; 0]);
+    assert_eq!(notes(&battery, "V1_3", "007#02FE0000"), [""; 0]);
+    let asked = |name: Option<&str>, mode, delay| {
+        let model = name.map(|name| model(&battery, name));
+        let signals = [("mode", mode), ("delay", delay)];
+        requested(&battery, model, "set_mode", "battery", &signals).map_err(|refusal| refusal.0)
+    };
+    assert_eq!(asked(Some("V1_2"), "idle", "never").as_deref(), Ok("006#00FF0000"));
+    assert_eq!(asked(Some("V1_3"), "boost", "at_once").as_deref(), Ok("006#02FE0000"));
+    assert_eq!(asked(None, "boost", "at_once").as_deref(), Ok("006#02FE0000"));
+    let refused = [
+        (asked(Some("V1_2"), "boost", "5s"), "set_mode.mode: `mode` of V1_2 has no `boost`"),
+        (asked(Some("V1_2"), "idle", "at_once"), "set_mode.delay: `delay` of V1_2 has no `at_once`"),
+        (asked(Some("V1_2"), "idle", "101s"), "set_mode.delay: 101 s is outside 0..100 s"),
+    ];
+    for (asked, expected) in refused {
+        assert_eq!(asked, Err(expected.to_owned()));
+    }
 }

@@ -193,13 +193,13 @@ impl core::ops::BitOr for SetLimitsAlarms {
 
 /// Set limits: `command` 0x002. Section 2.
 /// - [`set`](SET_ACCESS): the module answers (`battery`).
-/// - Request of `V1_2` `004#32000100`: `current` 50 A, `heating` 0 W, `alarms` \[hot\].
+/// - Request of `V1_2` `004#32000100`: `current` 50 A, `heating` 0, `alarms` \[hot\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SetLimits {
     /// Current in A: byte 0, `0..=100`.
     pub current_a: u8,
-    /// Heating in W: byte 1, `10..=200`, only on `V1_3`.
-    pub heating_w: u8,
+    /// Heating: byte 1, `10..=200`, only on `V1_3`.
+    pub heating: u8,
     /// Alarms: byte 2.
     pub alarms: SetLimitsAlarms,
 }
@@ -209,10 +209,10 @@ impl SetLimits {
     pub const CURRENT: Signal<u8> = Signal::new("current", Place::byte(0)).unit("A").limits(0, 100);
     /// The signal `heating`, to read or write it alone, or to ask for its limits.
     pub const HEATING: Signal<u8> =
-        Signal::new("heating", Place::byte(1)).unit("W").limits(10, 200).lacking(&[(Model::V1_2 as u8, 0xFF, 0x00)]);
+        Signal::new("heating", Place::byte(1)).limits(10, 200).lacking(&[(Model::V1_2 as u8, Lack::Bits(0xFF, 0x00))]);
     /// The signal `alarms`, to read or write it alone, or to ask for its limits.
     pub const ALARMS: Signal<SetLimitsAlarms> =
-        Signal::new("alarms", Place::byte(2)).lacking(&[(Model::V1_2 as u8, 0x02, 0x00)]);
+        Signal::new("alarms", Place::byte(2)).lacking(&[(Model::V1_2 as u8, Lack::Bits(0x02, 0x00))]);
     /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x00];
     /// The access `set`, for filters and blank frames of it.
@@ -250,12 +250,12 @@ impl Layout for SetLimits {
     const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT, &Self::HEATING, &Self::ALARMS];
     const DECODE: Decode<Self> = |data| Self {
         current_a: Self::CURRENT.get(data),
-        heating_w: Self::HEATING.get(data),
+        heating: Self::HEATING.get(data),
         alarms: Self::ALARMS.get(data),
     };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::CURRENT.put(message.current_a, payload)?;
-        Self::HEATING.put(message.heating_w, payload)?;
+        Self::HEATING.put(message.heating, payload)?;
         Self::ALARMS.put(message.alarms, payload)
     };
 }

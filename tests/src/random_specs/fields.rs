@@ -1,5 +1,7 @@
 //! Fields: texts, named values, status words, packed values and words.
 
+use serde_yaml::Value;
+
 use super::draft::Draft;
 use super::names::Scope;
 use super::yaml::{Map, list};
@@ -238,6 +240,19 @@ impl Draft {
             field.put("default", self.one(&names));
         }
         field.put("values", values);
+        self.values_on_some(field);
+    }
+
+    /// Lists the only device models that have a named value.
+    pub fn values_on_some(&mut self, field: &mut Map) {
+        let Some(values) = field.0.get_mut("values").and_then(Value::as_mapping_mut) else { return };
+        for value in values.values_mut() {
+            let mut known = Map::of([("name", value.clone())]);
+            self.only_on_some(&mut known, 10);
+            if known.has("models") {
+                *value = known.into();
+            }
+        }
     }
 
     /// Names some of some raw values, one at least.

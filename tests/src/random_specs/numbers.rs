@@ -83,6 +83,7 @@ impl Draft {
             let raw: Vec<_> = special.into_iter().filter_map(|number| grid.numeral.raw(number)).collect();
             let values = self.names_of(&raw);
             field.put("values", values);
+            self.values_on_some(field);
         }
         if self.chance(20) {
             field.put("default", grid.physical(self.one(&[first, last])));

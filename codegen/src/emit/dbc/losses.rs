@@ -17,12 +17,14 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
     losses.extend(about(protocol, |signal| {
         let word = signal.encoding.status_word().map(|word| &protocol[word]);
         let bits = word.into_iter().flat_map(|word| &word.bits);
-        let is_of_some = !signal.models.is_empty() || bits.into_iter().any(|bit| !bit.models.is_empty());
-        is_of_some.then_some("is not on all device models, or some of its bits are not")
+        let values = protocol.named_values(signal).iter().map(|value| &value.models);
+        let mut lists = bits.map(|bit| &bit.models).chain(values).chain([&signal.models]);
+        lists
+            .any(|models| !models.is_empty())
+            .then_some("is not on all device models, or some of its bits or values are not")
     }));
     losses.extend(about(protocol, |signal| {
-        let named = signal.encoding.enumeration().map_or(&signal.specials, |known| &protocol[known].values);
-        let is_beyond = named.iter().any(|value| !is_writable(value.raw));
+        let is_beyond = protocol.named_values(signal).iter().any(|value| !is_writable(value.raw));
         is_beyond.then_some("names raw values from 2^63 on")
     }));
     losses.extend(protocol.messages.iter().filter_map(lengths));

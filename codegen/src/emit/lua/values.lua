@@ -233,12 +233,14 @@ local function on_model(signal, model)
   return signal.on and signal.on[model] or signal
 end
 
--- Says that a device model does not have what bits show. It also returns whether the model lacks the signal.
-local function lack(signal, model, raw)
+-- Says that a device model does not have what bits or their raw value show. It also returns whether the model lacks
+-- the signal.
+local function lack(signal, model, bits, raw)
   local known = signal.lacking and signal.lacking[model]
   if not known then return nil end
-  local bits = type(raw) == "number" and UInt64(raw) or raw
-  if bits:bxor(known.blank):band(known.mask) == UInt64(0) then return nil, known.whole end
+  local wide = type(bits) == "number" and UInt64(bits) or bits
+  local is_blank = wide:bxor(known.blank):band(known.mask) == UInt64(0)
+  if is_blank and not (known.values and known.values[key(raw)]) then return nil, known.whole end
   return protocol.models[model] .. " has no such `" .. signal.name .. "`", known.whole
 end
 
@@ -246,9 +248,9 @@ end
 -- note.
 local function reading(frame, known)
   local signal = on_model(known, frame.model)
-  local raw = get(frame, signal.place)
-  local lacked, is_whole = lack(signal, frame.model, raw)
-  if signal.signed then raw = signed(raw, signal.place.width) end
+  local bits = get(frame, signal.place)
+  local raw = signal.signed and signed(bits, signal.place.width) or bits
+  local lacked, is_whole = lack(signal, frame.model, bits, raw)
   local special = signal.specials and signal.specials[key(raw)]
   if special then
     return { signal = signal, raw = raw, name = special, rule = lacked and "model_dependent", text = lacked }

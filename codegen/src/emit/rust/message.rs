@@ -81,7 +81,7 @@ pub fn value(signal: &Signal) -> TokenStream {
     let rows = specials.iter().map(|(raw, name)| quote!((#raw, #name)));
     let listed = (!specials.is_empty()).then(|| quote!(.specials(&[#(#rows),*])));
     let absent = has_absent.then(|| quote!(.absent()));
-    let lacking = lacking.iter().map(|(model, [bits, blank])| quote!((Model::#model as u8, #bits, #blank)));
+    let lacking = lacking.iter().map(|(model, lack)| quote!((Model::#model as u8, #lack)));
     let lacking = (!signal.lacking.is_empty()).then(|| quote!(.lacking(&[#(#lacking),*])));
     let depends = signal.is_by_model.then(|| quote!(.by_model()));
     quote! {

@@ -6,7 +6,7 @@
 use indexmap::IndexMap;
 use serde::Deserialize;
 
-use super::{Map, Names, Pattern, StatusBit, ValueExample};
+use super::{Map, NamedValue, Names, Pattern, StatusBit, ValueExample};
 
 /// What stands after a key. It can be missing.
 trait Entry: Clone {
@@ -160,8 +160,9 @@ keys! {
     /// Names of raw values, before scale and offset: `{0: standby, 1: running}`; none if absent.
     /// Beside `unit`, `scale`, `offset` or `range` these are special values, and lie outside the
     /// range. Of an address type they are the only numbers that the document names:
-    /// `{0x20: gprs, 0x40: upper_computer}`.
-    Values "values": values: Map<String>, inherited;
+    /// `{0x20: gprs, 0x40: upper_computer}`. A name that only some device models have is a map:
+    /// `{3: {name: boost, models: [V1_3]}}`.
+    Values "values": values: Map<NamedValue>, inherited;
     /// What stands for a value that the device does not have: `ones` or `none`; the protocol's
     /// `absent` if absent. `ones` are bits that are all 1, and the greatest signed number.
     Absent "absent": absent: Option<String>, inherited;

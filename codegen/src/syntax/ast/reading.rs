@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::{ByModel, Field, IdentifierEntry, Map, Means, Names};
+use super::{ByModel, Field, IdentifierEntry, Map, Means, NamedValue, Names, ValueOfModels};
 
 impl<'de> Deserialize<'de> for Names {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -50,6 +50,29 @@ impl<'de> Deserialize<'de> for IdentifierEntry {
             }
         }
         deserializer.deserialize_any(EntryVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for NamedValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ValueVisitor;
+        impl<'de> Visitor<'de> for ValueVisitor {
+            type Value = NamedValue;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a name, or a map with `name` and `models`")
+            }
+
+            fn visit_str<E>(self, name: &str) -> Result<NamedValue, E> {
+                Ok(NamedValue { name: name.to_owned(), models: Vec::new() })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<NamedValue, A::Error> {
+                let ValueOfModels { name, models } = ValueOfModels::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(NamedValue { name, models })
+            }
+        }
+        deserializer.deserialize_any(ValueVisitor)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 85] = [
+const TAKEN: [&str; 86] = [
     "Address",
     "AddressType",
     "Addressing",
@@ -48,6 +48,7 @@ const TAKEN: [&str; 85] = [
     "Into",
     "Iterator",
     "Kind",
+    "Lack",
     "Layout",
     "Legend",
     "LongLayout",

@@ -42,8 +42,8 @@ pub struct Signal {
     pub specials: Vec<(TokenStream, String)>,
     /// Whether the last of them says that there is no value.
     pub has_absent: bool,
-    /// The bits that device models do not have: variant of the model, bits, and what they are there.
-    pub lacking: Vec<(Ident, [TokenStream; 2])>,
+    /// What device models do not have: variant of the model, and bits or a value.
+    pub lacking: Vec<(Ident, TokenStream)>,
     /// Whether its scale depends on the device model.
     pub is_by_model: bool,
     /// The methods for device models, if its scale depends on the model.
@@ -204,7 +204,7 @@ impl Context<'_> {
         let message = content.message;
         let range = signal.hull(self.protocol.models_of(message));
         let range = range.map(|range| coding.limits.range(signal, range));
-        let special = |(special, name)| Special::new(name, message, signal, &coding, special);
+        let special = |(special, name)| Special::new(name, (self.protocol, message), signal, &coding, special);
         Signal {
             comment: Comment::line(format!(
                 "The signal `{}`, to read or write it alone, or to ask for its limits.",
@@ -228,13 +228,18 @@ impl Context<'_> {
         }
     }
 
-    /// Plans the bits that the models of a message do not have.
-    fn lacking(&self, message: &Message, signal: &model::Signal) -> Vec<(Ident, [TokenStream; 2])> {
+    /// Plans what the models of a message do not have.
+    fn lacking(&self, message: &Message, signal: &model::Signal) -> Vec<(Ident, TokenStream)> {
         let Self { protocol, models, .. } = *self;
-        let bits = |bits: u64| hexadecimal(bits, signal.place.width());
-        let row = |known: Lacking| (models.variant(known.model).clone(), [known.mask, known.blank].map(bits));
+        let rows = |known: Lacking| {
+            let model = models.variant(known.model);
+            let [mask, blank] = [known.mask, known.blank].map(|bits| hexadecimal(bits, signal.place.width()));
+            let bits = (known.mask != 0).then(|| quote!(Lack::Bits(#mask, #blank)));
+            let values = known.values.into_iter().map(as_signed).map(|raw| quote!(Lack::Value(#raw)));
+            bits.into_iter().chain(values).map(|lack| (model.clone(), lack)).collect::<Vec<_>>()
+        };
         let lacking = protocol.models_of(message).filter_map(|model| protocol.lacking(message, signal, model));
-        lacking.map(row).collect()
+        lacking.flat_map(rows).collect()
     }
 
     fn member(
@@ -272,11 +277,17 @@ impl Context<'_> {
 }
 
 impl Special {
-    fn new(constant: Ident, message: &Message, known: &model::Signal, coding: &Coding, special: &NamedValue) -> Self {
-        let field = message.field_name(known);
+    fn new(
+        constant: Ident,
+        (protocol, message): (&Protocol, &Message),
+        known: &model::Signal,
+        coding: &Coding,
+        special: &NamedValue,
+    ) -> Self {
+        let (field, only) = (message.field_name(known), super::word::only(protocol, &special.models));
         Self {
             constant,
-            comment: Comment::line(format!("The value of `{field}` that stands for `{}`.", special.name)),
+            comment: Comment::line(format!("The value of `{field}` that stands for `{}`{only}.", special.name)),
             value: coding.value_of(known, special.raw),
         }
     }

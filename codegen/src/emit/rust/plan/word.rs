@@ -8,7 +8,7 @@ use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming, variants};
 use super::place::Written;
 use super::types::Types;
-use crate::model::{self, Message, Numeral, PartId, Protocol, Severity, Signal, Table};
+use crate::model::{self, Message, ModelId, Numeral, PartId, Protocol, Severity, Signal, Table};
 use crate::text::code;
 
 /// Named values.
@@ -49,7 +49,7 @@ impl Enumeration {
         let (variants, unknown) = variants(known.values.iter().map(|value| value.name.as_str()));
         let values = known.values.iter().zip(variants).map(|(value, variant)| Value {
             variant,
-            comment: Comment::line(format!("{}: `{}`.", value.raw, value.name)),
+            comment: Comment::line(format!("{}: `{}`{}.", value.raw, value.name, only(protocol, &value.models))),
             raw: decimal(value.raw),
             name: value.name.clone(),
         });
@@ -126,8 +126,7 @@ impl StatusBit {
 }
 
 fn bit_sentence(protocol: &Protocol, bit: &model::StatusBit) -> String {
-    let names: Vec<_> = bit.models.iter().map(|model| format!("`{}`", protocol[*model].name)).collect();
-    let only = if names.is_empty() { String::new() } else { format!(", only on {}", names.join(" and ")) };
+    let only = only(protocol, &bit.models);
     let severity = bit.severity.map_or_else(String::new, |severity| format!(", {}", severity_name(severity)));
     let title = doc::title(&bit.doc, &bit.name);
     let remarks =
@@ -136,6 +135,12 @@ fn bit_sentence(protocol: &Protocol, bit: &model::StatusBit) -> String {
         remarks.into_iter().filter_map(|(word, remark)| Some(format!("{word} {}", remark.as_ref()?.in_rust_doc())));
     let sentences = std::iter::once(format!("{title}: bit {}{severity}{only}", bit.bit)).chain(remarks);
     sentences.map(|text| doc::sentence_of(&text)).collect::<Vec<_>>().join(" ")
+}
+
+/// Names the only device models that have a bit or a value.
+pub fn only(protocol: &Protocol, models: &[ModelId]) -> String {
+    let names: Vec<_> = models.iter().map(|model| format!("`{}`", protocol[*model].name)).collect();
+    if names.is_empty() { String::new() } else { format!(", only on {}", names.join(" and ")) }
 }
 
 fn severity_name(severity: Severity) -> &'static str {
