@@ -9,6 +9,7 @@ mod array;
 mod data;
 mod encoding;
 mod example;
+mod extent;
 mod id;
 mod identifier;
 mod lacking;
@@ -29,6 +30,7 @@ pub use array::{Array, Element};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, Timing, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, LongExample, Meaning, Misfit, Origin, Said, ValueExample};
+pub use extent::Extent;
 pub use id::{
     AccessId, AddressTypeId, ArrayId, Entries, EnumerationId, ExchangeId, FieldId, FrameId, Id, LongMessageId,
     MessageId, ModeId, ModelId, PartId, SelectorId, SignalId, StatusWordId, Table, TimingId, TransportId,
@@ -44,7 +46,7 @@ pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
-pub use transport::{Transport, TransportFrame};
+pub use transport::{Groups, Isotp, Standard, Transport, TransportFrame};
 pub use unit::{Quantity, Symbol, Unit};
 
 use serde::{Deserialize, Serialize};
@@ -138,8 +140,8 @@ impl Protocol {
         &'a self,
         frame: &'a FrameLayout,
     ) -> impl DoubleEndedIterator<Item = (SignalId, &'a Signal)> + ExactSizeIterator + Clone {
-        let message = &self[frame.message];
-        frame.signals.iter().map(|signal| (*signal, &message[*signal]))
+        let content = self.content_of(frame);
+        frame.signals.iter().map(|signal| (*signal, &content[*signal]))
     }
 
     /// Returns the addressing patterns by which a frame is sent, with their modes.

@@ -2,12 +2,12 @@
 //! selectors.
 
 use canspec_codegen::interpret::{Content, Decoded, Input};
-use canspec_codegen::model::{Constant, Message, Protocol, Signal, Transport, TransportFrame};
+use canspec_codegen::model::{Constant, Message, Protocol, Signal, Transport};
 
 /// Returns the name of a frame, if a transport has it.
 pub fn name(protocol: &Protocol, decoded: &Decoded) -> Option<String> {
     let (_, transport, frame) = protocol.transport_frame(decoded.message).filter(|_| decoded.long.is_none())?;
-    let part = if frame == TransportFrame::Data { DATA } else { CONTROL };
+    let part = if frame.has_data() { DATA } else { CONTROL };
     Some(format!("{}.{part}", transport.name))
 }
 
@@ -37,7 +37,7 @@ fn message<'a>(protocol: &'a Protocol, transport: &Transport, part: &str, line: 
             |(name, value): &(String, u64)| *name == protocol[constant.selector].name && *value == constant.value;
         constant.in_payload().is_none() || line.selectors.iter().any(known)
     };
-    let frames = TransportFrame::ALL.iter().filter(|(frame, _)| (*frame == TransportFrame::Data) == (part == DATA));
+    let frames = transport.standard.frames().iter().filter(|(frame, _)| frame.has_data() == (part == DATA));
     let messages = frames.filter_map(|(frame, _)| Some(&protocol[transport.message(*frame)?]));
     let mut fitting = messages.filter(|message| message.constants.iter().all(is_constant));
     fitting.next().filter(|_| [DATA, CONTROL].contains(&part))

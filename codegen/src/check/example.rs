@@ -16,6 +16,7 @@ use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
+use crate::hex;
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
 };
@@ -297,7 +298,14 @@ impl<'a> Checker<'a> {
         let frame = self.frame();
         match encode(self.protocol, self.example.model, &content) {
             Ok(encoded) if encoded == frame => Ok(()),
-            Ok(encoded) => Err(wrong(self.frame_at(), format!("it encodes back to {encoded} instead of {frame}"))),
+            Ok(encoded) => {
+                let text = format!(
+                    "it encodes back to other bytes: {} instead of {}",
+                    hex::digits(&encoded.data),
+                    hex::digits(&frame.data)
+                );
+                Err(wrong(self.frame_at(), text))
+            }
             Err(_) if decoded.sender == Side::Controller && !self.example.notes.is_empty() => Ok(()),
             Err(refusal) => Err(wrong(self.frame_at(), format!("it does not encode back: {refusal}"))),
         }

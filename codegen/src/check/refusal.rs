@@ -24,7 +24,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 /// Says what is wrong with a refusal, and what to do.
 fn complaint(protocol: &Protocol, message: &Message, refusal: &FrameLayout) -> Option<(String, String)> {
     let name = &message.name;
-    let frames = protocol.frames_of(message).filter(|frame| frame.exchange == refusal.exchange);
+    let frames = protocol.layouts_of(message).filter(|frame| frame.exchange == refusal.exchange);
     let replies: Vec<_> = frames.clone().filter(|frame| frame.kind == Kind::Reply).collect();
     if replies.is_empty() || !frames.clone().any(|frame| frame.kind == Kind::Request) {
         let text =
@@ -36,7 +36,8 @@ fn complaint(protocol: &Protocol, message: &Message, refusal: &FrameLayout) -> O
         let constants = shown(protocol, refusal);
         return Some((format!("nothing tells a refusal of `{name}` from its reply: both have {constants}"), help));
     }
-    let is_known = protocol.frames.iter().any(|frame| says_why(frame, refusal));
+    let mut all = protocol.messages.iter().flat_map(|message| protocol.layouts_of(message));
+    let is_known = all.any(|frame| says_why(frame, refusal));
     (!is_known).then(|| {
         let text =
             format!("no message says why `{name}` is refused: none has a reply with {}", shown(protocol, refusal));

@@ -28,7 +28,7 @@ impl<M> Default for Assembly<M> {
 }
 
 /// The addresses of the two sides, in the order of their kinds.
-type Peers = Vec<(AddressTypeId, i64)>;
+pub type Peers = Vec<(AddressTypeId, i64)>;
 
 /// How many elements a device says that an array has.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +59,11 @@ pub struct Taken<M> {
     pub is_part: bool,
     /// The messages that ended.
     pub ended: Vec<Assembled<M>>,
+}
+
+impl<M> Taken<M> {
+    /// What becomes of a frame that changes nothing.
+    pub(super) const NOTHING: Self = Self { is_part: false, ended: Vec::new() };
 }
 
 /// A long message, or what came of it.
@@ -112,7 +117,7 @@ impl<M: Clone> Assembly<M> {
         // Without an addressing mode nobody knows who sends it.
         let found = protocol.long_message(&protocol[decoded.message]).filter(|_| decoded.addressing.is_some());
         let found = found.and_then(|(id, long)| Some((id, long, long.parts()?)));
-        let Some((id, long, parts)) = found else { return Taken { is_part: false, ended: Vec::new() } };
+        let Some((id, long, parts)) = found else { return Taken::NOTHING };
         let part = Part::of(protocol, (long, parts), model, frame, decoded);
         let mut ended = Vec::new();
         let open = self.transfers.iter().position(|known| (known.long, &known.peers) == (id, &peers));
@@ -217,7 +222,7 @@ impl<M: Clone> Transfer<M> {
             joined.data[bytes.clone()].copy_from_slice(data);
             joined.came[bytes].fill(true);
         }
-        let said = joined.read(protocol, long, model);
+        let said = joined.read(protocol, long.whole(), model);
         let of_addresses = |note: &&Note| matches!(note.rule, NoteRule::Addressing | NoteRule::Address);
         let notes = self.decoded.notes.iter().filter(of_addresses).cloned().chain(said.notes).collect();
         let decoded = Decoded { long: Some(self.long), signals: said.signals, notes, reserved: [0; 8], ..self.decoded };

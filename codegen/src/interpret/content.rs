@@ -29,7 +29,7 @@ pub fn blank_data(frame: &FrameLayout) -> [u8; 8] {
 }
 
 /// Returns the data bytes of a kind of frame with only its constants set.
-fn constant_data(frame: &FrameLayout) -> [u8; 8] {
+pub fn constant_data(frame: &FrameLayout) -> [u8; 8] {
     let mut data = [0; 8];
     frame.payload().for_each(|(place, value)| place.put(&mut data, value));
     data

@@ -24,9 +24,9 @@ pub fn decode(protocol: &Protocol, model: Option<ModelId>, frame: &Frame) -> Res
 }
 
 /// Decodes the identifier of a long message that came by a transport. `frame` is what it would be if one frame were
-/// enough, without data.
+/// enough, with the bytes that choose it.
 pub fn transported(protocol: &Protocol, model: Option<ModelId>, layout: &FrameLayout, frame: &Frame) -> Decoded {
-    let decoder = Decoder { protocol, model, frame, data: [0; 8] };
+    let decoder = Decoder { protocol, model, frame, data: frame.padded() };
     let bare = FrameLayout { signals: Vec::new(), covered: u64::MAX, reserved: Reserved::default(), ..layout.clone() };
     decoder.decoded((FrameId::new(0), &bare))
 }

@@ -1,7 +1,7 @@
 //! Makes a frame that a module sends, by name: a report or a reply of `module:3`.
 
 use super::arrays::parted_texts;
-use super::content::blank_data;
+use super::content::{blank_data, constant_data};
 use super::encode::{continue_all_but_last, find_message, frame, length_with, refuse};
 use super::long::{typed, typed_parts};
 use super::request::{Target, address, put_signals, raw_address, written_address};
@@ -75,7 +75,9 @@ pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -
     if let Some((transport, long)) = protocol.carried(layout) {
         let (mode, pattern) = way(protocol, message, layout, sent.to)?;
         let id = identifier(protocol, (message, layout), (mode, pattern), sent)?;
-        let data = typed(protocol, long, signals, (sent.model, Limits::Bits))?;
+        let mut header = constant_data(layout);
+        put_normal(protocol, layout, &mut header);
+        let data = typed(protocol, (long.extent(layout), header), signals, (sent.model, Limits::Bits))?;
         return frames(protocol, transport, (layout, id), &data);
     }
     let parts = typed_parts(protocol, message, signals, sent.model)?;

@@ -59,7 +59,8 @@ fn encode_parts(
 ) -> Result<Vec<Frame>, Refusal> {
     let message = &protocol[known.message];
     let limits = (model, Limits::Bits);
-    let data = long::joined(protocol, known, &content.signals, Some(&content.reserved), limits)?;
+    let whole = (known.whole(), [0; 8]);
+    let data = long::joined(protocol, whole, &content.signals, Some(&content.reserved), limits)?;
     let mut frames = Vec::new();
     for (number, data) in long::parts(known, model, &data)? {
         let signals = vec![
@@ -83,8 +84,12 @@ fn encode_transfer(
     let id = identifier(protocol, content)?;
     let layout = layout(protocol, message, known.frames.iter(), content, id)?;
     let limits = (model, Limits::of(layout, model));
-    let data = long::joined(protocol, known, &content.signals, Some(&content.reserved), limits)?;
-    let decoded = transported(protocol, model, layout, &frame(protocol, id, Vec::new()));
+    let mut header = [0; 8];
+    put_selectors(protocol, message, layout, content, &mut header)?;
+    let extent = (known.extent(layout), header);
+    let data = long::joined(protocol, extent, &content.signals, Some(&content.reserved), limits)?;
+    let head = data.iter().copied().take(layout.head()).collect();
+    let decoded = transported(protocol, model, layout, &frame(protocol, id, head));
     confirm(protocol, message, layout, &decoded, model)?;
     transfer::frames(protocol, transport, (layout, id), &data)
 }

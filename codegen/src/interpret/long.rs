@@ -7,7 +7,7 @@ use super::value::{Limits, physical, raw_of};
 use super::{Input, Note, Reading, Refusal};
 use crate::encoding::Words;
 use crate::hex;
-use crate::model::{LongMessage, Message, ModelId, NoteRule, Protocol, Signal};
+use crate::model::{Extent, LongMessage, Message, ModelId, NoteRule, Protocol, Signal};
 
 /// What a call writes for each signal, by name.
 pub type Texts = Vec<(String, String)>;
@@ -34,9 +34,9 @@ pub struct Values {
 
 impl Joined {
     /// Reads the signals whose bytes all came.
-    pub fn read(&self, protocol: &Protocol, long: &LongMessage, model: Option<ModelId>) -> Values {
-        let content = &long.content;
-        let present = content.signals.entries().filter(|(_, signal)| self.has(long, signal));
+    pub fn read(&self, protocol: &Protocol, extent: Extent, model: Option<ModelId>) -> Values {
+        let content = &extent.long().content;
+        let present = extent.signals().filter(|(_, signal)| self.has(extent.long(), signal));
         let signals: Vec<_> = present
             .map(|(id, signal)| {
                 let bits = signal.place.get(&window(&self.data, signal));
@@ -45,9 +45,9 @@ impl Joined {
             .collect();
         let note = |reading: &Reading| signal_note(protocol, content, model, reading);
         let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
-        notes.extend(self.count_note(long));
-        let reserved = self.without(signals.iter().map(|reading| &content[reading.signal]));
-        notes.extend(self.reserved_note(content));
+        notes.extend(self.count_note(extent));
+        let reserved = self.without(extent, signals.iter().map(|reading| &content[reading.signal]));
+        notes.extend(self.reserved_note(extent));
         Values { signals, notes, reserved }
     }
 
@@ -58,29 +58,31 @@ impl Joined {
     }
 
     /// Notes that some of the elements may be none.
-    fn count_note(&self, long: &LongMessage) -> Option<Note> {
-        let array = long.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
+    fn count_note(&self, extent: Extent) -> Option<Note> {
+        let array = extent.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
         let text = format!("nothing says how many of the elements of `{}` are real", array.name);
         Some(Note { rule: NoteRule::Count, text })
     }
 
-    /// Notes bits that no signal covers, if they are not as they are sent.
-    fn reserved_note(&self, content: &Message) -> Option<Note> {
-        let mut odd = self.without(&content.signals);
-        if content.reserved.are_ones {
-            let unnamed =
-                Self { data: vec![0xFF; self.data.len()], came: Vec::new(), ..*self }.without(&content.signals);
+    /// Notes bits that nothing covers, if they are not as they are sent.
+    fn reserved_note(&self, extent: Extent) -> Option<Note> {
+        let reserved = extent.long().content.reserved;
+        let without = |data: &Self| data.without(extent, extent.signals().map(|(_, signal)| signal));
+        let mut odd = without(self);
+        if reserved.are_ones {
+            let unnamed = without(&Self { data: vec![0xFF; self.data.len()], came: Vec::new(), ..*self });
             odd.iter_mut().zip(unnamed).for_each(|(byte, unnamed)| *byte ^= unnamed);
         }
-        let found = if content.reserved.are_ones { "clear" } else { "set" };
+        let found = if reserved.are_ones { "clear" } else { "set" };
         let text = format!("bits are {found} that no field has: 0x{}", hex::digits(&odd));
         let is_odd = odd.iter().zip(&self.came).any(|(byte, came)| *came && *byte != 0);
-        (is_odd && !content.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
+        (is_odd && !reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
     }
 
-    /// Returns the bits that none of these signals covers.
-    fn without<'s>(&self, signals: impl IntoIterator<Item = &'s Signal>) -> Vec<u8> {
+    /// Returns the bits that neither the header nor one of these signals covers.
+    fn without<'s>(&self, extent: Extent, signals: impl IntoIterator<Item = &'s Signal>) -> Vec<u8> {
         let mut rest = self.data.clone();
+        rest.iter_mut().zip(extent.header().to_be_bytes()).for_each(|(byte, mask)| *byte &= !mask);
         for signal in signals {
             let bytes = rest.iter_mut().skip(signal.window.into());
             bytes.zip(signal.place.mask()).for_each(|(byte, mask)| *byte &= !mask);
@@ -96,32 +98,37 @@ fn window(data: &[u8], signal: &Signal) -> [u8; 8] {
     window
 }
 
-/// Makes the data of a long message. Elements of the array of varying length may be missing at its end, and so may what
-/// lies beyond the shortest length. Without `reserved`, bits that no signal covers are as they are sent, and a signal that
-/// is left out takes its default.
+/// Makes the data of a long message. `header` has the bits of its constants and selectors. Elements of the array of varying
+/// length may be missing at its end, and so may what lies beyond the shortest length. Without `reserved`, bits that nothing
+/// covers are as they are sent, and a signal that is left out takes its default.
 pub fn joined(
     protocol: &Protocol,
-    long: &LongMessage,
+    (extent, header): (Extent, [u8; 8]),
     given: &[(String, Input)],
     reserved: Option<&[u8]>,
     (model, limits): (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
-    let content = &long.content;
-    if let Some((name, _)) = given.iter().find(|(name, _)| content.signals.iter().all(|signal| signal.name != *name)) {
+    let content = &extent.long().content;
+    let is_unknown = |name: &String| extent.signals().all(|(_, signal)| signal.name != *name);
+    if let Some((name, _)) = given.iter().find(|(name, _)| is_unknown(name)) {
         return Err(refuse(content, &format!("there is no signal `{name}`")));
     }
     let is_given = |signal: &Signal| given.iter().any(|(name, _)| *name == signal.name);
-    let count = long.varying().map(|array| {
+    let long = extent.long();
+    let count = extent.varying().map(|array| {
         let given = content.signals.iter().filter(|signal| is_given(signal)).filter_map(|signal| long.counted(signal));
         given.map(|index| index + 1).max().unwrap_or(0).max(array.least.unwrap_or(0))
     });
-    let mut data = vec![0; length(long, count, reserved.unwrap_or_default().len(), is_given)?];
+    let mut data = vec![0; length(extent, count, reserved.unwrap_or_default().len(), is_given)?];
     if reserved.is_none() && content.reserved.are_ones {
         data.fill(0xFF);
     }
     data.iter_mut().zip(reserved.unwrap_or_default()).for_each(|(byte, given)| *byte = *given);
+    for (byte, (bits, mask)) in data.iter_mut().zip(header.into_iter().zip(extent.header().to_be_bytes())) {
+        *byte = *byte & !mask | bits & mask;
+    }
     let is_there = |signal: &&Signal| long.is_among(count, signal) && signal.reach() <= data.len();
-    for signal in content.signals.iter().filter(is_there).collect::<Vec<_>>() {
+    for signal in extent.signals().map(|(_, signal)| signal).filter(is_there).collect::<Vec<_>>() {
         let input = given.iter().find(|(name, _)| *name == signal.name).map(|(_, input)| input.clone());
         let has_default = reserved.is_none() && long.counted(signal).is_none();
         let default = || signal.default_for(model).filter(|_| has_default).map(Input::Raw);
@@ -138,27 +145,27 @@ pub fn joined(
 
 /// Returns how many bytes a long message has with these signals, or at least these reserved bytes.
 fn length(
-    long: &LongMessage,
+    extent: Extent,
     count: Option<usize>,
     reserved: usize,
     is_given: impl Fn(&Signal) -> bool,
 ) -> Result<usize, Refusal> {
-    let content = &long.content;
+    let (long, content) = (extent.long(), &extent.long().content);
     let too_long = |most: usize| {
         let text = format!("`reserved` has {reserved} bytes, which are more than {most}");
         refuse(content, &text)
     };
-    if long.lengths.is_empty() {
-        let length = long.bytes_with(count).max(reserved);
+    if extent.lengths().is_empty() {
+        let length = extent.bytes_with(count).max(reserved);
         let most = match long.parts() {
             Some(_) => long.parts_of(long.longest()) * long.size(),
-            None => long.bytes_with(count),
+            None => extent.bytes_with(count),
         };
         return if length > most { Err(too_long(most)) } else { Ok(length) };
     }
     let given = content.signals.iter().filter(|signal| is_given(signal)).map(Signal::reach).max().unwrap_or(0);
-    let mut lengths = long.lengths.iter().map(|length| usize::from(*length));
-    lengths.find(|length| *length >= given.max(reserved)).ok_or_else(|| too_long(long.longest()))
+    let mut lengths = extent.lengths().iter().map(|length| usize::from(*length));
+    lengths.find(|length| *length >= given.max(reserved)).ok_or_else(|| too_long(extent.longest()))
 }
 
 /// Returns the number of each part, and its data in hexadecimal.
@@ -189,7 +196,7 @@ pub fn typed_parts(
     if given.is_empty() || given.iter().any(|(name, _)| name == number || name == data) {
         return Ok(None);
     }
-    let joined = typed(protocol, long, given, (model, Limits::Bits))?;
+    let joined = typed(protocol, (long.whole(), [0; 8]), given, (model, Limits::Bits))?;
     let parts = parts(long, model, &joined)?.into_iter();
     let texts = parts.map(|(part, text)| vec![(number.clone(), part.to_string()), (data.clone(), text)]);
     Ok(Some(texts.collect()))
@@ -198,11 +205,11 @@ pub fn typed_parts(
 /// Makes the data of a long message of what a call writes. A signal that is left out takes its default, if it has one.
 pub fn typed(
     protocol: &Protocol,
-    long: &LongMessage,
+    (extent, header): (Extent, [u8; 8]),
     given: &[(String, String)],
     (model, limits): (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
-    let mut inputs = Vec::new();
+    let (mut inputs, long) = (Vec::new(), extent.long());
     for (name, text) in parted_texts(&long.content, given)? {
         let signal = long.content.signals.iter().find(|signal| signal.name == name);
         let typed = signal.map(|signal| Words::from(protocol).with(signal.on(model), |room| room.typed(&text)));
@@ -211,5 +218,5 @@ pub fn typed(
     if let Some(name) = twice(&inputs) {
         return Err(refuse(&long.content, &format!("the signal `{name}` is given twice")));
     }
-    joined(protocol, long, &inputs, None, (model, limits))
+    joined(protocol, (extent, header), &inputs, None, (model, limits))
 }

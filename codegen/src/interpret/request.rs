@@ -1,7 +1,7 @@
 //! Makes a request by name: `set_output` to `module:3`.
 
 use super::arrays::parted_texts;
-use super::content::blank_data;
+use super::content::{blank_data, constant_data};
 use super::encode::{confirm, continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
 use super::long::typed;
 use super::transfer::frames;
@@ -123,7 +123,8 @@ pub fn accesses<'a>(
     signals: &[(String, String)],
 ) -> Result<Vec<&'a str>, Refusal> {
     let (_, message) = find_message(protocol, message)?;
-    let signals = parted_texts(message, signals)?;
+    let content = protocol.by_transport(message).map_or(message, |long| &protocol[long].content);
+    let signals = parted_texts(content, signals)?;
     let mut requests = requests_of(protocol, message, |_| true);
     requests.sort_by_key(|frame| {
         let carried: Vec<_> = protocol.signals_of(frame).map(|(_, signal)| signal.name.as_str()).collect();
@@ -184,7 +185,8 @@ pub fn requests(
     }
     let mode = mode(protocol, known, layout, target)?;
     let id = identifier(protocol, known, layout, mode, target, source)?;
-    let data = typed(protocol, long, signals, (model, Limits::Range(model)))?;
+    let extent = (long.extent(layout), constant_data(layout));
+    let data = typed(protocol, extent, signals, (model, Limits::Range(model)))?;
     frames(protocol, transport, (layout, id), &data)
 }
 

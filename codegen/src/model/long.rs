@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
-    Array, FrameLayout, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId, Transport,
-    TransportId,
+    Array, FrameLayout, Groups, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId,
+    Transport, TransportId,
 };
 
 /// What the data of several frames say together.
@@ -17,9 +17,10 @@ pub struct LongMessage {
     pub content: Message,
     /// How the frames carry it.
     pub carrier: Carrier,
-    /// The numbers of data bytes that it can have, the least first; empty if its signals decide.
+    /// The numbers of data bytes that it can have with its signals, the least first; empty if these decide.
     pub lengths: Vec<u16>,
-    /// What its frames would be if one were enough, for a message by a transport.
+    /// What its frames would be if one were enough, for a message by a transport. Their signals are those of `content`,
+    /// and their payload is the beginning of the joined data.
     pub frames: Vec<FrameLayout>,
 }
 
@@ -70,39 +71,27 @@ impl LongMessage {
 
     /// Returns how many of its data bytes a frame carries.
     pub fn size(&self) -> usize {
-        self.parts().map_or(Transport::PACKET, |parts| parts.size.into())
+        self.parts().map_or(Groups::PACKET, |parts| parts.size.into())
     }
 
     /// Returns the greatest number of data bytes.
     pub fn longest(&self) -> usize {
-        self.lengths.last().map_or_else(|| self.bytes_with(None), |length| usize::from(*length))
+        self.whole().longest()
     }
 
     /// Returns the least number of data bytes.
     pub fn shortest(&self) -> usize {
-        let of_signals = || self.bytes_with(self.varying().and_then(|array| array.least));
-        self.lengths.first().map_or_else(of_signals, |length| usize::from(*length))
+        self.whole().shortest()
     }
 
     /// Tests whether it can have some number of data bytes.
     pub fn has_length(&self, length: usize) -> bool {
-        if !self.lengths.is_empty() {
-            return self.lengths.iter().any(|known| usize::from(*known) == length);
-        }
-        let Some(array) = self.varying() else { return length == self.longest() };
-        (array.least.unwrap_or(0)..=array.elements.len()).any(|count| self.bytes_with(Some(count)) == length)
-    }
-
-    /// Returns how many elements an array of varying length has in some number of data bytes.
-    pub fn elements_in(&self, length: usize) -> Option<usize> {
-        let array = self.varying()?;
-        (0..=array.elements.len()).rev().find(|count| self.bytes_with(Some(*count)) <= length)
+        self.whole().has_length(length)
     }
 
     /// Returns how many data bytes it has with some number of elements in arrays of varying length, or with all.
     pub fn bytes_with(&self, elements: Option<usize>) -> usize {
-        let present = self.content.signals.iter().filter(|signal| self.is_among(elements, signal));
-        present.map(Signal::reach).max().unwrap_or(0)
+        self.whole().bytes_with(elements)
     }
 
     /// Tests whether a signal is there if arrays of varying length have some number of elements.
@@ -162,9 +151,13 @@ impl Protocol {
 
     /// Returns the transport that carries a frame, and the long message.
     pub fn carried<'a>(&'a self, frame: &FrameLayout) -> Option<(&'a Transport, &'a LongMessage)> {
-        let (_, long) = self.long_message(&self[frame.message])?;
-        let transport = &self[long.transport()?];
-        long.frames.iter().any(|known| known.is_kind_of(frame)).then_some((transport, long))
+        let long = &self[frame.long?];
+        Some((&self[long.transport()?], long))
+    }
+
+    /// Returns the message whose signals a frame carries: its own, or what several frames carry together.
+    pub fn content_of(&self, frame: &FrameLayout) -> &Message {
+        frame.long.map_or(&self[frame.message], |long| &self[long].content)
     }
 
     /// Returns what the frames of each message carry, then what the parts of each long message carry

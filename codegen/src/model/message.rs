@@ -243,9 +243,11 @@ pub struct FrameLayout {
     pub constants: Vec<Constant>,
     /// Payload selectors that this frame has, constants included.
     pub selectors: Vec<SelectorId>,
-    /// Signals of the message that this frame carries.
+    /// The long message whose signals these are, if a transport carries them; `None` for those of the message.
+    pub long: Option<LongMessageId>,
+    /// Signals that this frame carries.
     pub signals: Vec<SignalId>,
-    /// Payload bits of selectors and signals, byte 0 highest.
+    /// Payload bits of selectors and of the message's signals, byte 0 highest.
     pub covered: u64,
     /// What the bits are that nothing covers.
     pub reserved: Reserved,
@@ -292,6 +294,11 @@ impl FrameLayout {
     /// Returns the payload bits that are sent as 1 although nothing covers them, byte 0 highest.
     pub fn filled(&self) -> u64 {
         if self.reserved.are_ones { self.uncovered() } else { 0 }
+    }
+
+    /// Returns how many data bytes reach to the last bit that is covered.
+    pub fn head(&self) -> usize {
+        usize::try_from((u64::BITS - self.covered.trailing_zeros()).div_ceil(8)).unwrap_or(8)
     }
 
     /// Tests whether another frame is the same kind of frame of the same message.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::{Doc, FieldId, MessageId, Protocol, TransportId};
 
-/// A transport of SAE J1939-21. It announces a message, and carries it in packets of seven bytes.
+/// A standard by which messages travel, as a protocol uses it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Transport {
@@ -12,18 +12,45 @@ pub struct Transport {
     pub name: String,
     /// What the spec says beside it.
     pub doc: Doc,
+    /// The standard.
+    pub standard: Standard,
+    /// The messages that are its frames, in the order of [`Standard::frames`].
+    pub frames: Vec<MessageId>,
+}
+
+/// A standard of transports.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Standard {
+    /// SAE J1939-21. It announces a message longer than a frame, and carries it in packets of seven bytes.
+    J1939(Groups),
+    /// ISO 15765-2. It carries messages of any length in frames of its own, which have the identifier of the message.
+    Isotp(Isotp),
+}
+
+/// How J1939 numbers messages, and who sends them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Groups {
     /// Fields of the identifier that are the number of a group of parameters, the highest bits first.
     pub group: Vec<FieldId>,
     /// The field with the address of the receiver. It is the last one of `group`.
     pub target: FieldId,
     /// The field with the address of the sender.
     pub source: FieldId,
-    /// The messages that are its frames, in the order of [`TransportFrame::ALL`].
-    pub frames: Vec<MessageId>,
+}
+
+/// How ISO-TP makes frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Isotp {
+    /// The byte that fills frames up to eight bytes; `None` if they end with their data.
+    pub fill: Option<u8>,
 }
 
 /// What a frame of a transport is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum TransportFrame {
     /// Announces a message to one node, which says when the packets may come.
     RequestToSend,
@@ -37,38 +64,78 @@ pub enum TransportFrame {
     Abort,
     /// Carries a packet.
     Data,
+    /// Carries a whole message.
+    Single,
+    /// Announces a message, and carries its beginning.
+    First,
+    /// Carries the next bytes of a message.
+    Consecutive,
+    /// Says how the message may go on.
+    FlowControl,
 }
 
 impl TransportFrame {
-    /// Every frame, with the end of its message's name.
-    pub const ALL: [(Self, &'static str); 6] = [
-        (Self::RequestToSend, "request_to_send"),
-        (Self::ClearToSend, "clear_to_send"),
-        (Self::EndOfMessage, "end_of_message"),
-        (Self::Broadcast, "broadcast"),
-        (Self::Abort, "abort"),
-        (Self::Data, "data"),
-    ];
+    /// Tests whether it carries bytes of a message.
+    pub fn has_data(self) -> bool {
+        matches!(self, Self::Data | Self::Single | Self::First | Self::Consecutive)
+    }
+}
+
+impl Standard {
+    /// Returns its frames, each with the end of its message's name.
+    pub fn frames(&self) -> &'static [(TransportFrame, &'static str)] {
+        match self {
+            Self::J1939(_) => &[
+                (TransportFrame::RequestToSend, "request_to_send"),
+                (TransportFrame::ClearToSend, "clear_to_send"),
+                (TransportFrame::EndOfMessage, "end_of_message"),
+                (TransportFrame::Broadcast, "broadcast"),
+                (TransportFrame::Abort, "abort"),
+                (TransportFrame::Data, "data"),
+            ],
+            Self::Isotp(_) => &[
+                (TransportFrame::Single, "single_frame"),
+                (TransportFrame::First, "first_frame"),
+                (TransportFrame::Consecutive, "consecutive_frame"),
+                (TransportFrame::FlowControl, "flow_control"),
+            ],
+        }
+    }
+
+    /// Returns the greatest number of data bytes of a message.
+    pub fn most_bytes(&self) -> usize {
+        match self {
+            Self::J1939(_) => 1785,
+            Self::Isotp(_) => 4095,
+        }
+    }
+
+    /// Tests whether a message of up to eight bytes is a frame of its own.
+    pub fn has_plain_frames(&self) -> bool {
+        matches!(self, Self::J1939(_))
+    }
 }
 
 impl Transport {
-    /// The address of all nodes.
-    pub const EVERYBODY: u32 = 0xFF;
-
-    /// Data bytes of a packet.
-    pub const PACKET: usize = 7;
-
     /// Returns the message of a frame.
     pub fn message(&self, frame: TransportFrame) -> Option<MessageId> {
-        let place = TransportFrame::ALL.iter().position(|(known, _)| *known == frame)?;
+        let place = self.standard.frames().iter().position(|(known, _)| *known == frame)?;
         self.frames.get(place).copied()
     }
 
     /// Returns which of its frames carries a message.
     pub fn frame(&self, message: MessageId) -> Option<TransportFrame> {
         let place = self.frames.iter().position(|known| *known == message)?;
-        Some(TransportFrame::ALL[place].0)
+        Some(self.standard.frames()[place].0)
     }
+}
+
+impl Groups {
+    /// The address of all nodes.
+    pub const EVERYBODY: u32 = 0xFF;
+
+    /// Data bytes of a packet.
+    pub const PACKET: usize = 7;
 
     /// Returns the number of the group that an identifier shows. The address of a receiver is no part of it.
     pub fn group_of(&self, protocol: &Protocol, id: u32) -> u32 {

@@ -101,7 +101,8 @@ impl Resolver<'_> {
     ) -> Option<Example> {
         let (kind, texts) = self.printed_kind(path, example)?;
         let known = message.map(|index| &messages[index]);
-        let ([text], None) = (texts, &example.count) else {
+        let is_joined = known.and_then(|known| known.long).is_some_and(|long| self.is_joined(long));
+        let ([text], None, false) = (texts, &example.count, is_joined) else {
             self.long_example(path, (kind, texts), example, known, outer);
             return None;
         };

@@ -238,7 +238,6 @@ impl Resolver<'_> {
             return (is_sound && !names_another).then_some(());
         };
         self.check_in_no_array(path, "a constant", outer.row)?;
-        self.check_not_long(path, "a constant", outer.is_long)?;
         let value = self.integer(&merged.path(self.diagnostics, Key::Const), text, 0, place.max())?;
         leaves.constants.push((signal, value));
         self.is_sound(merged).then_some(())

@@ -26,8 +26,8 @@ pub const DATA: &str = "data";
 /// Most data bytes of a long message. ISO 15765-2 has no more, either.
 pub const MOST_BYTES: u16 = 4095;
 
-/// Most data bytes of a message of J1939: 255 packets of seven.
-const MOST_J1939_BYTES: u16 = 1785;
+/// Data bytes that the first frame of ISO-TP has.
+const FIRST_BYTES: usize = 6;
 
 /// What a long message is, whatever carries it.
 #[derive(Clone, Copy)]
@@ -71,6 +71,10 @@ impl Resolver<'_> {
                 let given_up = contents.names().collect();
                 return Carried { leaves: Leaves { given_up, ..Leaves::default() }, long: None, lengths: Vec::new() };
             };
+            if !self.tables.transports[transport].standard.has_plain_frames() {
+                return self.joined(id, path, (transport, lengths), contents, head);
+            }
+            self.refuse_constants(&contents);
             let (leaves, long) = self.transported(id, path, (transport, lengths), contents, head);
             let known = long.map(|long| &self.tables.long_messages[long]);
             let lengths = known.map(|long| (0..=8).filter(|bytes| long.has_length(usize::from(*bytes))).collect());
@@ -78,7 +82,10 @@ impl Resolver<'_> {
         }
         let lengths = self.lengths(&at, &message.length.0, length);
         let (leaves, long) = match &message.parts {
-            Some(parts) => self.long_message(id, path, (parts, contents), head),
+            Some(parts) => {
+                self.refuse_constants(&contents);
+                self.long_message(id, path, (parts, contents), head)
+            }
             None => (contents, None),
         };
         Carried { leaves, long, lengths }
@@ -107,6 +114,13 @@ impl Resolver<'_> {
         let help = "make fields of its parts; what chooses the frames stands in `match`";
         self.error_with_help(&rules::PARTS, path.at_key(), text, help);
         None
+    }
+
+    /// Refuses constants, since no frame of the message would show them.
+    fn refuse_constants(&mut self, leaves: &Leaves) {
+        for (constant, _) in &leaves.constants {
+            self.check_not_long(&constant.doc.path, "a constant", true);
+        }
     }
 
     /// Makes a long message of what its parts carry together. It returns the fields of the frames.
@@ -196,7 +210,7 @@ impl Resolver<'_> {
         let long = LongMessage { message, content, carrier, lengths, frames: Vec::new() };
         let at = path.key("via");
         let is_right = self.check_long(&rules::TRANSPORT, &at, &long, is_sound).is_some()
-            && self.check_lengths(path, &long).is_some();
+            && self.check_lengths(path, transport, &long).is_some();
         let plain = if long.shortest() <= 8 {
             plain
         } else {
@@ -205,9 +219,45 @@ impl Resolver<'_> {
         (plain, is_right.then(|| self.tables.long_messages.push(long)))
     }
 
+    /// Makes a long message of what a transport carries in frames of its own. Its first frame shows the constants.
+    fn joined(
+        &mut self,
+        message: MessageId,
+        path: &Path,
+        (transport, lengths): (TransportId, Vec<u16>),
+        whole: Leaves,
+        head: Head,
+    ) -> Carried {
+        let constants = whole.constants.into_iter();
+        let constants = constants.filter_map(|(signal, value)| Some((self.in_first_frame(&signal)?, value))).collect();
+        let is_sound = whole.given_up.is_empty();
+        let leaves = Leaves { constants, replies: whole.replies, given_up: whole.given_up, ..Leaves::default() };
+        let signals: Table<SignalId, Signal> = whole.signals.into_iter().collect();
+        let arrays = self.arrays(whole.arrays, &signals);
+        let (content, carrier) = (content(head, signals, arrays), Carrier::Transport(transport));
+        let long = LongMessage { message, content, carrier, lengths, frames: Vec::new() };
+        let at = path.key("via");
+        let is_bare = long.content.signals.is_empty();
+        let is_right = (is_bare || self.check_long(&rules::TRANSPORT, &at, &long, is_sound).is_some())
+            && self.check_lengths(path, transport, &long).is_some();
+        Carried { leaves, long: is_right.then(|| self.tables.long_messages.push(long)), lengths: Vec::new() }
+    }
+
+    /// Returns a constant with its place in the payload, if the first frame of a transfer shows it.
+    fn in_first_frame(&mut self, signal: &Signal) -> Option<Signal> {
+        if signal.reach() <= FIRST_BYTES {
+            return in_frame(signal);
+        }
+        let text =
+            format!("`{}` reaches byte {}, and the first frame has {FIRST_BYTES}", signal.name, signal.reach() - 1);
+        let help = "a constant tells the messages apart before the whole is there; take it out, or make a value of it";
+        self.error_with_help(&rules::TRANSPORT, signal.doc.path.at_key(), text, help);
+        None
+    }
+
     /// Tests that a transport can carry a message of these lengths, and that none of them cuts a field.
-    fn check_lengths(&mut self, path: &Path, long: &LongMessage) -> Option<()> {
-        let most = usize::from(MOST_J1939_BYTES);
+    fn check_lengths(&mut self, path: &Path, transport: TransportId, long: &LongMessage) -> Option<()> {
+        let most = self.tables.transports[transport].standard.most_bytes();
         if long.longest() > most {
             let text =
                 format!("`{}` has up to {} bytes, and a transport carries {most}", long.content.name, long.longest());

@@ -10,7 +10,7 @@ use super::texts::remarks;
 use crate::diagnostic::{At, Diagnostic};
 use crate::model::{
     Access, AccessId, Answers, Constant, Doc, Exchange, ExchangeId, FrameId, FrameLayout, Id, Identifier, Kind,
-    Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
+    LongMessageId, Message, MessageId, ModelId, Reserved, SelectorPlace, Signal, SignalId, Table, Travel,
 };
 use crate::resolve::rules;
 use crate::syntax::ast;
@@ -134,6 +134,9 @@ impl Resolver<'_> {
         let split = set.as_ref().map_or(&[][..], |set| &set.kinds);
         let signals = leaves.signals.into_iter().collect();
         let arrays = self.arrays(leaves.arrays, &signals);
+        let whole = long.filter(|_| message.via.is_some());
+        let is_joined = whole.is_some_and(|long| self.is_joined(long));
+        let joined = whole.map(|long| self.tables.long_messages[long].content.signals.clone()).unwrap_or_default();
         let (mut frames, mut refusals) = (Vec::new(), Vec::new());
         for (exchange_id, exchange) in exchanges.entries() {
             let owner = Owner { message: id, id: exchange_id, exchange, lengths: &lengths, signals: &signals };
@@ -144,10 +147,13 @@ impl Resolver<'_> {
                 let is_bare = message.via.is_some() && !carries;
                 let frame = self.layout(if is_bare { &bare } else { &owner }, *kind, &choice, &travel, surroundings);
                 self.check_constants(&frame, kind.name(), &choice);
-                if let Some(long) = long.filter(|_| carries && message.via.is_some()) {
-                    self.tables.long_messages[long].frames.push(frame.clone());
+                if let Some(long) = whole.filter(|_| carries || is_joined) {
+                    let owner = Owner { signals: &joined, ..owner };
+                    let signals = self.layout(&owner, *kind, &choice, &travel, surroundings).signals;
+                    let frame = FrameLayout { long: Some(long), signals, ..frame.clone() };
+                    self.tables.long_messages[long].frames.push(frame);
                 }
-                if !(carries && lengths.is_empty()) {
+                if !(is_joined || carries && lengths.is_empty()) {
                     frames.push(frame);
                 }
             }
@@ -213,9 +219,16 @@ impl Resolver<'_> {
         (messages, frames)
     }
 
-    /// Returns the payload bits of a frame's selectors and signals, byte 0 highest.
+    /// Tests whether the frames of a long message are all those of its transport.
+    pub fn is_joined(&self, long: LongMessageId) -> bool {
+        let transport = self.tables.long_messages[long].transport();
+        transport.is_some_and(|transport| !self.tables.transports[transport].standard.has_plain_frames())
+    }
+
+    /// Returns the payload bits of a frame's selectors and of the message's signals, byte 0 highest.
     fn covered(&self, message: &Message, frame: &FrameLayout) -> u64 {
-        let signals = frame.signals.iter().map(|signal| message[*signal].place);
+        let own = frame.signals.iter().filter(|_| frame.long.is_none());
+        let signals = own.map(|signal| message[*signal].place);
         let selectors = frame.selectors.iter().filter_map(|selector| match self.tables.selectors[*selector].place {
             SelectorPlace::Payload(place) => Some(place),
             SelectorPlace::Identifier(_) => None,
@@ -393,6 +406,7 @@ impl Resolver<'_> {
             lengths: lengths_with(owner.lengths, &signals.iter().map(|id| owner.signals[*id].end())),
             constants,
             selectors,
+            long: None,
             signals,
             covered: 0,
             reserved: Reserved::default(),

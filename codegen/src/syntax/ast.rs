@@ -75,7 +75,7 @@ pub struct Spec {
     #[serde(default)]
     pub foreign: Map<Foreign>,
     /// Standards by which messages longer than a frame travel, by name:
-    /// `{tp: {kind: j1939, group: [page, format, target], target: target, source: source}}`; none if absent.
+    /// `{tp: {kind: isotp}}`; none if absent.
     #[serde(default)]
     pub transports: Map<Transport>,
     /// Messages by name. A register is a message too:
@@ -308,15 +308,19 @@ pub struct Access {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Transport {
-    /// The standard: `j1939`.
+    /// The standard: `j1939` or `isotp`.
     pub kind: String,
-    /// Fields of the identifier that are the number of a message, highest bits first, the receiver last:
+    /// Of `j1939`: fields of the identifier that are the number of a message, highest bits first, the receiver last:
     /// `[page, format, target]`.
+    #[serde(default)]
     pub group: Names,
-    /// Field of the identifier with the address of the receiver: `target`.
-    pub target: String,
-    /// Field of the identifier with the address of the sender: `source`.
-    pub source: String,
+    /// Of `j1939`: field of the identifier with the address of the receiver: `target`.
+    pub target: Option<String>,
+    /// Of `j1939`: field of the identifier with the address of the sender: `source`.
+    pub source: Option<String>,
+    /// Of `isotp`: byte that fills frames up to eight bytes, or `none` if they end with their data: `0x00`;
+    /// 0xCC if absent. Received frames may be filled with anything.
+    pub fill: Option<String>,
     /// Raw values that fields of the identifier have in its frames, in place of their own `send`:
     /// `{priority: 7}`. Received frames may have any. None if absent.
     #[serde(default)]

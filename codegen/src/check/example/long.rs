@@ -4,8 +4,9 @@ use canspec_runtime::Place;
 
 use super::{Checked, misfitting, shown, wrong};
 use crate::diagnostic::{At, Diagnostic};
+use crate::hex;
 use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, decode, encode_long};
-use crate::model::{LongExample, LongMessage, Protocol, TransportFrame};
+use crate::model::{LongExample, LongMessage, Protocol, Standard, TransportFrame};
 use crate::resolve::rules;
 
 /// Decodes the frames, joins their parts, compares the values, and makes the frames again.
@@ -55,12 +56,8 @@ impl Checker<'_> {
                 return Err(wrong(self.frame_at(index), text));
             }
             let taken = assembly.take(protocol, model, index, frame, &decoded);
-            if !taken.is_part && protocol.transport_frame(decoded.message).is_some() {
-                let path = self.long.content.doc.path.key("match");
-                let text = format!("the frames announce another group than that of `{}`", self.long.content.name);
-                return Err(Box::new(
-                    Diagnostic::error(&rules::EXAMPLE, path.at_value(), text).other(self.frame_at(index), "the frame"),
-                ));
+            if let Some((_, transport, _)) = protocol.transport_frame(decoded.message).filter(|_| !taken.is_part) {
+                return Err(self.belongs_to_nothing(&transport.standard, index));
             }
             if !taken.is_part {
                 let notes: Vec<_> = decoded.notes.into_iter().map(|note| note.text).collect();
@@ -85,6 +82,23 @@ impl Checker<'_> {
                 format!("the message is not whole: {}", whole.incomplete.unwrap_or_default()),
             )),
             Err(_) => Err(wrong(self.frames_at(), format!("these frames are {messages} messages"))),
+        }
+    }
+
+    /// Says why a frame of a transport belongs to no message.
+    fn belongs_to_nothing(&self, standard: &Standard, index: usize) -> Box<Diagnostic> {
+        let (name, path) = (&self.long.content.name, &self.long.content.doc.path);
+        match standard {
+            Standard::J1939(_) => {
+                let text = format!("the frames announce another group than that of `{name}`");
+                let problem = Diagnostic::error(&rules::EXAMPLE, path.key("match").at_value(), text);
+                Box::new(problem.other(self.frame_at(index), "the frame"))
+            }
+            Standard::Isotp(_) => {
+                let text =
+                    format!("this frame belongs to no message; the constants of `{name}` are not its first bytes");
+                wrong(self.frame_at(index), text)
+            }
         }
     }
 
@@ -115,7 +129,7 @@ impl Checker<'_> {
                 return Err(wrong(meaning.path.at_value(), text));
             }
         }
-        if self.example.means.is_empty() {
+        if self.example.means.is_empty() && !assembled.decoded.signals.is_empty() {
             let text = "the example does not say what the frames mean together".to_owned();
             return Err(wrong(self.example.doc.path.key("means").at_key(), text));
         }
@@ -154,9 +168,10 @@ impl Checker<'_> {
         match differing.or_else(|| (made.len() != frames.len()).then_some(made.len().min(frames.len()))) {
             None => Ok(()),
             Some(index) => {
-                let frame =
-                    |frames: &[Frame]| frames.get(index).map_or_else(|| "no frame".to_owned(), Frame::to_string);
-                let text = format!("it encodes back to {} instead of {}", frame(&made), frame(&frames));
+                let [found, wanted] =
+                    [&made, &frames].map(|frames| frames.get(index).map(|frame| hex::digits(&frame.data)));
+                let [found, wanted] = [found, wanted].map(|digits| digits.unwrap_or_else(|| "no frame".to_owned()));
+                let text = format!("it encodes back to other bytes: {found} instead of {wanted}");
                 Err(wrong(self.frames_at(), text))
             }
         }

@@ -4,8 +4,8 @@ use super::in_identifier;
 use super::signal::{signal, wide};
 use super::table::Value;
 use crate::model::{
-    Carrier, Continuation, FrameLayout, LongMessage, Parts, Protocol, SelectorPlace, Signal, Transport, TransportFrame,
-    TransportId,
+    Carrier, Continuation, FrameLayout, Groups, LongMessage, Parts, Protocol, SelectorPlace, Signal, Standard,
+    Transport, TransportId,
 };
 
 pub fn long(protocol: &Protocol, long: &LongMessage) -> Value {
@@ -52,15 +52,18 @@ fn via(protocol: &Protocol, transport: TransportId, frames: &[FrameLayout]) -> V
 }
 
 pub fn transport(transport: &Transport) -> Value {
-    let names = TransportFrame::ALL.iter().map(|(_, name)| *name);
+    let names = transport.standard.frames().iter().map(|(_, name)| *name);
     let frames =
         names.zip(&transport.frames).fold(Value::record(), |record, (name, id)| record.with(name, Value::id(*id)));
-    Value::record()
-        .with("name", Value::text(&transport.name))
-        .with("group", Value::list(&transport.group, |field| Value::id(*field)))
-        .with("target", Value::id(transport.target))
-        .with("source", Value::id(transport.source))
-        .with("frames", frames)
+    let record = Value::record().with("name", Value::text(&transport.name));
+    let record = match &transport.standard {
+        Standard::J1939(Groups { group, target, source }) => record
+            .with("group", Value::list(group, |field| Value::id(*field)))
+            .with("target", Value::id(*target))
+            .with("source", Value::id(*source)),
+        Standard::Isotp(_) => record,
+    };
+    record.with("frames", frames)
 }
 
 /// Returns the field that says whether more parts follow, and its value if they do.

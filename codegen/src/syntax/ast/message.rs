@@ -54,7 +54,7 @@ pub struct Message {
     /// together.
     pub parts: Option<Parts>,
     /// Entry of `transports` that carries the message if it is longer than a frame: `tp`; it is one
-    /// frame if absent. Its `length` can then be up to 1785.
+    /// frame if absent. Its `length` can then be up to what the transport carries.
     pub via: Option<String>,
     /// Kinds of frames that each of the `members` has, out of `request` and `reply`:
     /// `[request, reply]`; `[reply]` if absent.

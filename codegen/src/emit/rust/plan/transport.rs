@@ -8,7 +8,7 @@ use super::literal::hexadecimal;
 use super::message::Message;
 use super::naming::{camel_case, ident, screaming};
 use super::types::Types;
-use crate::model::{FieldId, FrameLayout, LongMessage, MessageId, Protocol, Table, TransportId};
+use crate::model::{FieldId, FrameLayout, LongMessage, MessageId, Protocol, Standard, Table, TransportId};
 
 /// A transport of long messages.
 pub struct Transport {
@@ -31,9 +31,15 @@ pub struct Transport {
 }
 
 impl Transport {
-    /// Plans a transport.
-    pub fn new(protocol: &Protocol, types: &Types, messages: &Table<MessageId, Message>, id: TransportId) -> Self {
+    /// Plans a transport. That of ISO-TP has no Rust yet.
+    pub fn new(
+        protocol: &Protocol,
+        types: &Types,
+        messages: &Table<MessageId, Message>,
+        id: TransportId,
+    ) -> Option<Self> {
         let known = &protocol[id];
+        let Standard::J1939(groups) = &known.standard else { return None };
         let field = |id: FieldId| screaming(&protocol[id].name);
         let carried = || protocol.long_messages.iter().filter(|long| long.transport() == Some(id));
         let exchange = |frame: &FrameLayout| {
@@ -44,15 +50,15 @@ impl Transport {
         let own = known.frames.first().map(|frame| &protocol[*frame].sends);
         let sends = own.into_iter().flatten();
         let sentence = doc::sentence_of(&doc::title(&known.doc, &known.name));
-        Self {
+        Some(Self {
             name: types.transports[id].clone(),
             comment: Comment::item(protocol, &known.doc, &sentence, None),
             memory: canspec_runtime::tp::memory(carried().map(LongMessage::longest).max().unwrap_or(0)),
-            group: known.group.iter().copied().map(field).collect(),
-            target: field(known.target),
-            source: field(known.source),
+            group: groups.group.iter().copied().map(field).collect(),
+            target: field(groups.target),
+            source: field(groups.source),
             sends: sends.map(|(id, value)| (field(*id), hexadecimal(*value, protocol[*id].width))).collect(),
             carries: carried().flat_map(|long| &long.frames).map(exchange).collect(),
-        }
+        })
     }
 }

@@ -1,0 +1,219 @@
+//! Transfers by ISO 15765-2: a single frame, or a first frame and consecutive ones, and the receiver's flow control.
+
+use super::{Arrived, Part, Started, sending};
+use crate::interpret::assembly::{Assembled, Peers, Taken};
+use crate::interpret::encode::{frame, refuse};
+use crate::interpret::{Frame, Refusal, padded};
+use crate::model::{
+    FrameLayout, Isotp, LongMessage, ModeId, ModelId, Protocol, Side, Transport, TransportFrame, TransportId,
+};
+
+/// Data bytes of a single and of a consecutive frame, and of a first one.
+const SINGLE: usize = 7;
+const FIRST: usize = 6;
+
+/// How a receiver says that it has no room for a message.
+const OVERFLOW: usize = 2;
+
+/// The messages of several frames that have begun. `M` is what the caller remembers of each frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transfers<M>(Vec<Transfer<M>>);
+
+impl<M> Default for Transfers<M> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+/// One message, as far as its frames came.
+#[derive(Clone, Debug, PartialEq)]
+struct Transfer<M> {
+    link: Link,
+    started: Started,
+    data: Vec<u8>,
+    marks: Vec<M>,
+}
+
+/// Who sends a frame.
+#[derive(Clone, Debug, PartialEq)]
+struct Link {
+    transport: TransportId,
+    id: u32,
+    sender: Side,
+    mode: Option<ModeId>,
+    peers: Peers,
+}
+
+impl Link {
+    fn of(part: &Part) -> Self {
+        let Part { protocol, id, frame, decoded, .. } = part;
+        let mut peers: Peers = decoded.addresses(protocol, frame.id).collect();
+        peers.sort_unstable();
+        let mode = decoded.addressing.map(|travel| travel.mode);
+        Self { transport: *id, id: frame.id, sender: decoded.sender, mode, peers }
+    }
+
+    /// Tests whether a frame of the receiver answers one of the sender. Its mode can be another one, if addresses
+    /// show who they are.
+    fn answers(&self, other: &Self) -> bool {
+        let is_opposite = self.transport == other.transport && self.sender != other.sender;
+        let is_between = self.peers == other.peers && (self.mode == other.mode || !self.peers.is_empty());
+        is_opposite && is_between
+    }
+}
+
+impl<M: Clone> Transfers<M> {
+    /// Takes a frame of the transport. One that the standard tells receivers to ignore changes nothing.
+    pub fn take(&mut self, part: &Part, kind: TransportFrame, mark: M) -> Taken<M> {
+        match kind {
+            TransportFrame::Single => self.single(part, mark),
+            TransportFrame::First => self.first(part, mark),
+            TransportFrame::Consecutive => self.consecutive(part, mark),
+            TransportFrame::FlowControl => self.flow(part),
+            TransportFrame::RequestToSend
+            | TransportFrame::ClearToSend
+            | TransportFrame::EndOfMessage
+            | TransportFrame::Broadcast
+            | TransportFrame::Abort
+            | TransportFrame::Data => Taken::NOTHING,
+        }
+    }
+
+    /// Ends all transfers that have begun.
+    pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
+        let open = std::mem::take(&mut self.0).into_iter();
+        open.map(|transfer| transfer.assembled(protocol, model, None)).collect()
+    }
+
+    fn place(&self, link: &Link) -> Option<usize> {
+        self.0.iter().position(|known| known.link == *link)
+    }
+
+    /// Ends the transfer at a place, and says why if it is not whole.
+    fn end(&mut self, part: &Part, place: usize, why: Option<&str>) -> Assembled<M> {
+        self.0.swap_remove(place).assembled(part.protocol, part.model, why.map(str::to_owned))
+    }
+
+    /// Ends the message that the sender has begun before.
+    fn restarted(&mut self, part: &Part, link: &Link) -> Vec<Assembled<M>> {
+        let open = self.place(link);
+        open.map(|open| self.end(part, open, Some("another message begins"))).into_iter().collect()
+    }
+
+    fn single(&mut self, part: &Part, mark: M) -> Taken<M> {
+        let size = part.number("size").filter(|size| *size > 0);
+        let Some(data) = size.and_then(|size| part.frame.data.get(1..=size)) else { return Taken::NOTHING };
+        let link = Link::of(part);
+        let mut ended = self.restarted(part, &link);
+        let Some(started) = message(part, data, data.len()) else { return Taken { is_part: false, ended } };
+        let transfer = Transfer { link, started, data: data.to_vec(), marks: vec![mark] };
+        ended.push(transfer.assembled(part.protocol, part.model, None));
+        Taken { is_part: true, ended }
+    }
+
+    fn first(&mut self, part: &Part, mark: M) -> Taken<M> {
+        let size = part.number("size").filter(|size| *size > SINGLE);
+        let (Some(size), Some(data)) = (size, part.frame.data.get(2..)) else { return Taken::NOTHING };
+        let link = Link::of(part);
+        let ended = self.restarted(part, &link);
+        let started = message(part, data, size);
+        let is_part = started.is_some();
+        let begun = started.map(|started| Transfer { link, started, data: data.to_vec(), marks: vec![mark] });
+        self.0.extend(begun);
+        Taken { is_part, ended }
+    }
+
+    fn consecutive(&mut self, part: &Part, mark: M) -> Taken<M> {
+        let open = self.place(&Link::of(part));
+        let (Some(open), Some(number)) = (open, part.number("number")) else { return Taken::NOTHING };
+        let transfer = &mut self.0[open];
+        let wanted = transfer.marks.len() % 16;
+        if number != wanted {
+            let why = format!("frame number {number} came in place of {wanted}");
+            return Taken { is_part: true, ended: vec![self.end(part, open, Some(&why))] };
+        }
+        let missing = transfer.started.size - transfer.data.len();
+        let Some(data) = part.frame.data.get(1..=missing.min(SINGLE)) else { return Taken::NOTHING };
+        transfer.data.extend(data);
+        transfer.marks.push(mark);
+        let is_whole = missing <= SINGLE;
+        Taken { is_part: true, ended: is_whole.then(|| self.end(part, open, None)).into_iter().collect() }
+    }
+
+    /// Takes what the receiver answers.
+    fn flow(&mut self, part: &Part) -> Taken<M> {
+        let link = Link::of(part);
+        let Some(open) = self.0.iter().position(|known| link.answers(&known.link)) else { return Taken::NOTHING };
+        let is_over = part.number("status") == Some(OVERFLOW);
+        let ended = is_over.then(|| self.end(part, open, Some("the receiver has no room for it")));
+        Taken { is_part: true, ended: ended.into_iter().collect() }
+    }
+}
+
+impl<M: Clone> Transfer<M> {
+    /// Reads what came. `why` says what ended it before its time.
+    fn assembled(mut self, protocol: &Protocol, model: Option<ModelId>, why: Option<String>) -> Assembled<M> {
+        let incomplete = self.missing(&protocol[self.started.long], why);
+        let came = vec![true; self.data.len()];
+        let came = [came, vec![false; self.started.size - self.data.len()]].concat();
+        self.data.resize(self.started.size, 0);
+        let Self { started, data, marks, .. } = self;
+        Arrived { started, data, came, marks, incomplete, note: None }.assembled(protocol, model)
+    }
+
+    /// Says what is missing, and why.
+    fn missing(&self, long: &LongMessage, why: Option<String>) -> Option<String> {
+        let (came, size) = (self.data.len(), self.started.size);
+        if came == size {
+            return self.started.wrong_length(long);
+        }
+        let what = format!("{came} of {size} bytes came");
+        Some([Some(what), why].into_iter().flatten().collect::<Vec<_>>().join("; "))
+    }
+}
+
+/// Finds the message whose data begin so.
+fn message(part: &Part, data: &[u8], size: usize) -> Option<Started> {
+    let Part { protocol, model, id, frame, decoded } = *part;
+    let head = padded(data);
+    let is_shown = |layout: &FrameLayout| {
+        layout.sender == decoded.sender
+            && layout.identifier().all(|(field, value)| protocol[field].get(frame.id) == value)
+            && layout.payload().all(|(place, value)| place.get(&head) == value)
+            && layout.head() <= size
+    };
+    let has_model = |long: &LongMessage| model.is_none_or(|model| long.content.is_of(model));
+    let carried = protocol.long_messages.entries().filter(|(_, long)| long.transport() == Some(id));
+    let mut shown = carried.filter_map(|(id, long)| Some((id, long, long.frames.iter().position(is_shown)?)));
+    let (long, _, layout) = shown.clone().find(|(_, long, _)| has_model(long)).or_else(|| shown.next())?;
+    Some(Started { long, layout, id: frame.id, size })
+}
+
+/// Makes the frames that carry a message: a single one, or a first and consecutive ones.
+pub fn frames(
+    protocol: &Protocol,
+    (transport, isotp): (&Transport, Isotp),
+    (layout, id): (&FrameLayout, u32),
+    data: &[u8],
+) -> Result<Vec<Frame>, Refusal> {
+    let make = |kind, head: &[u8], data: &[u8]| {
+        let mut bytes = [head, data].concat();
+        if let Some(fill) = isotp.fill {
+            bytes.resize(8, fill);
+        }
+        frame(protocol, sending(protocol, transport, kind, id), bytes)
+    };
+    let low = |number: usize| u8::try_from(number % 256).unwrap_or_default();
+    match data.len() {
+        0 => Err(refuse(&protocol[layout.message], "a message without data bytes cannot be sent")),
+        size @ 1..=SINGLE => Ok(vec![make(TransportFrame::Single, &[low(size)], data)]),
+        size => {
+            let (beginning, rest) = data.split_at(FIRST);
+            let first = make(TransportFrame::First, &[0x10 | low(size / 256), low(size)], beginning);
+            let others = (1..).zip(rest.chunks(SINGLE));
+            let others =
+                others.map(|(number, chunk)| make(TransportFrame::Consecutive, &[0x20 | low(number % 16)], chunk));
+            Ok(std::iter::once(first).chain(others).collect())
+        }
+    }
+}

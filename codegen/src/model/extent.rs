@@ -1,0 +1,91 @@
+//! How many data bytes long messages have.
+
+use crate::model::{Array, FrameLayout, LongMessage, Signal, SignalId};
+
+/// What frames of a long message carry together.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent<'a> {
+    long: &'a LongMessage,
+    /// What the message would be as one frame; `None` for all that it can carry.
+    layout: Option<&'a FrameLayout>,
+}
+
+impl LongMessage {
+    /// Returns all that it can carry.
+    pub fn whole(&self) -> Extent<'_> {
+        Extent { long: self, layout: None }
+    }
+
+    /// Returns what it carries if it is sent as one of its layouts.
+    pub fn extent<'a>(&'a self, layout: &'a FrameLayout) -> Extent<'a> {
+        Extent { long: self, layout: Some(layout) }
+    }
+}
+
+impl<'a> Extent<'a> {
+    /// Returns the message.
+    pub fn long(self) -> &'a LongMessage {
+        self.long
+    }
+
+    /// Returns the signals that are there.
+    pub fn signals(self) -> impl Iterator<Item = (SignalId, &'a Signal)> + Clone {
+        let is_there = move |id: SignalId| self.layout.is_none_or(|layout| layout.signals.contains(&id));
+        self.long.content.signals.entries().filter(move |(id, _)| is_there(*id))
+    }
+
+    /// Returns how many bytes the constants and fields of the header need, which stand first.
+    pub fn head(self) -> usize {
+        let layouts = self.long.frames.iter().filter(|known| self.layout.is_none_or(|layout| known.is_kind_of(layout)));
+        layouts.map(FrameLayout::head).max().unwrap_or(0)
+    }
+
+    /// Returns the bits of constants and fields of the header, byte 0 highest.
+    pub fn header(self) -> u64 {
+        self.layout.map_or(0, |layout| layout.covered)
+    }
+
+    /// Returns the numbers of data bytes that it can have, if the spec lists them.
+    pub fn lengths(self) -> &'a [u16] {
+        if self.signals().next().is_some() { &self.long.lengths } else { &[] }
+    }
+
+    /// Returns the greatest number of data bytes.
+    pub fn longest(self) -> usize {
+        self.lengths().last().map_or_else(|| self.bytes_with(None), |length| usize::from(*length))
+    }
+
+    /// Returns the least number of data bytes.
+    pub fn shortest(self) -> usize {
+        let of_signals = || self.bytes_with(self.varying().and_then(|array| array.least));
+        self.lengths().first().map_or_else(of_signals, |length| usize::from(*length))
+    }
+
+    /// Tests whether it can have some number of data bytes.
+    pub fn has_length(self, length: usize) -> bool {
+        if !self.lengths().is_empty() {
+            return self.lengths().iter().any(|known| usize::from(*known) == length);
+        }
+        let Some(array) = self.varying() else { return length == self.longest() };
+        (array.least.unwrap_or(0)..=array.elements.len()).any(|count| self.bytes_with(Some(count)) == length)
+    }
+
+    /// Returns how many elements an array of varying length has in some number of data bytes.
+    pub fn elements_in(self, length: usize) -> Option<usize> {
+        let array = self.varying()?;
+        (0..=array.elements.len()).rev().find(|count| self.bytes_with(Some(*count)) <= length)
+    }
+
+    /// Returns how many data bytes it has with some number of elements in arrays of varying length, or with all.
+    pub fn bytes_with(self, elements: Option<usize>) -> usize {
+        let present = self.signals().filter(|(_, signal)| self.long.is_among(elements, signal));
+        present.map(|(_, signal)| signal.reach()).max().unwrap_or(0).max(self.head())
+    }
+
+    /// Returns an array whose length varies, if there is one. Others vary with it.
+    pub fn varying(self) -> Option<&'a Array> {
+        self.long
+            .varying()
+            .filter(|array| array.elements.iter().any(|id| self.signals().any(|(known, _)| known == *id)))
+    }
+}
