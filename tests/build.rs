@@ -22,7 +22,7 @@ fn main() {
         list.switched.push_str(&visited);
         let code = generate(&path, &Options::default()).code;
         list.signals(&module, &code);
-        list.long_messages(&module, &path, &code);
+        list.implementations(&module, &path, &code);
         let module = format!("{name}_in_steps");
         list.generated(&out, &module, &generate(&path, &steps));
         list.in_steps.push_str(&visit(&module, &path));
@@ -44,7 +44,7 @@ fn main() {
             list.visits.push_str(&visit(&module, &path));
             list.switched.push_str(&visit(&switched, &path));
             list.in_steps.push_str(&visit(&in_steps, &path));
-            list.long_messages(&switched, &path, &generate(&path, &every_option(scaled)).code);
+            list.implementations(&switched, &path, &generate(&path, &every_option(scaled)).code);
         }
     }
     fs::write(out.join("protocols.rs"), list.finish()).expect("OUT_DIR can be written");
@@ -90,6 +90,7 @@ struct Protocols {
     switched: String,
     in_steps: String,
     signals: String,
+    addressed: String,
     long: String,
     parted: String,
     transferred: String,
@@ -130,10 +131,14 @@ impl Protocols {
         self.signals.push_str("];\n}\n");
     }
 
-    /// Lists the long messages of a module.
-    fn long_messages(&mut self, module: &str, path: &Path, code: &str) {
-        let lists =
-            [("LongLayout", &mut self.long), ("Parted", &mut self.parted), ("Transferred", &mut self.transferred)];
+    /// Lists the types of a module that implement traits which only some modules have.
+    fn implementations(&mut self, module: &str, path: &Path, code: &str) {
+        let lists = [
+            ("Addressed", &mut self.addressed),
+            ("LongLayout", &mut self.long),
+            ("Parted", &mut self.parted),
+            ("Transferred", &mut self.transferred),
+        ];
         for (implemented, list) in lists {
             let head = format!("impl {implemented} for ");
             let blocks = code.lines().filter_map(|line| line.strip_prefix(&head));
@@ -151,6 +156,8 @@ impl Protocols {
              pub fn visit_switched(visitor: &mut impl SwitchedVisitor) {{\n{}}}\n\
              \n/// Shows every protocol in whole steps to a visitor, with the path of its spec.\n\
              pub fn visit_in_steps(visitor: &mut impl Visitor) {{\n{}}}\n\
+             \n/// Shows every protocol with requests to a visitor, with the path of its spec.\n\
+             pub fn visit_addressed(visitor: &mut impl AddressedVisitor) {{\n{}}}\n\
              \n/// Shows every message that is longer than a frame to a visitor, with the path of its spec.\n\
              pub fn visit_long(visitor: &mut impl LongVisitor) {{\n{}}}\n\
              \n/// Shows every message in parts to a visitor, with the path of its spec.\n\
@@ -162,6 +169,7 @@ impl Protocols {
             self.visits,
             self.switched,
             self.in_steps,
+            self.addressed,
             self.long,
             self.parted,
             self.transferred

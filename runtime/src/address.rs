@@ -149,15 +149,18 @@ impl Address {
         self.kind
     }
 
+    #[inline(always)]
     pub(crate) fn number(&self, id: u32) -> i32 {
         self.kind.number(self.bits.of(id))
     }
 
-    fn is_documented(&self, id: u32) -> bool {
+    #[inline(always)]
+    pub(crate) fn is_documented(&self, id: u32) -> bool {
         self.kind.documents(self.number(id))
     }
 
-    fn is_tolerated(&self, id: u32) -> bool {
+    #[inline(always)]
+    pub(crate) fn is_tolerated(&self, id: u32) -> bool {
         let raw = self.bits.of(id);
         !self.kind.strict && !self.excluded.iter().any(|(first, last)| (*first..=*last).contains(&raw))
     }

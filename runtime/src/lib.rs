@@ -55,6 +55,7 @@ mod status;
 mod tests;
 mod text;
 pub mod tp;
+mod way;
 #[cfg(feature = "arbitrary")]
 pub mod with_arbitrary;
 #[cfg(feature = "defmt")]
@@ -77,7 +78,7 @@ pub use number::Number;
 pub use packed::PackedText;
 pub use payload::Payload;
 pub use place::{Bits, Data, Place};
-pub use protocol::{IdentifierFields, Problem, Protocol};
+pub use protocol::{Addressed, IdentifierFields, Problem, Protocol};
 pub use raw::Meaning;
 pub use received::Received;
 pub use reply::{Failure, Reply};

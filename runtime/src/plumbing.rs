@@ -21,13 +21,14 @@ pub use crate::raw::{Integer, Raw};
 pub use crate::scale::{Scale, nearest};
 pub use crate::set::Continuation;
 pub use crate::signal::Lack;
+pub use crate::way::{Shown, Way};
 pub use crate::word::{Legend, Word};
 
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
         Address, Continuation, Decode, Encode, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern, Piece, Said,
-        Task, Who, Word, left_aligned, right_aligned,
+        Shown, Task, Way, Who, Word, left_aligned, right_aligned,
     };
-    pub use crate::{Destination, Protocol};
+    pub use crate::{Addressed, Destination, Protocol};
 }

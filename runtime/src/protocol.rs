@@ -4,8 +4,8 @@ use core::fmt::{self, Debug};
 
 use crate::frame::raw_id;
 use crate::layout::Task;
-use crate::plumbing::Incoming;
-use crate::{Entry, Filter, Mode, Received};
+use crate::plumbing::{Incoming, Shown, Way};
+use crate::{Destination, Entry, Filter, Mode, Received};
 
 /// A protocol, implemented by the enum of its messages.
 pub trait Protocol: Copy + Debug + 'static {
@@ -78,8 +78,26 @@ pub trait Protocol: Copy + Debug + 'static {
         &[]
     }
 
+    /// Finds the way by which a frame travels.
+    #[doc(hidden)]
+    fn way(_: &Shown) -> Option<Way> {
+        None
+    }
+
+    /// Returns the number of the module that sends a frame, or that it goes to.
+    #[doc(hidden)]
+    fn node(_: &Way) -> Option<i32> {
+        None
+    }
+
     /// Runs a task on the values of the message.
     fn run<T: Task>(&self, task: T) -> T::Output;
+}
+
+/// A protocol with requests, or with reports of the controller.
+pub trait Addressed: Protocol {
+    /// Whom such frames address.
+    type Target: Destination<Protocol = Self>;
 }
 
 /// The identifier of a protocol, split into its fields.

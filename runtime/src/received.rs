@@ -5,11 +5,12 @@ use core::mem::discriminant;
 use crate::frame::{classic, without_data};
 use crate::incoming::{Incoming, problem};
 use crate::layout::Signals;
+use crate::plumbing::Way;
 use crate::protocol::{Direction, direction, own_id};
 use crate::reply::{has_error, selected};
 use crate::{
-    Addressing, AnySignal, Data, Error, Exchange, Failure, Frame, IdentifierFields, Kind, Payload, Place, Problem,
-    Protocol, Reading, Selector,
+    Addressed, Addressing, AnySignal, Data, Destination, Error, Exchange, Failure, Frame, IdentifierFields, Kind,
+    Payload, Place, Problem, Protocol, Reading, Route, Selector,
 };
 
 /// A recognised frame.
@@ -142,6 +143,21 @@ impl<P: Protocol> Received<P> {
         self.exchange.addressing::<P>(self.kind, self.frame.raw_id())
     }
 
+    /// Returns the number of the module that sent the frame, or that it goes to: its address in the
+    /// way that the document counts.
+    ///
+    /// It is `None` where the identifier does not show one module, as in
+    /// - a request to many modules,
+    /// - the reply of one module for all,
+    /// - a mode that the message does not have.
+    pub fn node(&self) -> Option<i32> {
+        P::node(&self.way()?)
+    }
+
+    fn way(&self) -> Option<Way> {
+        self.exchange.way::<P>(self.kind, self.frame.raw_id())
+    }
+
     /// Tests whether the frame goes to the controller and shows an error code.
     pub fn is_error_reply(&self) -> bool {
         !self.is_to_module() && has_error::<P>(self.data_selectors(), &self.frame)
@@ -246,6 +262,25 @@ impl<P: Protocol> Received<P> {
             Some(addressing) if addressing.is_offered() => addressing.documented(self.frame.raw_id()),
             other => Err(self.exchange.no_mode(other.map(|addressing| addressing.mode()))),
         }
+    }
+}
+
+impl<P: Addressed> Received<P> {
+    /// Returns whom a request or a report of the controller addresses. Of a reply it is whom its
+    /// request addressed, and of a report whom a request in the same mode would address.
+    ///
+    /// An address that the document does not name is shown, too. It is `None` where the identifier does
+    /// not show it, as in
+    /// - the reply of one module to a request that went to its group,
+    /// - a mode without requests,
+    /// - a mode that the message does not have.
+    pub fn target(&self) -> Option<P::Target> {
+        self.route().map(|route| route.target())
+    }
+
+    /// Returns the [`target`](Self::target), and the address of the controller that sent the request.
+    pub fn route(&self) -> Option<Route<P::Target>> {
+        P::Target::shown(&self.way()?)
     }
 }
 

@@ -6,7 +6,7 @@ use core::ptr;
 
 use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::IdFilter;
-use crate::plumbing::Continuation;
+use crate::plumbing::{Continuation, Shown, Way};
 use crate::protocol::{is_to_controller, own_id};
 use crate::{Bits, Data, Error, Filter, Frame, Layout, Payload, Protocol, Reply, Selector};
 
@@ -27,6 +27,10 @@ pub trait Destination: Copy {
 
     /// Returns what the identifiers of replies to this request show, if `who` answers in this mode.
     fn replies(self, who: Who, sender: Option<i32>) -> Option<IdFilter>;
+
+    /// Returns the route of a request, as its identifier or that of a reply shows it.
+    #[doc(hidden)]
+    fn shown(way: &Way) -> Option<Route<Self>>;
 }
 
 /// A target, and the sender's own address.
@@ -48,6 +52,16 @@ impl<T: Destination> Route<T> {
     #[inline(always)]
     pub const fn new(target: T, sender: i32) -> Self {
         Self { target, sender: Some(sender) }
+    }
+
+    /// Returns the target.
+    pub const fn target(&self) -> T {
+        self.target
+    }
+
+    /// Returns the sender's own address, unless it is the usual one.
+    pub const fn sender(&self) -> Option<i32> {
+        self.sender
     }
 }
 
@@ -257,6 +271,12 @@ impl Exchange {
             Kind::Reply => false,
             Kind::Report => P::CONTROLLER_REPORTS && self.is_from_controller,
         }
+    }
+
+    /// Finds the way by which a frame with an identifier travels, if the message has it.
+    #[inline(always)]
+    pub(crate) fn way<P: Protocol>(&self, kind: Kind, id: u32) -> Option<Way> {
+        P::way(&Shown::new(id, self.is_to_module::<P>(kind), self.answers))
     }
 
     /// Returns the addressing mode that an identifier shows.

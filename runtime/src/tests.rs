@@ -47,6 +47,22 @@ fn a_request_shows_addresses_constants_and_values() {
 }
 
 #[test]
+fn a_frame_shows_whom_its_request_addresses_and_which_module_sends_or_is_asked() {
+    let shown = |id, data| {
+        let received = decode(&frame(id, data)).expect("a known frame");
+        let route = received.route();
+        (received.target(), route.and_then(|route| route.sender()), received.node())
+    };
+    let (set, echo) = ([1, 0, 0, 0], [2, 0, 0, 0]);
+    assert_eq!(shown(0x0107_03F1, set), (Some(To::Heater(3)), Some(0xF1), Some(3)));
+    assert_eq!(shown(0x0107_0AF0, set), (Some(To::Heater(10)), Some(0xF0), Some(10)), "not documented");
+    assert_eq!(shown(0x0107_3FF0, set), (Some(To::All), None, None));
+    assert_eq!(shown(0x0107_F003, echo), (None, None, Some(3)), "a reply of each does not show the group");
+    assert_eq!(shown(0x0108_F05D, [0; 4]), (Some(To::Group(2)), Some(0xF0), None));
+    assert_eq!(shown(0x0108_03F0, [0; 4]), (None, None, None), "`read` has no such mode");
+}
+
+#[test]
 fn a_request_refuses_addresses_modes_and_values_that_are_not_documented() {
     let refusal = |result: Result<Request<Message, Heat>, Error>| result.expect_err("a refusal").to_string();
     assert_eq!(refusal(HEAT.set(To::Heater(10))), "`heater` is 0x0A, but its limits are 0x01..=0x09");

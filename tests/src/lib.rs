@@ -53,6 +53,12 @@ pub trait Visitor {
     fn visit<P: canspec_runtime::Protocol + Signals>(&mut self, path: &str);
 }
 
+/// Runs a test on each protocol with requests or reports of the controller.
+pub trait AddressedVisitor {
+    /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.
+    fn visit<P: canspec_runtime::Addressed>(&mut self, path: &str);
+}
+
 /// Runs a test on each protocol whose types have the optional traits.
 pub trait SwitchedVisitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.

@@ -20,6 +20,7 @@ mod protocol;
 mod scales;
 mod set;
 mod transport;
+mod way;
 mod word;
 
 use std::iter;
@@ -94,7 +95,7 @@ fn head(plan: &Plan, derives: Derives) -> TokenStream {
     let selectors = plan.in_data.iter().map(filter::in_data);
     let identifier = identifier::identifier(&plan.identifier, derives);
     let continuation = plan.continuation.as_ref().map(filter::continuation);
-    let targets = plan.targets.as_ref().map(|targets| address::targets(targets, derives));
+    let targets = plan.targets.as_ref().map(|targets| address::targets(targets, &plan.ways, derives));
     let addresses = plan.address_types.iter().map(address::address_type);
     let modes = plan.modes.iter().map(address::mode);
     let (accesses, of_models) = (plan.accesses.iter().map(exchange::access), model::models(&plan.models, derives));

@@ -61,4 +61,12 @@ impl Protocol {
         let alone = free.next().filter(|_| free.next().is_none());
         addressed.or(alone)
     }
+
+    /// Returns the kind of address that shows which module sends a frame or, without `who`, is asked.
+    /// It is one by which some module answers for itself.
+    pub(crate) fn node(&self, mode: &Mode, who: Option<Who>) -> Option<AddressTypeId> {
+        let kind = who.map_or(mode.target, |who| self.sender(mode, who))?;
+        let single = |mode| [Who::One, Who::Each].map(|who| self.sender(mode, who));
+        self.modes.iter().flat_map(single).any(|known| known == Some(kind)).then_some(kind)
+    }
 }

@@ -1,9 +1,9 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Encode, IdFilter, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Decode, Encode, IdFilter, Incoming, Pattern, Shown, Task, Way, Who};
 use crate::{
-    AddressType, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout, Mode, Place,
-    Problem, Protocol, Received, Request, Route, Selector, Signal,
+    AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout,
+    Mode, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
 };
 
 pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0300_0000, 0x0100_0000);
@@ -51,7 +51,7 @@ pub const GROUPED: Mode = Mode {
 
 pub const ALL: Mode = mode("all", None, Pattern { constants: &[(TARGET, 0x3F)], addresses: &[FROM_CONTROLLER] });
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum To {
     Heater(u8),
     Group(u8),
@@ -87,6 +87,22 @@ impl Destination for To {
             _ => None,
         }
     }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        let byte = |number: i32| u8::try_from(number).ok();
+        Some(match way.place() {
+            (0, None) => Route::new(Self::Heater(byte(way.number(TARGET, &HEATER))?), way.number(SOURCE, &CONTROLLER)),
+            (1, Some(Who::Coordinator)) => {
+                Route::new(Self::Group(byte(way.number(SOURCE, &GROUP))?), way.number(TARGET, &CONTROLLER))
+            }
+            (2, None) => Self::All.into(),
+            _ => return None,
+        })
+    }
+}
+
+impl Addressed for Message {
+    type Target = To;
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,6 +205,24 @@ impl Protocol for Message {
 
     fn reply_lengths(frame: &Incoming) -> &'static [u8] {
         Self::request_lengths(frame)
+    }
+
+    fn way(shown: &Shown) -> Option<Way> {
+        let source = Address::new(SOURCE, &CONTROLLER);
+        Way::best([
+            shown.request(0).address(&Address::new(TARGET, &HEATER).excluding(OTHERS)).address(&source),
+            shown.reply(1, Who::Each).address(&Address::new(SOURCE, &HEATER)),
+            shown.reply(1, Who::Coordinator).address(&Address::new(SOURCE, &GROUP)),
+            shown.request(2).id(TARGET, 0x3F).address(&source),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(TARGET, &HEATER),
+            (1, Some(Who::Each)) => way.number(SOURCE, &HEATER),
+            _ => return None,
+        })
     }
 
     fn run<T: Task>(&self, task: T) -> T::Output {

@@ -8,8 +8,8 @@ use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::transfers::{self, Transferred, Transport};
 use canspec_runtime::{
-    AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading, Received,
-    Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
+    Addressed, AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading,
+    Received, Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -69,7 +69,7 @@ pub fn received<P: Protocol<Identifier: Unknown> + Unknown>() {
         reply => sink(reply),
     }
     sink((received.identifier(), received.frame(), received.kind(), received.exchange()));
-    sink((received.addressing(), received.is_error_reply(), received.reserved()));
+    sink((received.addressing(), received.node(), received.is_error_reply(), received.reserved()));
     received.selectors().for_each(sink);
     received.visit(reading);
     sink(received.encode());
@@ -88,8 +88,11 @@ pub fn entries<P: Protocol>() {
     }
 }
 
-/// Asks for every message without naming one.
-pub fn questions<T: Destination + Unknown>() {
+/// Asks for every message without naming one, and whom a frame reaches.
+pub fn questions<T: Destination<Protocol: Addressed> + Unknown>() {
+    if let Ok(received) = Received::<T::Protocol>::decode(&unknown_frame()) {
+        sink((received.target(), received.route()));
+    }
     for entry in T::Protocol::MESSAGES {
         entry.request(unknown(), unknown::<Route<T>>()).into_iter().for_each(request);
     }

@@ -1,6 +1,6 @@
 //! Values that the compiler cannot foresee.
 
-use canspec_runtime::plumbing::{Incoming, Raw, Who};
+use canspec_runtime::plumbing::{Incoming, Raw, Shown, Way, Who};
 use canspec_runtime::{Bcd, Bytes, Destination, Elements, Frame, Meaning, Number, Payload, Route, Text};
 
 /// A type whose values can be unknown.
@@ -154,5 +154,18 @@ impl Unknown for Meaning<'_> {
             4 => Self::Bytes(&[]),
             _ => Self::None,
         }
+    }
+}
+
+impl Unknown for Shown {
+    fn unknown() -> Self {
+        Self::new(unknown(), unknown(), &[Some(Who::One), Some(Who::Each), Some(Who::Coordinator), None])
+    }
+}
+
+impl Unknown for Way {
+    fn unknown() -> Self {
+        let shown: Shown = unknown();
+        if unknown() { shown.request(unknown()) } else { shown.reply(unknown(), unknown()) }
     }
 }

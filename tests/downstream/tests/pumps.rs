@@ -39,6 +39,14 @@ fn a_frame_of_any_kind_says_what_it_is() {
 }
 
 #[test]
+fn a_frame_shows_which_pump_it_is_about() {
+    let echo = Message::decode(&frame(0x083, [0x0B, 0xB8, 0, 0])).expect("it is printed");
+    assert_eq!((echo.target(), echo.node()), (Some(Target::Pump(3)), Some(3)));
+    let report = Message::decode(&frame(0x503, [0x0B, 0xA4, 0x03, 0xE7])).expect("it is printed");
+    assert_eq!((report.target(), report.node()), (None, Some(3)));
+}
+
+#[test]
 fn a_filter_of_the_hardware_lets_the_answers_pass() {
     let request = turn(Model::P30, 3, 3000).expect("the model runs so fast");
     let replies = request.replies().filter().expect("one pump answers");

@@ -108,6 +108,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -155,6 +159,26 @@ impl Destination for Target {
                 .id(Identifier::DEVICE, 0x1)
                 .id(Identifier::SOURCE, 0x3F)
                 .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender)),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(
+                Self::Module(way.number(Identifier::TARGET, &MODULE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS),
+            ),
+            (0, Some(Who::One)) => Route::new(
+                Self::Module(way.number(Identifier::SOURCE, &MODULE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::TARGET, &CONTROLLER_ADDRESS),
+            ),
+            (1, None) => Route::new(
+                Self::Group(way.number(Identifier::TARGET, &GROUP_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS),
+            ),
+            (2, None) => Route::new(Self::All, way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            (2, Some(Who::Coordinator)) => Route::new(Self::All, way.number(Identifier::TARGET, &CONTROLLER_ADDRESS)),
             _ => return None,
         })
     }
@@ -303,6 +327,49 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[SINGLE_MODE, GROUP_MODE, ALL_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .id(Identifier::DEVICE, 0x1)
+                .address(&Address::new(Identifier::TARGET, &MODULE_ADDRESS).excluding(&[(0x3F, 0x3F), (0xF0, 0xF8)]))
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::DEVICE, 0x1)
+                .address(&Address::new(Identifier::TARGET, &CONTROLLER_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &MODULE_ADDRESS).excluding(&[(0x3F, 0x3F), (0xF0, 0xF8)])),
+            shown
+                .request(1)
+                .id(Identifier::DEVICE, 0x2)
+                .address(&Address::new(Identifier::TARGET, &GROUP_ADDRESS).excluding(&[(0x3F, 0x3F), (0xF0, 0xF8)]))
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            shown
+                .reply(1, Who::Each)
+                .id(Identifier::DEVICE, 0x2)
+                .address(&Address::new(Identifier::TARGET, &CONTROLLER_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &MODULE_ADDRESS).excluding(&[(0x3F, 0x3F), (0xF0, 0xF8)])),
+            shown
+                .request(2)
+                .id(Identifier::DEVICE, 0x1)
+                .id(Identifier::TARGET, 0x3F)
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            shown
+                .reply(2, Who::Coordinator)
+                .id(Identifier::DEVICE, 0x1)
+                .id(Identifier::SOURCE, 0x3F)
+                .address(&Address::new(Identifier::TARGET, &CONTROLLER_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(Identifier::TARGET, &MODULE_ADDRESS),
+            (0, Some(Who::One)) | (1, Some(Who::Each)) => way.number(Identifier::SOURCE, &MODULE_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -65,6 +65,10 @@ pub enum Target {
     ToVehicle,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -85,6 +89,13 @@ impl Destination for Target {
     #[inline]
     fn replies(self, _: Who, _: Option<i32>) -> Option<IdFilter> {
         None
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Self::ToVehicle.into(),
+            _ => return None,
+        })
     }
 }
 
@@ -212,6 +223,10 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[TO_VEHICLE_MODE, TO_CHARGER_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const CONTROLLER_REPORTS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([shown.request(0).id(Identifier::SENDER, 0x2), shown.reply(1, Who::One).id(Identifier::SENDER, 0x1)])
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

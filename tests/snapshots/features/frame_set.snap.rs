@@ -87,6 +87,10 @@ pub enum Target {
     Oven(u8),
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -113,6 +117,15 @@ impl Destination for Target {
         Some(match (self, who) {
             (Self::Oven(number), Who::One) => {
                 IdFilter::ANY.id(Identifier::DIRECTION, 0x1).address(Identifier::NODE, &OVEN_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => {
+                Self::Oven(way.number(Identifier::NODE, &OVEN_ADDRESS).try_into().ok()?).into()
             }
             _ => return None,
         })
@@ -286,6 +299,23 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown.request(0).id(Identifier::DIRECTION, 0x0).address(&Address::new(Identifier::NODE, &OVEN_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::DIRECTION, 0x1)
+                .address(&Address::new(Identifier::NODE, &OVEN_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => way.number(Identifier::NODE, &OVEN_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

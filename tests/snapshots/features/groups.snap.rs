@@ -226,6 +226,17 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([shown.reply(0, Who::One).address(&Address::new(Identifier::BATTERY, &BATTERY_ADDRESS))])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, Some(Who::One)) => way.number(Identifier::BATTERY, &BATTERY_ADDRESS),
+            _ => return None,
+        })
+    }
+
     #[inline(always)]
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         frame.report(&State::REPORT, Self::State(frame.values()))

@@ -185,6 +185,20 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[CYCLIC_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([shown
+            .reply(0, Who::One)
+            .id(Identifier::FUNCTION, 0x1)
+            .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS))])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, Some(Who::One)) => way.number(Identifier::NODE, &RECTIFIER_ADDRESS),
+            _ => return None,
+        })
+    }
+
     #[inline(always)]
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::FUNCTION) {

@@ -268,6 +268,17 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[BATTERY_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([shown.reply(0, Who::One).address(&Address::new(Identifier::NODE, &BATTERY_ADDRESS))])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, Some(Who::One)) => way.number(Identifier::NODE, &BATTERY_ADDRESS),
+            _ => return None,
+        })
+    }
+
     #[inline(always)]
     fn reply(frame: &Incoming) -> Result<Received, Problem> {
         match frame.id(Identifier::COMMAND) {

@@ -84,6 +84,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -109,6 +113,20 @@ impl Destination for Target {
             (Self::Relay(number), Who::One) => IdFilter::ANY
                 .address(Identifier::TARGET, &HOST_ADDRESS, HOST_ADDRESS.chosen(sender))
                 .address(Identifier::SOURCE, &RELAY_ADDRESS, number.into()),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(
+                Self::Relay(way.number(Identifier::TARGET, &RELAY_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &HOST_ADDRESS),
+            ),
+            (0, Some(Who::One)) => Route::new(
+                Self::Relay(way.number(Identifier::SOURCE, &RELAY_ADDRESS).try_into().ok()?),
+                way.number(Identifier::TARGET, &HOST_ADDRESS),
+            ),
             _ => return None,
         })
     }
@@ -277,6 +295,27 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[SWITCH_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .address(&Address::new(Identifier::TARGET, &RELAY_ADDRESS).excluding(&[(0x20, 0x20), (0x40, 0x40)]))
+                .address(&Address::new(Identifier::SOURCE, &HOST_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .address(&Address::new(Identifier::TARGET, &HOST_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &RELAY_ADDRESS).excluding(&[(0x20, 0x20), (0x40, 0x40)])),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(Identifier::TARGET, &RELAY_ADDRESS),
+            (0, Some(Who::One)) => way.number(Identifier::SOURCE, &RELAY_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -69,6 +69,10 @@ pub enum Target {
     Heater(u8),
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -95,6 +99,15 @@ impl Destination for Target {
         Some(match (self, who) {
             (Self::Heater(number), Who::One) => {
                 IdFilter::ANY.id(Identifier::DIRECTION, 0x1).address(Identifier::NODE, &HEATER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => {
+                Self::Heater(way.number(Identifier::NODE, &HEATER_ADDRESS).try_into().ok()?).into()
             }
             _ => return None,
         })
@@ -301,6 +314,23 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown.request(0).id(Identifier::DIRECTION, 0x0).address(&Address::new(Identifier::NODE, &HEATER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::DIRECTION, 0x1)
+                .address(&Address::new(Identifier::NODE, &HEATER_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => way.number(Identifier::NODE, &HEATER_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -69,6 +69,10 @@ pub enum Target {
     Charger(u8),
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -95,6 +99,15 @@ impl Destination for Target {
         Some(match (self, who) {
             (Self::Charger(number), Who::One) => {
                 IdFilter::ANY.id(Identifier::DIRECTION, 0x1).address(Identifier::NODE, &CHARGER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => {
+                Self::Charger(way.number(Identifier::NODE, &CHARGER_ADDRESS).try_into().ok()?).into()
             }
             _ => return None,
         })
@@ -279,6 +292,23 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[CHARGER_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown.request(0).id(Identifier::DIRECTION, 0x0).address(&Address::new(Identifier::NODE, &CHARGER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::DIRECTION, 0x1)
+                .address(&Address::new(Identifier::NODE, &CHARGER_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => way.number(Identifier::NODE, &CHARGER_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -65,6 +65,10 @@ pub enum Target {
     Pump,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -86,6 +90,13 @@ impl Destination for Target {
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Pump, Who::One) => IdFilter::ANY.id(Identifier::SENDER, 0x1),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => Self::Pump.into(),
             _ => return None,
         })
     }
@@ -214,6 +225,10 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(4);
     const MODES: &'static [Mode] = &[PUMP_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([shown.request(0).id(Identifier::SENDER, 0x0), shown.reply(0, Who::One).id(Identifier::SENDER, 0x1)])
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

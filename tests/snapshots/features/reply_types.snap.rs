@@ -71,6 +71,10 @@ pub enum Target {
     Device,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -92,6 +96,13 @@ impl Destination for Target {
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Device, Who::One) => IdFilter::ANY.id(Identifier::DIRECTION, 0x1),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => Self::Device.into(),
             _ => return None,
         })
     }
@@ -235,6 +246,13 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[DEVICE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown.request(0).id(Identifier::DIRECTION, 0x0),
+            shown.reply(0, Who::One).id(Identifier::DIRECTION, 0x1),
+        ])
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

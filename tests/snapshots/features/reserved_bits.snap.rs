@@ -89,6 +89,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -114,6 +118,20 @@ impl Destination for Target {
             (Self::Vehicle(number), Who::One) => IdFilter::ANY
                 .address(Identifier::TARGET, &CHARGER_ADDRESS, CHARGER_ADDRESS.chosen(sender))
                 .address(Identifier::SOURCE, &VEHICLE_ADDRESS, number.into()),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(
+                Self::Vehicle(way.number(Identifier::TARGET, &VEHICLE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CHARGER_ADDRESS),
+            ),
+            (0, Some(Who::One)) => Route::new(
+                Self::Vehicle(way.number(Identifier::SOURCE, &VEHICLE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::TARGET, &CHARGER_ADDRESS),
+            ),
             _ => return None,
         })
     }
@@ -263,6 +281,27 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(4);
     const MODES: &'static [Mode] = &[VEHICLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .address(&Address::new(Identifier::TARGET, &VEHICLE_ADDRESS).excluding(&[(0x40, 0x40)]))
+                .address(&Address::new(Identifier::SOURCE, &CHARGER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .address(&Address::new(Identifier::TARGET, &CHARGER_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &VEHICLE_ADDRESS).excluding(&[(0x40, 0x40)])),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(Identifier::TARGET, &VEHICLE_ADDRESS),
+            (0, Some(Who::One)) => way.number(Identifier::SOURCE, &VEHICLE_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -74,6 +74,10 @@ pub enum Target {
     Rectifier(u8),
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -102,6 +106,16 @@ impl Destination for Target {
         Some(match (self, who) {
             (Self::Rectifier(number), Who::One) => {
                 IdFilter::ANY.id(Identifier::FUNCTION, 0x5).address(Identifier::NODE, &RECTIFIER_ADDRESS, number.into())
+            }
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Self::All.into(),
+            (1, None | Some(Who::One)) => {
+                Self::Rectifier(way.number(Identifier::NODE, &RECTIFIER_ADDRESS).try_into().ok()?).into()
             }
             _ => return None,
         })
@@ -257,6 +271,27 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[ALL_MODE, SINGLE_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown.request(0).id(Identifier::FUNCTION, 0xF).id(Identifier::NODE, 0x00),
+            shown
+                .request(1)
+                .id(Identifier::FUNCTION, 0x6)
+                .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(1, Who::One)
+                .id(Identifier::FUNCTION, 0x5)
+                .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (1, None | Some(Who::One)) => way.number(Identifier::NODE, &RECTIFIER_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

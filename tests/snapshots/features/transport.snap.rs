@@ -96,6 +96,10 @@ pub enum Target {
     Everybody,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -120,6 +124,14 @@ impl Destination for Target {
         Some(match (self, who) {
             (Self::Peer, Who::One) => IdFilter::ANY.id(Identifier::TARGET, 0x56).id(Identifier::SOURCE, 0xF4),
             (Self::Everybody, Who::One) => IdFilter::ANY.id(Identifier::TARGET, 0xFF).id(Identifier::SOURCE, 0xF4),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => Self::Peer.into(),
+            (1, None | Some(Who::One)) => Self::Everybody.into(),
             _ => return None,
         })
     }
@@ -651,6 +663,15 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const CONTROLLER_REPORTS: bool = true;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown.request(0).id(Identifier::TARGET, 0xF4).id(Identifier::SOURCE, 0x56),
+            shown.reply(0, Who::One).id(Identifier::TARGET, 0x56).id(Identifier::SOURCE, 0xF4),
+            shown.request(1).id(Identifier::TARGET, 0xFF).id(Identifier::SOURCE, 0x56),
+            shown.reply(1, Who::One).id(Identifier::TARGET, 0xFF).id(Identifier::SOURCE, 0xF4),
+        ])
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -64,6 +64,10 @@ pub enum Target {
     All,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -85,6 +89,13 @@ impl Destination for Target {
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::All, Who::One) => IdFilter::ANY,
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => Self::All.into(),
             _ => return None,
         })
     }
@@ -241,6 +252,10 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[ALL_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([shown.request(0), shown.reply(0, Who::One)])
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

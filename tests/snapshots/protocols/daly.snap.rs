@@ -103,6 +103,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -128,6 +132,20 @@ impl Destination for Target {
             (Self::Battery(number), Who::One) => IdFilter::ANY
                 .address(Identifier::TARGET, &HOST_ADDRESS, HOST_ADDRESS.chosen(sender))
                 .address(Identifier::SOURCE, &BATTERY_ADDRESS, number.into()),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(
+                Self::Battery(way.number(Identifier::TARGET, &BATTERY_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &HOST_ADDRESS),
+            ),
+            (0, Some(Who::One)) => Route::new(
+                Self::Battery(way.number(Identifier::SOURCE, &BATTERY_ADDRESS).try_into().ok()?),
+                way.number(Identifier::TARGET, &HOST_ADDRESS),
+            ),
             _ => return None,
         })
     }
@@ -1454,6 +1472,34 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .address(&Address::new(Identifier::TARGET, &BATTERY_ADDRESS).excluding(&[
+                    (0x20, 0x20),
+                    (0x40, 0x40),
+                    (0x80, 0x80),
+                ]))
+                .address(&Address::new(Identifier::SOURCE, &HOST_ADDRESS)),
+            shown.reply(0, Who::One).address(&Address::new(Identifier::TARGET, &HOST_ADDRESS)).address(
+                &Address::new(Identifier::SOURCE, &BATTERY_ADDRESS).excluding(&[
+                    (0x20, 0x20),
+                    (0x40, 0x40),
+                    (0x80, 0x80),
+                ]),
+            ),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(Identifier::TARGET, &BATTERY_ADDRESS),
+            (0, Some(Who::One)) => way.number(Identifier::SOURCE, &BATTERY_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -121,6 +121,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -153,6 +157,16 @@ impl Destination for Target {
                 .address(Identifier::TARGET, &CHARGER_ADDRESS, CHARGER_ADDRESS.chosen(sender))
                 .address(Identifier::SOURCE, &BMS_ADDRESS, BMS_ADDRESS.chosen(sender)),
             (Self::Everybody, Who::One) => IdFilter::ANY.id(Identifier::TARGET, 0xFF),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(Self::Peer, way.number(Identifier::TARGET, &BMS_ADDRESS)),
+            (0, Some(Who::One)) => Route::new(Self::Peer, way.number(Identifier::SOURCE, &BMS_ADDRESS)),
+            (1, None) => Route::new(Self::Everybody, way.number(Identifier::SOURCE, &CHARGER_ADDRESS)),
+            (1, Some(Who::One)) => Self::Everybody.into(),
             _ => return None,
         })
     }
@@ -5263,6 +5277,24 @@ impl Protocol for Message {
     const CONTROLLER_REPORTS: bool = true;
     const DATA_SELECTORS: bool = true;
     const FOREIGN_LIKE_OWN: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .address(&Address::new(Identifier::TARGET, &BMS_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &CHARGER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .address(&Address::new(Identifier::TARGET, &CHARGER_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &BMS_ADDRESS)),
+            shown.request(1).id(Identifier::TARGET, 0xFF).address(&Address::new(Identifier::SOURCE, &CHARGER_ADDRESS)),
+            shown
+                .reply(1, Who::One)
+                .id(Identifier::TARGET, 0xFF)
+                .address(&Address::new(Identifier::SOURCE, &BMS_ADDRESS)),
+        ])
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

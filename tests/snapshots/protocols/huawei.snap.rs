@@ -151,6 +151,10 @@ pub enum Target {
     Broadcast,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -184,6 +188,16 @@ impl Destination for Target {
                 .id(Identifier::DIRECTION, 0x0)
                 .address(Identifier::ADDRESS, &PSU_ADDRESS, number.into()),
             (Self::Broadcast, Who::Each) => IdFilter::ANY.id(Identifier::PROTOCOL, 0x21).id(Identifier::DIRECTION, 0x0),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => {
+                Self::Psu(way.number(Identifier::ADDRESS, &PSU_ADDRESS).try_into().ok()?).into()
+            }
+            (1, None | Some(Who::Each)) => Self::Broadcast.into(),
             _ => return None,
         })
     }
@@ -3161,6 +3175,65 @@ impl Protocol for Message {
     ];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .id(Identifier::PROTOCOL, 0x21)
+                .id(Identifier::DIRECTION, 0x1)
+                .address(&Address::new(Identifier::ADDRESS, &PSU_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::PROTOCOL, 0x21)
+                .id(Identifier::DIRECTION, 0x0)
+                .address(&Address::new(Identifier::ADDRESS, &PSU_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .request(1)
+                .id(Identifier::PROTOCOL, 0x21)
+                .id(Identifier::ADDRESS, 0x00)
+                .id(Identifier::DIRECTION, 0x1),
+            shown
+                .reply(1, Who::Each)
+                .id(Identifier::PROTOCOL, 0x21)
+                .id(Identifier::DIRECTION, 0x0)
+                .address(&Address::new(Identifier::ADDRESS, &PSU_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(2, Who::One)
+                .id(Identifier::PROTOCOL, 0x20)
+                .id(Identifier::DIRECTION, 0x0)
+                .address(&Address::new(Identifier::ADDRESS, &PSU_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(3, Who::One)
+                .id(Identifier::PROTOCOL, 0x20)
+                .id(Identifier::ADDRESS, 0x00)
+                .id(Identifier::DIRECTION, 0x1),
+            shown
+                .reply(4, Who::One)
+                .id(Identifier::PROTOCOL, 0x21)
+                .id(Identifier::DIRECTION, 0x1)
+                .address(&Address::new(Identifier::ADDRESS, &PSU_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(5, Who::One)
+                .id(Identifier::PROTOCOL, 0x20)
+                .id(Identifier::ADDRESS, 0x00)
+                .id(Identifier::DIRECTION, 0x0),
+            shown
+                .reply(6, Who::One)
+                .id(Identifier::PROTOCOL, 0x21)
+                .id(Identifier::ADDRESS, 0x00)
+                .id(Identifier::DIRECTION, 0x1),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) | (1, Some(Who::Each)) | (2 | 4, Some(Who::One)) => {
+                way.number(Identifier::ADDRESS, &PSU_ADDRESS)
+            }
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -130,6 +130,10 @@ pub enum Target {
     Broadcast,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -159,6 +163,16 @@ impl Destination for Target {
             (Self::Module(number), Who::One) => {
                 IdFilter::ANY.id(Identifier::SENDER, 0x0).address(Identifier::NODE, &MODULE_ADDRESS, number.into())
             }
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => {
+                Self::Module(way.number(Identifier::NODE, &MODULE_ADDRESS).try_into().ok()?).into()
+            }
+            (1, None) => Self::Broadcast.into(),
             _ => return None,
         })
     }
@@ -5487,6 +5501,27 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
     const FOREIGN_LIKE_OWN: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .id(Identifier::SENDER, 0x1)
+                .address(&Address::new(Identifier::NODE, &MODULE_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::SENDER, 0x0)
+                .address(&Address::new(Identifier::NODE, &MODULE_ADDRESS)),
+            shown.request(1).id(Identifier::NODE, 0x00).id(Identifier::SENDER, 0x1),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => way.number(Identifier::NODE, &MODULE_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

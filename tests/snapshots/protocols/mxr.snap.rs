@@ -155,6 +155,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -198,6 +202,29 @@ impl Destination for Target {
                 .id(Identifier::POINT_TO_POINT, 0x1)
                 .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))
                 .address(Identifier::SOURCE, &MODULE_ADDRESS, number.into()),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(
+                Self::Module(way.number(Identifier::TARGET, &MODULE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS),
+            ),
+            (0, Some(Who::One)) => Route::new(
+                Self::Module(way.number(Identifier::SOURCE, &MODULE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::TARGET, &CONTROLLER_ADDRESS),
+            ),
+            (1, None) => Route::new(
+                Self::Group(way.number(Identifier::GROUP, &GROUP_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS),
+            ),
+            (2, None) => Route::new(
+                Self::ExtendedGroup(way.number(Identifier::TARGET, &EXTENDED_GROUP_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS),
+            ),
+            (3, None) => Route::new(Self::Broadcast, way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
             _ => return None,
         })
     }
@@ -2403,6 +2430,50 @@ impl Protocol for Message {
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, EXTENDED_GROUP_MODE, BROADCAST_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .id(Identifier::POINT_TO_POINT, 0x1)
+                .address(&Address::new(Identifier::TARGET, &MODULE_ADDRESS).excluding(&[
+                    (0xC1, 0xFD),
+                    (0xF0, 0xF0),
+                    (0xFE, 0xFE),
+                    (0xFF, 0xFF),
+                ]))
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::POINT_TO_POINT, 0x1)
+                .address(&Address::new(Identifier::TARGET, &CONTROLLER_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &MODULE_ADDRESS).excluding(&[(0xF0, 0xF0)])),
+            shown
+                .request(1)
+                .id(Identifier::POINT_TO_POINT, 0x0)
+                .id(Identifier::TARGET, 0xFE)
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS))
+                .address(&Address::new(Identifier::GROUP, &GROUP_ADDRESS)),
+            shown
+                .request(2)
+                .id(Identifier::POINT_TO_POINT, 0x0)
+                .address(&Address::new(Identifier::TARGET, &EXTENDED_GROUP_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            shown
+                .request(3)
+                .id(Identifier::POINT_TO_POINT, 0x0)
+                .id(Identifier::TARGET, 0xFF)
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(Identifier::TARGET, &MODULE_ADDRESS),
+            (0, Some(Who::One)) => way.number(Identifier::SOURCE, &MODULE_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

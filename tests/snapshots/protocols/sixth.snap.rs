@@ -93,6 +93,10 @@ pub enum Target {
     KeepAlive,
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -124,6 +128,17 @@ impl Destination for Target {
             (Self::Rectifier(number), Who::One) => {
                 IdFilter::ANY.id(Identifier::FUNCTION, 0x5).address(Identifier::NODE, &RECTIFIER_ADDRESS, number.into())
             }
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) => {
+                Self::Rectifier(way.number(Identifier::NODE, &RECTIFIER_ADDRESS).try_into().ok()?).into()
+            }
+            (1, None) => Self::All.into(),
+            (2, None) => Self::KeepAlive.into(),
             _ => return None,
         })
     }
@@ -1597,6 +1612,36 @@ impl Protocol for Message {
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
     const REFUSALS: bool = true;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .id(Identifier::FUNCTION, 0x6)
+                .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS).excluding(&[(0x00, 0x00)])),
+            shown
+                .reply(0, Who::One)
+                .id(Identifier::FUNCTION, 0x5)
+                .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS)),
+            shown.request(1).id(Identifier::FUNCTION, 0x6).id(Identifier::NODE, 0x00),
+            shown.request(2).id(Identifier::FUNCTION, 0xF).id(Identifier::NODE, 0x00),
+            shown
+                .reply(3, Who::One)
+                .id(Identifier::FUNCTION, 0x1)
+                .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS)),
+            shown
+                .reply(4, Who::One)
+                .id(Identifier::FUNCTION, 0x2)
+                .address(&Address::new(Identifier::NODE, &RECTIFIER_ADDRESS)),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None | Some(Who::One)) | (3 | 4, Some(Who::One)) => way.number(Identifier::NODE, &RECTIFIER_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -111,6 +111,10 @@ impl Target {
     }
 }
 
+impl Addressed for Message {
+    type Target = Target;
+}
+
 impl Destination for Target {
     type Protocol = Message;
 
@@ -136,6 +140,20 @@ impl Destination for Target {
             (Self::Module(number), Who::One) => IdFilter::ANY
                 .address(Identifier::TARGET, &CONTROLLER_ADDRESS, CONTROLLER_ADDRESS.chosen(sender))
                 .address(Identifier::SOURCE, &MODULE_ADDRESS, number.into()),
+            _ => return None,
+        })
+    }
+
+    fn shown(way: &Way) -> Option<Route<Self>> {
+        Some(match way.place() {
+            (0, None) => Route::new(
+                Self::Module(way.number(Identifier::TARGET, &MODULE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::SOURCE, &CONTROLLER_ADDRESS),
+            ),
+            (0, Some(Who::One)) => Route::new(
+                Self::Module(way.number(Identifier::SOURCE, &MODULE_ADDRESS).try_into().ok()?),
+                way.number(Identifier::TARGET, &CONTROLLER_ADDRESS),
+            ),
             _ => return None,
         })
     }
@@ -969,6 +987,27 @@ impl Protocol for Message {
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
+
+    fn way(shown: &Shown) -> Option<Way> {
+        Way::best([
+            shown
+                .request(0)
+                .address(&Address::new(Identifier::TARGET, &MODULE_ADDRESS).excluding(&[(0xF3, 0xF3)]))
+                .address(&Address::new(Identifier::SOURCE, &CONTROLLER_ADDRESS)),
+            shown
+                .reply(0, Who::One)
+                .address(&Address::new(Identifier::TARGET, &CONTROLLER_ADDRESS))
+                .address(&Address::new(Identifier::SOURCE, &MODULE_ADDRESS).excluding(&[(0xF3, 0xF3)])),
+        ])
+    }
+
+    fn node(way: &Way) -> Option<i32> {
+        Some(match way.place() {
+            (0, None) => way.number(Identifier::TARGET, &MODULE_ADDRESS),
+            (0, Some(Who::One)) => way.number(Identifier::SOURCE, &MODULE_ADDRESS),
+            _ => return None,
+        })
+    }
 
     #[inline(always)]
     fn request(frame: &Incoming) -> Result<Received, Problem> {

@@ -7,6 +7,8 @@ use super::derives::Derives;
 use super::plan::address::{
     Address, AddressType, Mode, NamedAddress, Number, Pattern, Sender, Shown, Target, Targets, Value,
 };
+use super::plan::way::Way;
+use super::way::route;
 use crate::model::Id;
 
 /// Emits a kind of address.
@@ -59,18 +61,19 @@ fn pattern(Pattern { constants, addresses }: &Pattern) -> TokenStream {
     quote!(Pattern { constants: &[#(#constants),*], addresses: &[#(#addresses),*] })
 }
 
-fn address(Address { place, kind, excluded }: &Address) -> TokenStream {
+/// Writes a field that holds an address.
+pub fn address(Address { place, kind, excluded }: &Address) -> TokenStream {
     let ranges = excluded.iter().map(|(first, last)| quote!((#first, #last)));
     let excluding = (!excluded.is_empty()).then(|| quote!(.excluding(&[#(#ranges),*])));
     quote!(Address::new(Identifier::#place, &#kind) #excluding)
 }
 
 /// Emits the targets of requests.
-pub fn targets(Targets { variants, sender }: &Targets, derives: Derives) -> TokenStream {
+pub fn targets(Targets { variants, sender }: &Targets, ways: &[Way], derives: Derives) -> TokenStream {
     let attributes = derives.variants(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
     let definitions = variants.iter().map(|target| definition(target, derives));
     let sender = sender.as_ref().map(sent_by);
-    let destination = destination(variants);
+    let destination = destination(variants, ways);
     quote! {
         /// Whom a request addresses.
         #attributes
@@ -118,14 +121,19 @@ fn sent_by(Sender { argument, number, comment }: &Sender) -> TokenStream {
     }
 }
 
-fn destination(variants: &[Target]) -> TokenStream {
+fn destination(variants: &[Target], ways: &[Way]) -> TokenStream {
     let modes = variants.iter().map(|Target { variant, mode, number, .. }| {
         let (index, number) = (Literal::usize_unsuffixed(mode.place()), number.map(|_| quote!((_))));
         quote!(Self::#variant #number => #index)
     });
     let request = request(variants);
     let replies = replies(variants);
+    let route = route(ways);
     quote! {
+        impl Addressed for Message {
+            type Target = Target;
+        }
+
         impl Destination for Target {
             type Protocol = Message;
 
@@ -137,6 +145,8 @@ fn destination(variants: &[Target]) -> TokenStream {
             #request
 
             #replies
+
+            #route
         }
     }
 }

@@ -24,6 +24,7 @@ mod types;
 mod unit;
 pub mod usage;
 pub mod variant;
+pub mod way;
 pub mod word;
 
 use proc_macro2::TokenStream;
@@ -44,6 +45,7 @@ use signal::Context;
 use transport::Transport;
 use types::Types;
 use variant::Variant;
+use way::Way;
 use word::{Enumeration, Packed, StatusWord};
 
 /// A whole module.
@@ -60,6 +62,8 @@ pub struct Plan {
     pub continuation: Option<(Source, TokenStream)>,
     /// The targets of requests.
     pub targets: Option<Targets>,
+    /// The ways through addressing modes.
+    pub ways: Vec<Way>,
     /// Kinds of addresses.
     pub address_types: Vec<AddressType>,
     /// Addressing modes.
@@ -124,6 +128,7 @@ impl Plan {
             identifier: Identifier::new(protocol, types),
             continuation: continuation(protocol, &selectors),
             targets: Targets::new(protocol, addresses),
+            ways: Way::all(protocol, addresses),
             address_types: address_types
                 .map(|(known, name)| AddressType::new(protocol, name, known, &mut constants))
                 .collect(),

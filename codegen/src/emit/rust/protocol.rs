@@ -10,6 +10,7 @@ use super::parts::{part_name, parts};
 use super::plan::Plan;
 use super::plan::recognition::Direction;
 use super::plan::variant::Variant;
+use super::way::{node, way};
 
 /// Emits `Message`: its type, then how a frame is recognised.
 pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
@@ -130,6 +131,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
     let normal = normal(&plan.base);
     let modes = plan.modes.iter().map(|mode| &mode.constant);
     let truths = truths(plan);
+    let (way, node) = (way(&plan.ways), node(&plan.ways));
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
     let recognises = [&plan.requests, &plan.replies, &plan.either].into_iter().any(Option::is_some);
     let inlines = recognises.then(|| quote!(#[expect(clippy::inline_always, reason = "only decoding calls them")]));
@@ -144,6 +146,8 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
             #(const #truths: bool = true;)*
 
+            #way
+            #node
             #(#functions)*
         }
     }

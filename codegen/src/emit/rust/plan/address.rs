@@ -142,7 +142,8 @@ pub enum Number {
 }
 
 impl Number {
-    fn of(address: &model::AddressType) -> Self {
+    /// Returns the type that holds the numbers of a kind of address.
+    pub fn of(address: &model::AddressType) -> Self {
         match (address.first, address.last) {
             (0.., ..=0xFF) => Self::U8,
             (0.., ..=0xFFFF) => Self::U16,
@@ -220,7 +221,8 @@ impl Mode {
 }
 
 impl Pattern {
-    fn new(protocol: &Protocol, kinds: &Addresses, pattern: &AddressPattern) -> Self {
+    /// Plans what an identifier must show.
+    pub fn new(protocol: &Protocol, kinds: &Addresses, pattern: &AddressPattern) -> Self {
         let fields = protocol.identifier.fields.iter().filter(|field| pattern.mask & field.mask() != 0);
         let constants =
             fields.map(|field| (screaming(&field.name), hexadecimal(field.get(pattern.value), field.width)));
@@ -250,7 +252,8 @@ impl Targets {
     }
 }
 
-fn target_names(protocol: &Protocol) -> Table<ModeId, Ident> {
+/// Names the targets of all modes.
+pub fn target_names(protocol: &Protocol) -> Table<ModeId, Ident> {
     let mut variants = Pool::default();
     protocol.modes.map(|mode| variants.take(camel_case(protocol.target_name(mode)), "Mode"))
 }

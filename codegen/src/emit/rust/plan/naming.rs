@@ -10,9 +10,10 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 86] = [
+const TAKEN: [&str; 89] = [
     "Address",
     "AddressType",
+    "Addressed",
     "Addressing",
     "AnySignal",
     "Bcd",
@@ -85,6 +86,7 @@ const TAKEN: [&str; 86] = [
     "Self",
     "Send",
     "Severity",
+    "Shown",
     "Signal",
     "Some",
     "StatusBit",
@@ -94,6 +96,7 @@ const TAKEN: [&str; 86] = [
     "Task",
     "Text",
     "Transferred",
+    "Way",
     "Who",
     "Within",
     "Word",
