@@ -23,6 +23,7 @@ pub use value::{Limits, physical, raw_of};
 use std::fmt;
 
 pub use crate::encoding::{Input, Value, description};
+use crate::hex;
 use crate::model::{
     AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, ModelId, NoteRule, Protocol,
     SelectorId, Side, SignalId, Table, Travel,
@@ -45,6 +46,14 @@ impl Frame {
     /// Returns the data bytes, filled up with zeros.
     pub fn padded(&self) -> [u8; 8] {
         padded(&self.data)
+    }
+}
+
+/// Writes a data frame as documents print it: `ID#DATA`.
+impl fmt::Display for Frame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = if self.extended { 8 } else { 3 };
+        write!(f, "{:0digits$X}#{}", self.id, hex::digits(&self.data))
     }
 }
 

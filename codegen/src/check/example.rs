@@ -16,7 +16,6 @@ use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
 use crate::encoding::about_offset;
-use crate::hex;
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
 };
@@ -298,14 +297,7 @@ impl<'a> Checker<'a> {
         let frame = self.frame();
         match encode(self.protocol, self.example.model, &content) {
             Ok(encoded) if encoded == frame => Ok(()),
-            Ok(encoded) => {
-                let text = format!(
-                    "it encodes back to other bytes: {} instead of {}",
-                    hex::digits(&encoded.data),
-                    hex::digits(&frame.data)
-                );
-                Err(wrong(self.frame_at(), text))
-            }
+            Ok(encoded) => Err(wrong(self.frame_at(), format!("it encodes back to {encoded} instead of {frame}"))),
             Err(_) if decoded.sender == Side::Controller && !self.example.notes.is_empty() => Ok(()),
             Err(refusal) => Err(wrong(self.frame_at(), format!("it does not encode back: {refusal}"))),
         }

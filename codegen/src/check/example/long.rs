@@ -4,7 +4,6 @@ use canspec_runtime::Place;
 
 use super::{Checked, misfitting, shown, wrong};
 use crate::diagnostic::{At, Diagnostic};
-use crate::hex;
 use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, decode, encode_long};
 use crate::model::{LongExample, LongMessage, Protocol, Standard, TransportFrame};
 use crate::resolve::rules;
@@ -168,10 +167,9 @@ impl Checker<'_> {
         match differing.or_else(|| (made.len() != frames.len()).then_some(made.len().min(frames.len()))) {
             None => Ok(()),
             Some(index) => {
-                let [found, wanted] =
-                    [&made, &frames].map(|frames| frames.get(index).map(|frame| hex::digits(&frame.data)));
-                let [found, wanted] = [found, wanted].map(|digits| digits.unwrap_or_else(|| "no frame".to_owned()));
-                let text = format!("it encodes back to other bytes: {found} instead of {wanted}");
+                let frame =
+                    |frames: &[Frame]| frames.get(index).map_or_else(|| "no frame".to_owned(), Frame::to_string);
+                let text = format!("it encodes back to {} instead of {}", frame(&made), frame(&frames));
                 Err(wrong(self.frames_at(), text))
             }
         }
