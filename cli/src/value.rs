@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use canspec_codegen::interpret::{Reading, Value};
+use canspec_codegen::interpret::{Reading, Value, escape};
 use canspec_codegen::model::{Linear, Protocol, Signal};
 
 use crate::line::bit_names;
@@ -19,14 +19,10 @@ pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &
             Some(linear) => fixed(text, *number, decimals(&linear)),
             None => single(text, *number),
         },
-        Value::Name(value) | Value::Text(value) => escaped(text, value),
+        Value::Name(name) => text.write_str(name),
+        Value::Text(value) => text.write_str(&escape::written(value)),
         Value::Status { set, unknown } => status(text, bit_names(protocol, signal, set), *unknown),
     };
-}
-
-fn escaped(text: &mut String, value: &str) -> fmt::Result {
-    let is_plain = |byte| matches!(byte, b' '..=b'~') && !matches!(byte, b'"' | b'\'' | b'\\');
-    if value.bytes().all(is_plain) { text.write_str(value) } else { write!(text, "{}", value.escape_debug()) }
 }
 
 /// Writes a number with a fixed number of decimals.

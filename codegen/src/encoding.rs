@@ -6,6 +6,7 @@
 
 mod allowed;
 mod by_model;
+pub mod escape;
 mod float;
 mod named;
 mod number;
@@ -72,7 +73,7 @@ impl Input {
             Self::Raw(raw) => format!("raw {raw}"),
             Self::Integer(value) => value.to_string(),
             Self::Number(value) => value.to_string(),
-            Self::Text(text) => format!("the text `{text}`"),
+            Self::Text(text) => format!("the text `{}`", escape::written(text)),
             Self::Status { .. } => "a set of bits".to_owned(),
         };
         format!("{what} is not {wanted}")
@@ -90,9 +91,9 @@ pub trait Room {
     /// Returns the raw bits of a value as a spec writes it, with its unit if `unit` says so.
     fn parse(&self, text: &str, unit: bool) -> Result<u64, Misfit>;
 
-    /// Reads a value as a person types it.
-    fn typed(&self, text: &str) -> Input {
-        Input::Text(text.to_owned())
+    /// Reads a value as a person types it, or says why it is none.
+    fn typed(&self, text: &str) -> Result<Input, String> {
+        Ok(Input::Text(text.to_owned()))
     }
 
     /// Returns what is odd about bits and their value, apart from the range.

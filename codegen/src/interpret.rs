@@ -22,7 +22,7 @@ pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
-pub use crate::encoding::{Input, Value, description};
+pub use crate::encoding::{Input, Value, description, escape};
 use crate::hex;
 use crate::model::{
     AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, ModelId, NoteRule, Protocol,

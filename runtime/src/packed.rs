@@ -3,6 +3,7 @@
 use core::fmt::{self, Write};
 
 use crate::plumbing::{Legend, Raw, Word};
+use crate::text::is_character;
 use crate::{Data, Place, bcd};
 
 /// A piece of a packed value's text. Places count from the first byte of the value.
@@ -72,7 +73,7 @@ impl Piece {
             Self::Text(place) => {
                 let (letters, rest) = text.split_at_checked(bytes(place))?;
                 place.put(data, letters.bytes().fold(0, |bits, byte| bits << 8 | u64::from(byte)));
-                letters.bytes().all(|byte| matches!(byte, b' '..=b'~')).then_some(rest)
+                letters.bytes().all(is_character).then_some(rest)
             }
             Self::Number { place, digits, limits: (minimum, maximum), is_decimal } => {
                 let length = match digits {

@@ -1,7 +1,8 @@
 //! The Rust types of raw values.
 
-use core::fmt;
+use core::fmt::{self, Write};
 
+use crate::text::Escaped;
 use crate::{Number, PackedText, StatusBit, bytes, status};
 
 /// The type of a signal's raw value: an integer, `f32`, named values, a status word, a text, raw bytes or a packed value.
@@ -106,9 +107,9 @@ impl fmt::Display for Meaning<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Number(number) => number.fmt(formatter),
-            Self::Name(text) | Self::Text(text) => formatter.write_str(text),
+            Self::Name(text) | Self::Text(text) => Escaped(formatter).write_str(text),
             Self::Bytes(bytes) => bytes::write(bytes, formatter),
-            Self::Packed(text) => text.fmt(formatter),
+            Self::Packed(text) => write!(Escaped(formatter), "{text}"),
             Self::Status(bits, known) => write_status(*bits, known, formatter),
             Self::None => formatter.write_str("?"),
         }

@@ -1,6 +1,6 @@
 //! ASCII texts.
 
-use core::fmt;
+use core::fmt::{self, Write};
 
 use crate::Meaning;
 use crate::plumbing::Raw;
@@ -19,12 +19,12 @@ use crate::plumbing::Raw;
 pub struct Text<const N: usize, const FILL: u8 = 0>([u8; N]);
 
 impl<const N: usize, const FILL: u8> Text<N, FILL> {
-    /// Takes a text of at most `N` printable ASCII characters, or returns `None` for any other
+    /// Takes a text of at most `N` ASCII characters without NUL, or returns `None` for any other
     /// text.
     pub fn new(text: &str) -> Option<Self> {
         let mut bytes = [FILL; N];
         bytes.iter_mut().zip(text.bytes()).for_each(|(byte, letter)| *byte = letter);
-        (text.len() <= N && text.bytes().all(is_printable)).then_some(Self(bytes))
+        (text.len() <= N && text.bytes().all(is_character)).then_some(Self(bytes))
     }
 
     #[cfg(feature = "serde")]
@@ -37,17 +37,33 @@ impl<const N: usize, const FILL: u8> Text<N, FILL> {
         &self.0
     }
 
-    /// Returns the text. It is `None` unless the bytes are printable ASCII with only `FILL`
-    /// after it.
+    /// Returns the text. It is `None` unless the bytes are ASCII characters without NUL, with only
+    /// `FILL` after them. Line ends and other control characters belong to the text.
     pub fn as_str(&self) -> Option<&str> {
         let length = self.0.iter().rposition(|byte| *byte != FILL).map_or(0, |last| last.saturating_add(1));
         let text = self.0.get(..length)?;
-        text.iter().all(|byte| is_printable(*byte)).then(|| core::str::from_utf8(text).ok()).flatten()
+        text.iter().all(|byte| is_character(*byte)).then(|| core::str::from_utf8(text).ok()).flatten()
     }
 }
 
-const fn is_printable(byte: u8) -> bool {
-    matches!(byte, b' '..=b'~')
+pub const fn is_character(byte: u8) -> bool {
+    matches!(byte, 1..=0x7F)
+}
+
+/// Writes control characters and backslashes as escapes.
+pub struct Escaped<'w, W>(pub &'w mut W);
+
+impl<W: Write> Write for Escaped<'_, W> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        text.chars().try_for_each(|letter| match letter {
+            '\\' => self.0.write_str("\\\\"),
+            '\n' => self.0.write_str("\\n"),
+            '\r' => self.0.write_str("\\r"),
+            '\t' => self.0.write_str("\\t"),
+            _ if letter.is_control() => write!(self.0, "\\x{:02X}", u32::from(letter)),
+            _ => self.0.write_char(letter),
+        })
+    }
 }
 
 impl<const N: usize, const FILL: u8> Default for Text<N, FILL> {
@@ -57,10 +73,11 @@ impl<const N: usize, const FILL: u8> Default for Text<N, FILL> {
 }
 
 impl<const N: usize, const FILL: u8> fmt::Display for Text<N, FILL> {
-    /// Writes the text, and escapes bytes that are no printable ASCII.
+    /// Writes the text with control characters and backslashes as escapes, and all bytes so if they are no text.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.as_str() {
-            Some(text) => formatter.pad(text),
+            Some(text) if !text.contains(|letter: char| letter.is_control() || letter == '\\') => formatter.pad(text),
+            Some(text) => Escaped(formatter).write_str(text),
             None => self.0.escape_ascii().fmt(formatter),
         }
     }
@@ -121,12 +138,22 @@ mod tests {
         assert_eq!(text(0x4142_2020).as_str(), Some("AB"));
         assert_eq!(text(0x2041_2042).as_str(), Some(" A B"));
         assert_eq!(text(0x2020_2020), Text::default());
-        assert_eq!(text(0x4142_0000).as_str(), None);
+        assert_eq!(text(0x4142_0000).as_str(), None, "NUL is no character");
         assert_eq!(Text::<4, b' '>::new("A").map(Raw::to_bits), Some(0x4120_2020));
     }
 
     #[test]
-    fn what_is_no_printable_ascii_is_no_text() {
+    fn control_characters_belong_to_a_text_and_are_shown_as_escapes() {
+        let text = Text::<6>::new("A\r\n\t\\\u{1B}").expect("six characters");
+        assert_eq!(text.to_bits(), 0x410D_0A09_5C1B);
+        assert_eq!(text.as_str(), Some("A\r\n\t\\\u{1B}"));
+        assert_eq!(text.to_string(), r"A\r\n\t\\\x1B");
+        assert_eq!(text.meaning().to_string(), r"A\r\n\t\\\x1B");
+        assert_eq!(Text::<2>::from_bits(0x7F01).to_string(), r"\x7F\x01");
+    }
+
+    #[test]
+    fn what_is_no_ascii_is_no_text() {
         assert_eq!(Text::<4>::new("ABCDE"), None);
         assert_eq!(Text::<4>::new("é"), None);
         assert_eq!(Text::<4>::from_bits(0x4100_4200).as_str(), None);

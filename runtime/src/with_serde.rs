@@ -7,7 +7,7 @@
 //! | named value | its name in the spec, or its raw number if it has none |
 //! | status word | `{"set": NAMES, "unknown": MASK}`: the set bits that have a name, and those that have none |
 //! | packed value | its text, or its raw number if that text would not give the same value |
-//! | [`Text`](crate::Text) | the text, or its bytes if they are no printable ASCII |
+//! | [`Text`](crate::Text) | the text, or its bytes if they are no ASCII characters |
 //! | [`Bytes`](crate::Bytes) | two hexadecimal digits a byte, such as `"0A1B2C"` |
 //! | [`Bcd`](crate::Bcd) | the number, or its bits such as `"0x2A"` if a digit is above 9 |
 //! | `f32` of the frame | the number, or its bits such as `"0x7FC00000"` if it is not finite |

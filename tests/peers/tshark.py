@@ -173,12 +173,20 @@ def whole_or_rounded(number):
     return f"{number:.0f}" if number.is_integer() and abs(number) < 2**53 else rounded(number)
 
 
+def escaped(value):
+    """Writes a text as the dissector has it: control characters and backslashes as escapes."""
+    if not isinstance(value, str):
+        return value
+    known = {"\\": r"\\", "\n": r"\n", "\r": r"\r", "\t": r"\t"}
+    return re.sub(r"[\x00-\x1f\x7f\\]", lambda found: known.get(found[0], f"\\x{ord(found[0]):02X}"), value)
+
+
 def signal_fields(name, signal):
     """Returns the fields of a signal, and its value as it stands in the list of packets."""
     if "set" in signal:
         bits = {f"{name}.{bit}": "1" for bit in signal["set"]}
         return {name: str(signal["raw"]), **bits}, " ".join(signal["set"]) or "none"
-    raw, value = signal["raw"], signal["value"]
+    raw, value = signal["raw"], escaped(signal["value"])
     if value is None:
         return {f"{name}.raw": str(raw)}, "?"
     fields = {name: rounded(value) if isinstance(value, float) else str(value), f"{name}.raw": str(raw)}

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value};
+use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value, escape};
 
 use crate::line::{Outcome, bit_names};
 use crate::log;
@@ -75,7 +75,8 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
         Value::None => String::new(),
         Value::Integer(number) => number.to_string(),
         Value::Number(number) => format!("{number:?}"),
-        Value::Name(text) | Value::Text(text) => text.clone(),
+        Value::Name(name) => name.clone(),
+        Value::Text(text) => escape::written(text),
         Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).collect::<Vec<_>>().join(" "),
     };
     let unit = signal.unit.map_or_else(String::new, |unit| unit.symbol.to_string());

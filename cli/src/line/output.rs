@@ -347,8 +347,10 @@ fn optional<W: Write>(
 }
 
 fn text(out: &mut impl Write, value: &str) -> io::Result<()> {
-    if value.bytes().any(|byte| matches!(byte, 0..b' ' | b'"' | b'\\')) {
-        return Ok(serde_json::to_writer(out, value)?);
+    if value.bytes().any(|byte| matches!(byte, 0..b' ' | b'"' | b'\\' | 0x7F)) {
+        // JSON may hold DEL as it is, and a terminal acts on it.
+        let text = serde_json::to_string(value)?.replace('\u{7F}', "\\u007f");
+        return out.write_all(text.as_bytes());
     }
     name(out, value)
 }

@@ -15,7 +15,7 @@ pub use self::unproven::{Unproven, unproven};
 use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::encoding::about_offset;
+use crate::encoding::{about_offset, escape};
 use crate::interpret::{
     Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
 };
@@ -355,7 +355,7 @@ fn shown(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Stri
         Input::Raw(raw) => format!("raw {raw:#X}"),
         Input::Integer(value) => format!("{value}{unit}"),
         Input::Number(value) => format!("{value}{unit}"),
-        Input::Text(text) => text,
+        Input::Text(text) => escape::written(&text),
         Input::Status { set, unknown } => {
             let numbers = (0..64).filter(|bit| unknown >> bit & 1 == 1).map(|bit: u8| bit.to_string());
             format!("[{}]", set.into_iter().chain(numbers).collect::<Vec<_>>().join(", "))

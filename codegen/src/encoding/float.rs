@@ -37,8 +37,8 @@ impl Room for Float<'_> {
         Ok(u64::from(single.to_bits()))
     }
 
-    fn typed(&self, text: &str) -> Input {
-        typed(self.signal, text)
+    fn typed(&self, text: &str) -> Result<Input, String> {
+        Ok(typed(self.signal, text))
     }
 
     fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)> {

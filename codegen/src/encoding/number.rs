@@ -52,8 +52,8 @@ impl Room for Number<'_> {
         bits_of_spec(self.signal, raw)
     }
 
-    fn typed(&self, text: &str) -> Input {
-        typed(self.signal, text)
+    fn typed(&self, text: &str) -> Result<Input, String> {
+        Ok(typed(self.signal, text))
     }
 
     fn oddity(&self, bits: u64, value: &Value) -> Option<(NoteRule, String)> {

@@ -1,7 +1,7 @@
 //! One text that is made of several parts.
 
 use super::text::{Text, formless};
-use super::{Allowed, Input, Room, Value, bits};
+use super::{Allowed, Input, Room, Value, bits, escape};
 use crate::model::{Misfit, NoteRule, PartId, Piece, Signal, Table};
 
 pub struct Packed<'a> {
@@ -18,13 +18,20 @@ impl Room for Packed<'_> {
     fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {
         match input {
             Input::Raw(raw) => bits(self.signal, *raw),
-            Input::Text(text) => self.bits(text).ok_or_else(|| format!("`{text}` is not of the documented form")),
+            Input::Text(text) => {
+                self.bits(text).ok_or_else(|| format!("`{}` is not of the documented form", escape::written(text)))
+            }
             Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("a text")),
         }
     }
 
     fn parse(&self, text: &str, _: bool) -> Result<u64, Misfit> {
-        self.bits(text).ok_or_else(|| format!("`{text}` is not of the form of `{}`", self.signal.name).into())
+        let bits = self.bits(&escape::read(text)?);
+        bits.ok_or_else(|| format!("`{text}` is not of the form of `{}`", self.signal.name).into())
+    }
+
+    fn typed(&self, text: &str) -> Result<Input, String> {
+        escape::read(text).map(Input::Text)
     }
 
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {

@@ -36,10 +36,10 @@ impl Room for Status<'_> {
     }
 
     /// Reads `[fan_fault]`.
-    fn typed(&self, text: &str) -> Input {
+    fn typed(&self, text: &str) -> Result<Input, String> {
         let names = text.trim_start_matches('[').trim_end_matches(']').split(',').map(str::trim);
         let set = names.filter(|name| !name.is_empty()).map(str::to_owned).collect();
-        Input::Status { set, unknown: 0 }
+        Ok(Input::Status { set, unknown: 0 })
     }
 
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {

@@ -1,6 +1,6 @@
 //! Whole bytes as a text: ASCII that is filled up with NUL or another byte, or hexadecimal digits.
 
-use super::{Allowed, Input, Room, Value, bits};
+use super::{Allowed, Input, Room, Value, bits, escape};
 use crate::hex;
 use crate::model::{Misfit, NoteRule, Signal, TextForm};
 
@@ -23,7 +23,11 @@ impl Room for Text<'_> {
     }
 
     fn parse(&self, text: &str, _: bool) -> Result<u64, Misfit> {
-        Ok(self.bits(text)?)
+        Ok(self.bits(&escape::read(text)?)?)
+    }
+
+    fn typed(&self, text: &str) -> Result<Input, String> {
+        escape::read(text).map(Input::Text)
     }
 
     fn oddity(&self, _: u64, value: &Value) -> Option<(NoteRule, String)> {
@@ -66,11 +70,15 @@ impl<'a> Text<'a> {
         let (count, name) = (self.length(), &self.signal.name);
         let bytes = match self.form {
             TextForm::Ascii { fill } => filled(text, count, fill).ok_or_else(|| {
-                format!("`{text}` is not a text of at most {count} printable ASCII characters for `{name}`")
+                format!(
+                    "`{}` is not a text of at most {count} ASCII characters without NUL for `{name}`",
+                    escape::written(text)
+                )
             }),
-            TextForm::Hexadecimal => hex::bytes(text)
-                .filter(|bytes| bytes.len() == count)
-                .ok_or_else(|| format!("`{text}` is not {count} bytes of two hexadecimal digits each for `{name}`")),
+            TextForm::Hexadecimal => hex::bytes(text).filter(|bytes| bytes.len() == count).ok_or_else(|| {
+                let text = escape::written(text);
+                format!("`{text}` is not {count} bytes of two hexadecimal digits each for `{name}`")
+            }),
         };
         Ok(bytes?.into_iter().fold(0, |bits, byte| bits << 8 | u64::from(byte)))
     }
@@ -82,19 +90,20 @@ impl<'a> Text<'a> {
             TextForm::Ascii { fill } => {
                 let length = bytes.iter().rposition(|byte| *byte != fill).map_or(0, |last| last + 1);
                 let text = std::str::from_utf8(&bytes[..length]).ok()?;
-                text.bytes().all(is_printable).then(|| text.to_owned())
+                text.bytes().all(is_character).then(|| text.to_owned())
             }
             TextForm::Hexadecimal => Some(hex::digits(bytes)),
         }
     }
 }
 
-/// Returns the bytes of a text of printable characters, filled up to `count`.
+/// Returns the bytes of a text of ASCII characters, filled up to `count`.
 fn filled(text: &str, count: usize, fill: u8) -> Option<Vec<u8>> {
-    let missing = count.checked_sub(text.len()).filter(|_| text.bytes().all(is_printable))?;
+    let missing = count.checked_sub(text.len()).filter(|_| text.bytes().all(is_character))?;
     Some(text.bytes().chain(std::iter::repeat_n(fill, missing)).collect())
 }
 
-fn is_printable(byte: u8) -> bool {
-    matches!(byte, b' '..=b'~')
+/// Tests a byte for an ASCII character. NUL is none, since what stands behind it is seldom a part of a text.
+fn is_character(byte: u8) -> bool {
+    matches!(byte, 1..=0x7F)
 }

@@ -5,7 +5,6 @@ use super::encode::{refuse, twice};
 use super::notes::signal_note;
 use super::value::{Limits, physical, raw_of};
 use super::{Input, Note, Reading, Refusal};
-use crate::encoding::Words;
 use crate::hex;
 use crate::model::{Extent, LongMessage, Message, ModelId, NoteRule, Protocol, Signal};
 
@@ -212,8 +211,11 @@ pub fn typed(
     let (mut inputs, long) = (Vec::new(), extent.long());
     for (name, text) in parted_texts(&long.content, given)? {
         let signal = long.content.signals.iter().find(|signal| signal.name == name);
-        let typed = signal.map(|signal| Words::from(protocol).with(signal.on(model), |room| room.typed(&text)));
-        inputs.push((name, typed.unwrap_or(Input::Text(text))));
+        let input = match signal {
+            Some(signal) => super::value::typed(protocol, &long.content, signal.on(model), &text)?,
+            None => Input::Text(text),
+        };
+        inputs.push((name, input));
     }
     if let Some(name) = twice(&inputs) {
         return Err(refuse(&long.content, &format!("the signal `{name}` is given twice")));

@@ -3,11 +3,9 @@
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
 use super::encode::{confirm, continue_all_but_last, find_message, frame, length_with, not_of, refuse, twice};
-use super::long::typed;
 use super::transfer::frames;
-use super::value::{Limits, raw_of};
+use super::value::{Limits, raw_of, typed};
 use super::{Frame, Input, Refusal, decode};
-use crate::encoding::Words;
 use crate::model::{AddressType, FrameLayout, Kind, Message, MessageId, Mode, ModelId, Protocol, Set};
 use crate::number::Rational;
 
@@ -186,7 +184,7 @@ pub fn requests(
     let mode = mode(protocol, known, layout, target)?;
     let id = identifier(protocol, known, layout, mode, target, source)?;
     let extent = (long.extent(layout), constant_data(layout));
-    let data = typed(protocol, extent, signals, (model, Limits::Range(model)))?;
+    let data = super::long::typed(protocol, extent, signals, (model, Limits::Range(model)))?;
     frames(protocol, transport, (layout, id), &data)
 }
 
@@ -374,7 +372,7 @@ pub fn put_signals(
             continue;
         }
         let input = match given.iter().find(|(name, _)| *name == signal.name) {
-            Some((_, text)) => Words::from(protocol).with(signal.on(model), |room| room.typed(text)),
+            Some((_, text)) => typed(protocol, message, signal.on(model), text)?,
             None => Input::Raw(
                 signal
                     .default_for(model)

@@ -70,3 +70,13 @@ pub fn raw_of(
     });
     raw.map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
 }
+
+/// Reads a value of a signal as a person types it.
+///
+/// # Errors
+///
+/// Names message and signal, and says why it is none.
+pub fn typed(protocol: &Protocol, message: &Message, signal: &Signal, text: &str) -> Result<Input, Refusal> {
+    let input = Words::from(protocol).with(signal, |room| room.typed(text));
+    input.map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
+}

@@ -6,6 +6,7 @@ mod reading;
 mod requests;
 mod revisions;
 mod scales;
+mod texts;
 mod writing;
 
 use std::fs;

@@ -37,7 +37,7 @@ impl<'de, const N: usize, const FILL: u8> Visitor<'de> for TextVisitor<N, FILL> 
     type Value = Text<N, FILL>;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "at most {N} printable ASCII characters, or {N} bytes")
+        write!(formatter, "at most {N} ASCII characters without NUL, or {N} bytes")
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Text<N, FILL>, E> {

@@ -2,7 +2,7 @@
 
 use canspec_codegen::interpret::{
     Assembled, Assembly, Content, Decoded, Frame, Input, Problem, Reading, Unrecognised, Value as Meaning, decode,
-    encode, encode_long, physical,
+    encode, encode_long, escape, physical,
 };
 use canspec_codegen::model::{Encoding, Kind, LongMessage, Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
@@ -328,7 +328,7 @@ fn means(protocol: &Protocol, signal: &Signal, reading: &Reading) -> Option<Valu
             signal.encoding.enumeration()?;
             reading.bits.to_string()
         }
-        Meaning::Name(text) | Meaning::Text(text) => text.clone(),
+        Meaning::Name(text) | Meaning::Text(text) => escape::written(text),
         Meaning::Integer(value) => quantity(signal, Rational::integer(*value)),
         Meaning::Number(_) => quantity(signal, exact(signal, reading.bits)?),
         Meaning::Status { set, unknown } => {

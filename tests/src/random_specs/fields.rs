@@ -315,7 +315,7 @@ impl Draft {
             field.put("fill", self.one(&["0", "0x20", "255", "0x41"]));
         }
         if self.chance(20) {
-            field.put("default", if count > 1 { "A\"" } else { "\\" });
+            field.put("default", if count > 1 { "A\"" } else { "\\\\" });
         }
     }
 

@@ -153,11 +153,20 @@ function values.named(signal, raw)
 end
 
 -- Returns the text of hexadecimal digits without the bytes that fill it up, or nil if it is not
--- printable.
+-- ASCII without NUL.
 local function ascii(hex, fill)
   while hex:sub(-2) == (fill or "00") do hex = hex:sub(1, -3) end
   local text = hex:gsub("..", function(pair) return string.char(tonumber(pair, 16)) end)
-  return not text:find("[^ -~]") and text or nil
+  return not text:find("[^\1-\127]") and text or nil
+end
+
+local escapes = { ["\\"] = "\\\\", ["\n"] = "\\n", ["\r"] = "\\r", ["\t"] = "\\t" }
+
+-- Writes control characters and backslashes as escapes.
+local function escaped(text)
+  return (text:gsub("[%c\\]", function(letter)
+    return escapes[letter] or string.format("\\x%02X", letter:byte())
+  end))
 end
 
 local function not_of_form(signal)
@@ -166,7 +175,7 @@ end
 
 function values.text(signal, raw)
   local text = ascii(digits(raw, math.floor(signal.place.width / 4)), signal.fill)
-  if text then return text end
+  if text then return escaped(text) end
   return not_of_form(signal)
 end
 
@@ -197,7 +206,7 @@ function values.packed(signal, _, frame)
     if part ~= "" then is_open = not (piece.literal or piece.text or piece.digits) end
     text = text .. part
   end
-  return text
+  return escaped(text)
 end
 
 -- Returns the numbers of a status word's set bits, and a mask of those without a name.

@@ -5,7 +5,7 @@ use proc_macro2::TokenStream;
 use crate::emit::Scaled;
 use crate::emit::rust::manual::Manual;
 use crate::emit::rust::plan;
-use crate::interpret::Value;
+use crate::interpret::{Value, escape};
 use crate::model::{Encoding, Id, Signal};
 
 /// Writes the value of a struct's field; `None` of one that has no short literal.
@@ -38,7 +38,7 @@ pub fn shown(manual: &Manual, signal: &Signal, value: &Value) -> Option<String> 
         Value::None => None,
         Value::Integer(value) => Some(format!("{value}{unit}")),
         Value::Number(value) => Some(format!("{}{unit}", number(*value, manual.scaled, signal))),
-        Value::Name(text) | Value::Text(text) => Some(text.clone()),
+        Value::Name(text) | Value::Text(text) => Some(escape::written(text)),
         Value::Status { set, unknown } => {
             let word = &manual.protocol[signal.encoding.status_word()?];
             let names = word.bits.iter().filter(|bit| set.contains(&bit.bit)).map(|bit| bit.name.clone());
