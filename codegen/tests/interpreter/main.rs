@@ -2,6 +2,8 @@
 
 mod arrays;
 mod examples;
+mod isotp;
+mod j1939;
 mod reading;
 mod requests;
 mod revisions;
