@@ -95,11 +95,12 @@ impl Draft {
         self.name_models();
         let units = self.own_units();
         let bus = self.bus();
-        let traffic = self.traffic(&bus);
+        let mut traffic = self.traffic(&bus);
         self.exampled_types();
         let procedures = self.procedures(&traffic.messages);
         let models = self.device_models();
         let allow = self.allow(&traffic.messages);
+        self.by_isotp(&bus, &mut traffic);
         let maps = [
             ("units", units),
             ("identifier", bus.identifier),

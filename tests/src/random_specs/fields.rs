@@ -139,7 +139,7 @@ impl Draft {
         }
     }
 
-    fn bytes(&mut self, first: u8, count: u8) -> String {
+    pub fn bytes(&mut self, first: u8, count: u8) -> String {
         let last = first + count - 1;
         match (count, self.random.bool()) {
             (1, _) => first.to_string(),
@@ -215,7 +215,7 @@ impl Draft {
     }
 
     /// Says what `bits` bits mean.
-    fn fill(&mut self, field: &mut Map, bits: u8) {
+    pub fn fill(&mut self, field: &mut Map, bits: u8) {
         let whole: Vec<_> = self.whole.iter().filter(|known| known.bits == bits).cloned().collect();
         if !whole.is_empty() && self.chance(25) {
             let known = self.one(&whole);

@@ -88,6 +88,38 @@ impl Draft {
         traffic.transports.put(TRANSPORT, transport);
     }
 
+    /// Adds a message of up to seven bytes by ISO-TP to few specs. A constant gives each kind of frame a byte. Specs
+    /// without it stay as they are, so the number that decides is drawn apart.
+    pub fn by_isotp(&mut self, bus: &Bus, traffic: &mut Traffic) {
+        if bus.transport.is_some() || bus.header_bytes > 0 || self.random.clone().u8(..100) >= 5 {
+            return;
+        }
+        let is_fit = |known: &&Access| known.role == Role::Ordinary && !known.has_command;
+        let Some(access) = traffic.accesses.iter().find(is_fit).cloned() else { return };
+        let mut transport = Map::of([("kind", "isotp")]);
+        if self.chance(70) {
+            transport.put("fill", self.one(&["none", "0x00", "255"]));
+        }
+        self.remark(&mut transport);
+        traffic.transports.put(TRANSPORT, transport);
+        let (name, value) = self.command(bus, traffic);
+        let mut message = Map::of([("match", Map::of([(name, value)]))]);
+        message.put("access", list([access.name]));
+        message.put("via", TRANSPORT);
+        let (mut fields, mut scope) = (Map::default(), Scope::default());
+        let (first, count) = (self.random.u8(1..3), self.random.u8(1..=5));
+        let mut field = Map::of([("bytes", self.bytes(first, count))]);
+        self.fill(&mut field, 8 * count);
+        let names = [(); 2].map(|()| self.names.plain(&mut scope));
+        let [kind, value] = names;
+        let mut constant = Map::of([("bytes", "0")]);
+        constant.put("const", self.one(&["0", "0x7F"]));
+        fields.put(kind, constant);
+        fields.put(value, field);
+        message.put("fields", fields);
+        self.add_message(traffic, message);
+    }
+
     fn accesses(&mut self, bus: &Bus, traffic: &mut Traffic) {
         self.access(bus, traffic, &["request", "reply"], Role::Ordinary);
         for _ in 0..self.random.u8(..3) {
