@@ -20,9 +20,8 @@ impl Frame {
     #[inline]
     pub const fn new_raw(id: u32, extended: bool, data: Data, length: u8) -> Self {
         let id = id & if extended { 0x1FFF_FFFF } else { 0x7FF };
-        let length = if length < 8 { length } else { 8 };
-        let kept = if length == 0 { 0 } else { u64::MAX << (64 - 8 * length) };
-        Self { id, extended, length, data: (u64::from_be_bytes(data) & kept).to_be_bytes() }
+        let (length, data) = cut(data, length);
+        Self { id, extended, length, data }
     }
 
     /// Returns the identifier as a number.
@@ -48,9 +47,16 @@ impl Frame {
         Self::new_raw(id, self.extended, self.data, self.length)
     }
 
+    /// Returns the first `length` bytes of other data, at most 8, under the same identifier.
+    #[inline]
+    pub(crate) const fn with(&self, data: Data, length: u8) -> Self {
+        let (length, data) = cut(data, length);
+        Self { id: self.id, extended: self.extended, length, data }
+    }
+
     /// Returns other data of the same length.
     pub(crate) fn with_data(&self, data: Data) -> Self {
-        Self::new_raw(self.id, self.extended, data, self.length)
+        self.with(data, self.length)
     }
 
     /// Copies the data of a classic data frame, which must have `length` bytes if that is known.
@@ -142,6 +148,14 @@ pub fn raw_id(id: Id) -> (u32, bool) {
         Id::Standard(id) => (id.as_raw().into(), false),
         Id::Extended(id) => (id.as_raw(), true),
     }
+}
+
+/// Returns a length, at most 8, and the data with zeros beyond it.
+#[inline(always)]
+const fn cut(data: Data, length: u8) -> (u8, Data) {
+    let length = if length < 8 { length } else { 8 };
+    let kept = if length == 0 { 0 } else { u64::MAX << (64 - 8 * length) };
+    (length, (u64::from_be_bytes(data) & kept).to_be_bytes())
 }
 
 /// Copies a classic data frame.

@@ -82,6 +82,7 @@ impl Task for Signals {
 impl Task for &mut Payload {
     type Output = Result<(), Error>;
 
+    #[inline(always)]
     fn run<L: Layout>(self, values: &L) -> Self::Output {
         values.encode(self)
     }

@@ -1,11 +1,11 @@
 //! Data bytes while they are written.
 
-use crate::Data;
+use crate::{Data, Exchange};
 
 /// The data bytes of a message while they are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Payload {
-    message: &'static str,
+    owner: Owner,
     data: Data,
     keeps_limits: bool,
     model: Option<u8>,
@@ -17,7 +17,18 @@ impl Payload {
     /// Returns the bytes of a message that takes all values that fit its signals, as in a reply.
     #[inline(always)]
     pub const fn new(message: &'static str, data: Data) -> Self {
-        Self { message, data, keeps_limits: false, model: None, length: None, received: 0 }
+        Self::owned(Owner::Message(message), data)
+    }
+
+    /// Returns the bytes of the message that travels by an exchange, as [`new`](Self::new) does.
+    #[inline(always)]
+    pub(crate) const fn of(exchange: &'static Exchange, data: Data) -> Self {
+        Self::owned(Owner::Exchange(exchange), data)
+    }
+
+    #[inline(always)]
+    const fn owned(owner: Owner, data: Data) -> Self {
+        Self { owner, data, keeps_limits: false, model: None, length: None, received: 0 }
     }
 
     /// Returns the bytes of a message that only takes values within their documented limits, as in a request.
@@ -75,7 +86,7 @@ impl Payload {
     /// Returns the name of the message.
     #[inline(always)]
     pub const fn message(&self) -> &'static str {
-        self.message
+        self.owner.name()
     }
 
     #[inline(always)]
@@ -93,3 +104,28 @@ impl Payload {
         self.data = data;
     }
 }
+
+/// What has the name of a message. It is read only for an error.
+#[derive(Clone, Copy, Debug)]
+enum Owner {
+    Message(&'static str),
+    Exchange(&'static Exchange),
+}
+
+impl Owner {
+    #[inline(always)]
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Message(name) => name,
+            Self::Exchange(exchange) => exchange.message(),
+        }
+    }
+}
+
+impl PartialEq for Owner {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Eq for Owner {}

@@ -82,6 +82,9 @@ pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// if 64 bits cannot hold it.
     fn raw(self, scale: Scale) -> Option<i64>;
 
+    /// Returns the same raw value as [`raw`](Self::raw), or `None` if so many bits cannot hold it.
+    fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64>;
+
     /// Tests whether a raw value has exactly this physical value.
     fn is_step(self, scale: Scale) -> bool;
 
@@ -115,6 +118,11 @@ impl Scaled for f64 {
     #[inline]
     fn raw(self, scale: Scale) -> Option<i64> {
         scale.raw(self)
+    }
+
+    #[inline(always)]
+    fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64> {
+        scale.raw_of(self, width, signed)
     }
 
     #[inline(always)]
@@ -156,6 +164,11 @@ impl Scaled for f32 {
     #[inline]
     fn raw(self, scale: Scale) -> Option<i64> {
         scale.raw_f32(self)
+    }
+
+    #[inline(always)]
+    fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64> {
+        scale.raw_of_f32(self, width, signed)
     }
 
     #[inline(always)]

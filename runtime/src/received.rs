@@ -205,12 +205,13 @@ impl<P: Protocol> Received<P> {
     /// - messages that the device model does not have,
     /// - addressing modes that the message does not have,
     /// - addresses that the document does not name.
+    #[inline]
     pub fn encode(&self) -> Result<Frame, Error> {
         let payload = self.payload()?;
         let length = P::LENGTH.or(payload.length()).unwrap_or(self.exchange.data_length());
-        let frame = Frame::new_raw(self.frame.raw_id(), P::FRAME.is_extended(), *payload.data(), length);
+        let frame = self.frame.with(*payload.data(), length);
         if self.is_other {
-            self.check_recognised(&frame)?;
+            self.check_recognised(frame)?;
         }
         self.check_request().map(|()| frame)
     }
@@ -220,8 +221,8 @@ impl<P: Protocol> Received<P> {
     /// A frame of the received message under the received identifier always is. For no signal shares a bit with what
     /// selects a message.
     #[cold]
-    fn check_recognised(&self, frame: &Frame) -> Result<(), Error> {
-        match Self::decode_by(self.model, frame) {
+    fn check_recognised(&self, frame: Frame) -> Result<(), Error> {
+        match Self::decode_by(self.model, &frame) {
             Ok(again) if again.is_like(self) => Ok(()),
             _ => Err(Error::Identifier { message: self.exchange.message(), id: self.frame.raw_id() }),
         }
@@ -235,8 +236,9 @@ impl<P: Protocol> Received<P> {
     }
 
     /// Writes the signals over the received data.
+    #[inline(always)]
     fn payload(&self) -> Result<Payload, Error> {
-        let payload = Payload::new(self.exchange.message(), self.frame.bytes()).for_model(self.model);
+        let payload = Payload::of(self.exchange, self.frame.bytes()).for_model(self.model);
         let payload = payload.received_with(self.frame.byte_count());
         let mut payload = if self.is_to_module() { payload.keeping_limits() } else { payload };
         self.content.run(&mut payload)?;
@@ -245,6 +247,7 @@ impl<P: Protocol> Received<P> {
 
     /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message
     /// that the device model does not have.
+    #[inline(always)]
     fn check_request(&self) -> Result<(), Error> {
         if !self.is_to_module() {
             return Ok(());
@@ -252,6 +255,11 @@ impl<P: Protocol> Received<P> {
         if !self.exchange.is_offered(P::Identifier::documented_modes(self.frame.raw_id())) {
             self.check_addressing()?;
         }
+        if self.model.is_some() { self.check_model() } else { Ok(()) }
+    }
+
+    #[inline(never)]
+    fn check_model(&self) -> Result<(), Error> {
         let is_of_model = self.exchange.is_of(self.model);
         if is_of_model { Ok(()) } else { Err(Error::Model { message: self.exchange.message() }) }
     }

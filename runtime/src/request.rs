@@ -74,6 +74,8 @@ pub struct Exchange {
     has_values: bool,
     is_from_controller: bool,
     answers: &'static [Option<Who>],
+    /// The modes in which it is offered, as bits from the lowest on. Those beyond 8 have none.
+    offered: u8,
     models: &'static [u8],
     set: Option<&'static str>,
     request: Option<Filter>,
@@ -93,6 +95,7 @@ impl Exchange {
             has_values: false,
             is_from_controller: false,
             answers,
+            offered: offered(answers),
             models: &[],
             set: None,
             request: None,
@@ -113,7 +116,7 @@ impl Exchange {
     /// Sets who answers in each mode.
     #[must_use]
     pub const fn answers(self, answers: &'static [Option<Who>]) -> Self {
-        Self { answers, ..self }
+        Self { answers, offered: offered(answers), ..self }
     }
 
     /// Says that a request carries values.
@@ -234,7 +237,7 @@ impl Exchange {
     /// Tests whether a device model has the message. An unknown model has every message.
     #[inline]
     pub(crate) fn is_of(&self, model: Option<u8>) -> bool {
-        self.models.is_empty() || model.is_none_or(|model| self.models.contains(&model))
+        model.is_none_or(|model| self.models.is_empty() || self.models.contains(&model))
     }
 
     /// Tests the values of a request against the limits of a device model. Generated code calls it.
@@ -251,10 +254,10 @@ impl Exchange {
         message.encode(&mut Payload::within_limits(self.message, [0; 8]).for_model(model))
     }
 
-    /// Tests whether the message travels by this access in one of these modes.
+    /// Tests whether the message travels by this access in one of some modes, which are bits.
     #[inline(always)]
-    pub(crate) fn is_offered(&self, modes: impl Iterator<Item = bool>) -> bool {
-        modes.zip(self.answers).any(|(is_meant, answer)| is_meant && answer.is_some())
+    pub(crate) const fn is_offered(&self, modes: u8) -> bool {
+        modes & self.offered != 0
     }
 
     /// Tests whether this is the same access to the same message.
@@ -345,6 +348,18 @@ impl Exchange {
     pub(crate) fn no_mode(&self, mode: Option<&Mode>) -> Error {
         Error::Mode { message: self.message, access: self.access, mode: mode.map(|mode| mode.name) }
     }
+}
+
+/// Returns the modes that are offered, as bits.
+const fn offered(mut answers: &[Option<Who>]) -> u8 {
+    let (mut bits, mut bit) = (0, 1);
+    while let [answer, others @ ..] = answers {
+        if answer.is_some() {
+            bits |= bit;
+        }
+        (answers, bit) = (others, bit << 1);
+    }
+    bits
 }
 
 const fn narrowed(filter: Option<Filter>, own: Filter) -> Option<Filter> {

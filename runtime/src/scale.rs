@@ -59,11 +59,24 @@ impl Scale {
 
     /// Returns the raw value nearest to a physical value, with ties away from zero. It is `None` if
     /// 64 bits cannot hold it.
-    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
     #[inline(always)]
     pub const fn raw(self, physical: f64) -> Option<i64> {
+        nearest(self.exact(physical))
+    }
+
+    /// Returns the raw value nearest to a physical value as [`raw`](Self::raw) does, or `None` if `width` bits cannot
+    /// hold it.
+    #[inline(always)]
+    pub(crate) const fn raw_of(self, physical: f64, width: u8, signed: bool) -> Option<i64> {
+        let exact = self.exact(physical);
+        if width > 32 { nearest(exact) } else { nearest_of(exact, width, signed) }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
+    #[inline(always)]
+    const fn exact(self, physical: f64) -> f64 {
         let offset = self.offset as f64 / self.common_denominator() as f64;
-        nearest((physical - offset) * self.denominator as f64 / self.numerator as f64)
+        (physical - offset) * self.denominator as f64 / self.numerator as f64
     }
 
     /// Returns the single nearest to the physical value of `raw`, without arithmetic in double precision.
@@ -80,11 +93,24 @@ impl Scale {
     ///
     /// It first recovers the sum, and then subtracts the offset. That rounds once less than the
     /// other order. So every raw value whose sum stays below 2²² comes back unchanged.
-    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
     #[inline(always)]
     pub const fn raw_f32(self, physical: f32) -> Option<i64> {
+        nearest_f32(self.exact_f32(physical))
+    }
+
+    /// Returns the raw value nearest to a physical value as [`raw_f32`](Self::raw_f32) does, or `None` if `width` bits
+    /// cannot hold it.
+    #[inline(always)]
+    pub(crate) const fn raw_of_f32(self, physical: f32, width: u8, signed: bool) -> Option<i64> {
+        let exact = self.exact_f32(physical);
+        if width > 22 { nearest_f32(exact) } else { nearest_of_f32(exact, width, signed) }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
+    #[inline(always)]
+    const fn exact_f32(self, physical: f32) -> f32 {
         let sum = physical * self.common_denominator() as f32;
-        nearest_f32((sum - self.offset as f32) / self.numerator.saturating_mul(self.factor) as f32)
+        (sum - self.offset as f32) / self.numerator.saturating_mul(self.factor) as f32
     }
 
     /// Returns the physical value of `raw` without floating-point arithmetic. All types of signals
@@ -108,6 +134,11 @@ impl Scale {
     }
 }
 
+/// The largest number below a half.
+const BELOW_HALF: f64 = 0.499_999_999_999_999_94;
+/// The largest single below a half.
+const BELOW_HALF_F32: f32 = 0.499_999_97;
+
 /// Returns the integer nearest to `value`, with ties away from zero. It is `None` if 64 bits cannot
 /// hold it.
 ///
@@ -117,9 +148,40 @@ impl Scale {
 #[inline(always)]
 pub const fn nearest(value: f64) -> Option<i64> {
     const LIMIT: f64 = 9_223_372_036_854_775_808.0;
-    const BELOW_HALF: f64 = 0.499_999_999_999_999_94;
     let is_whole = value >= -LIMIT && value < LIMIT;
     if is_whole { Some((value + BELOW_HALF.copysign(value)) as i64) } else { None }
+}
+
+/// Returns the integer nearest to `value` as [`nearest`] does, or `None` if `width` bits, at most 32, cannot hold it.
+///
+/// Processors convert to 32 bits at less cost than to 64.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
+#[expect(clippy::cast_precision_loss, reason = "32 bits are exact")]
+#[inline(always)]
+const fn nearest_of(value: f64, width: u8, signed: bool) -> Option<i64> {
+    let count = 1_u64.wrapping_shl(width as u32) as f64;
+    let (least, end) = if signed { (-count / 2.0, count / 2.0) } else { (0.0, count) };
+    match value > least - 0.5 && value < end - 0.5 {
+        true if signed => Some((value + BELOW_HALF.copysign(value)) as i32 as i64),
+        // The mask tells the compiler what was tested.
+        true => Some((value + BELOW_HALF) as u32 as i64 & (count as i64 - 1)),
+        false => None,
+    }
+}
+
+/// Returns the integer nearest to `value`, as [`nearest_of`] does with at most 22 bits.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
+#[expect(clippy::cast_precision_loss, reason = "22 bits are exact")]
+#[inline(always)]
+const fn nearest_of_f32(value: f32, width: u8, signed: bool) -> Option<i64> {
+    let count = 1_u64.wrapping_shl(width as u32) as f32;
+    let (least, end) = if signed { (-count / 2.0, count / 2.0) } else { (0.0, count) };
+    match value > least - 0.5 && value < end - 0.5 {
+        true if signed => Some((value + BELOW_HALF_F32.copysign(value)) as i32 as i64),
+        // The mask tells the compiler what was tested.
+        true => Some((value + BELOW_HALF_F32) as u32 as i64 & (count as i64 - 1)),
+        false => None,
+    }
 }
 
 /// Returns the integer nearest to `value`, as [`nearest`] does.
@@ -127,9 +189,8 @@ pub const fn nearest(value: f64) -> Option<i64> {
 #[inline(always)]
 const fn nearest_f32(value: f32) -> Option<i64> {
     const LIMIT: f32 = 9_223_372_036_854_775_808.0;
-    const BELOW_HALF: f32 = 0.499_999_97;
     let is_whole = value >= -LIMIT && value < LIMIT;
-    if is_whole { Some((value + BELOW_HALF.copysign(value)) as i64) } else { None }
+    if is_whole { Some((value + BELOW_HALF_F32.copysign(value)) as i64) } else { None }
 }
 
 /// Euclid's algorithm. Two zeros give 1, so the result can always divide.
@@ -141,7 +202,7 @@ const fn greatest_common_divisor(mut a: i64, mut b: i64) -> i64 {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, clippy::cast_possible_truncation, reason = "scaling is exact")]
+#[expect(clippy::float_cmp, clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "scaling is exact")]
 mod tests {
     use super::*;
 
@@ -149,6 +210,24 @@ mod tests {
     fn ties_go_away_from_zero() {
         let rounded = [0.5, 1.5, 2.5, -0.5, -1.5, -2.5, 0.499_999_999_999_999_94, -0.499_999_999_999_999_94];
         assert_eq!(rounded.map(nearest), [1, 2, 3, -1, -2, -3, 0, 0].map(Some));
+    }
+
+    #[test]
+    fn what_few_bits_hold_is_rounded_as_any_number_and_the_rest_is_refused() {
+        let some = [-1e9, -32_768.5, -2.0, -0.5, 0.0, 254.5, 255.5, 32_767.5, 65_535.5, 4_294_967_295.5, f64::NAN];
+        let ends = [(8, 0, 255), (8, -128, 127), (16, 0, 65_535), (16, -32_768, 32_767), (32, 0, 4_294_967_295)];
+        let near = |(_, least, most): &(u8, i64, i64)| [*least, *most].map(|end| end as f64);
+        for half in some.into_iter().chain(ends.iter().flat_map(near)).flat_map(|end| [end - 0.5, end, end + 0.5]) {
+            for value in [half.next_down(), half, half.next_up()] {
+                for (width, least, most) in ends {
+                    let held = |raw: &i64| (least..=most).contains(raw);
+                    assert_eq!(Scale::ONE.raw_of(value, width, least < 0), nearest(value).filter(held), "{value:?}");
+                    let single = value as f32;
+                    let nearest = nearest_f32(single).filter(|raw| width > 22 || held(raw));
+                    assert_eq!(Scale::ONE.raw_of_f32(single, width, least < 0), nearest, "{single:?}");
+                }
+            }
+        }
     }
 
     /// Compares a number with its whole part and its rest, without any sum that rounds.

@@ -193,13 +193,17 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     #[inline(always)]
     pub fn put(&self, raw: R, payload: &mut Payload) -> Result<(), Error> {
         if !raw.is_whole() {
-            return Err(self.meaningless(payload));
+            return Err(self.meaningless(payload.message()));
         }
         if payload.keeps_limits() && self.check_model(raw.to_bits(), payload)? && self.special(raw.to_bits()).is_none()
         {
             self.check(self.physical(raw), payload)?;
         }
-        if self.store(raw.to_bits(), payload) { Ok(()) } else { Err(self.too_wide(self.physical(raw), payload)) }
+        if self.store(raw.to_bits(), payload) {
+            Ok(())
+        } else {
+            Err(self.too_wide(self.physical(raw), payload.message()))
+        }
     }
 
     #[inline(always)]
@@ -223,7 +227,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     #[inline(always)]
     fn check_model(&self, bits: u64, payload: &Payload) -> Result<bool, Error> {
         if self.lacks(payload, |lack| lack.is_shown_by(bits)) {
-            return Err(self.meaningless(payload));
+            return Err(self.meaningless(payload.message()));
         }
         Ok(!self.lacks_bits(payload))
     }
@@ -249,6 +253,12 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests the value that limits apply to.
     #[inline(always)]
     fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
+        if value.is_finite() { self.check_finite(value, payload) } else { Err(self.not_finite(payload.message())) }
+    }
+
+    /// Tests a finite value against the limits.
+    #[inline(always)]
+    fn check_finite(&self, value: F, payload: &Payload) -> Result<(), Error> {
         if F::IS_RAW { self.check_limits(value, payload) } else { self.check_physical(value, payload) }
     }
 
@@ -262,9 +272,8 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     #[inline(always)]
     fn check_limits(&self, value: F, payload: &Payload) -> Result<(), Error> {
         match self.limits_in(payload) {
-            _ if !value.is_finite() => Err(self.not_finite(payload)),
             Some((minimum, maximum)) if !value.is_within(minimum, maximum) => {
-                Err(self.outside(value, minimum, maximum, payload))
+                Err(self.outside(value, minimum, maximum, payload.message()))
             }
             _ => Ok(()),
         }
@@ -279,19 +288,19 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     }
 
     #[cold]
-    fn meaningless(&self, payload: &Payload) -> Error {
-        Error::Meaning { message: payload.message(), signal: self.name }
+    fn meaningless(&self, message: &'static str) -> Error {
+        Error::Meaning { message, signal: self.name }
     }
 
     #[cold]
-    fn not_finite(&self, payload: &Payload) -> Error {
-        Error::NotFinite { message: payload.message(), signal: self.name }
+    fn not_finite(&self, message: &'static str) -> Error {
+        Error::NotFinite { message, signal: self.name }
     }
 
     #[cold]
-    fn outside(&self, value: F, minimum: F, maximum: F, payload: &Payload) -> Error {
+    fn outside(&self, value: F, minimum: F, maximum: F, message: &'static str) -> Error {
         let (minimum, maximum) = self.numbers((minimum, maximum));
-        self.beyond([value.number(self.scale), minimum, maximum], payload)
+        self.beyond([value.number(self.scale), minimum, maximum], message)
     }
 
     /// Returns limits as physical values, the lower one first.
@@ -307,13 +316,13 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Says that a value lies outside what a minimum and a maximum allow.
     #[cold]
-    fn beyond(&self, [value, minimum, maximum]: [Number; 3], payload: &Payload) -> Error {
-        Error::Limits { message: payload.message(), signal: self.name, value, unit: self.unit, minimum, maximum }
+    fn beyond(&self, [value, minimum, maximum]: [Number; 3], message: &'static str) -> Error {
+        Error::Limits { message, signal: self.name, value, unit: self.unit, minimum, maximum }
     }
 
     #[cold]
-    fn hidden(&self, value: Number, name: &'static str, payload: &Payload) -> Error {
-        Error::Special { message: payload.message(), signal: self.name, value, unit: self.unit, name }
+    fn hidden(&self, value: Number, name: &'static str, message: &'static str) -> Error {
+        Error::Special { message, signal: self.name, value, unit: self.unit, name }
     }
 
     pub(crate) const fn is_scaled(&self) -> bool {
@@ -327,16 +336,16 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
 
     /// Says that a value does not fit, with the limits of what the bits hold.
     #[cold]
-    fn too_wide(&self, value: F, payload: &Payload) -> Error {
-        self.unfit(value.number(self.scale), payload)
+    fn too_wide(&self, value: F, message: &'static str) -> Error {
+        self.unfit(value.number(self.scale), message)
     }
 
     /// Says that a number does not fit, with the limits of what the bits hold.
     #[cold]
-    fn unfit(&self, number: Number, payload: &Payload) -> Error {
+    fn unfit(&self, number: Number, message: &'static str) -> Error {
         let [one, other] = R::ends(self.place.max()).map(|bits| self.physical(R::from_bits(bits)).number(self.scale));
         let (minimum, maximum) = self.rising((one, other));
-        self.beyond([number, minimum, maximum], payload)
+        self.beyond([number, minimum, maximum], message)
     }
 
     /// Returns the name of a special raw value.
@@ -426,35 +435,62 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// would be rounded to a special raw value.
     #[inline(always)]
     pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
-        let raw = physical.raw(self.exact_scale());
-        let bits = raw.and_then(R::bits_of);
-        if payload.keeps_limits() && self.check_model(bits.unwrap_or_default(), payload)? {
-            self.check_rounded(physical, raw, payload)?;
+        let raw = physical.raw_of(self.exact_scale(), self.place.width(), R::SIGNED);
+        let Some((raw, bits)) = raw.and_then(|raw| Some((raw, R::bits_of(raw)?))) else {
+            return Err(self.unheld(physical, self.bits_on_models(physical), payload));
+        };
+        if payload.keeps_limits() && self.check_model(bits, payload)? {
+            self.check_rounded(physical, raw, bits, payload)?;
         }
-        match bits {
-            Some(bits) if self.store(bits, payload) => Ok(()),
-            _ if physical.is_nan() => Err(self.not_finite(payload)),
-            _ => Err(self.too_wide(physical, payload)),
+        if self.store(bits, payload) { Ok(()) } else { Err(self.unheld(physical, bits, payload)) }
+    }
+
+    /// Returns the bits that a physical value would need, if there are device models without some.
+    #[inline(always)]
+    fn bits_on_models(&self, physical: F) -> u64 {
+        if self.lacking.is_empty() {
+            return 0;
+        }
+        physical.raw(self.exact_scale()).and_then(R::bits_of).unwrap_or_default()
+    }
+
+    /// Says why a value is refused that the bits cannot hold.
+    #[inline(always)]
+    fn unheld(&self, physical: F, bits: u64, payload: &Payload) -> Error {
+        self.unheld_in(payload.keeps_limits(), physical, bits, payload.model(), payload.message())
+    }
+
+    /// Says the same. It takes the parts of the payload, or there would have to be one in memory.
+    #[cold]
+    fn unheld_in(&self, keeps_limits: bool, physical: F, bits: u64, model: Option<u8>, message: &'static str) -> Error {
+        let payload = Payload::within_limits(message, [0; 8]).for_model(model);
+        let has_limits = if keeps_limits { self.check_model(bits, &payload) } else { Ok(false) };
+        let checked =
+            has_limits.and_then(|has_limits| if has_limits { self.check(physical, &payload) } else { Ok(()) });
+        match checked {
+            Err(error) => error,
+            Ok(()) if physical.is_nan() => self.not_finite(message),
+            Ok(()) => self.too_wide(physical, message),
         }
     }
 
     /// Tests a physical value, and the raw value that it is rounded to. A special raw value would
     /// have another meaning.
     #[inline(always)]
-    fn check_rounded(&self, physical: F, raw: Option<i64>, payload: &Payload) -> Result<(), Error> {
-        let sent = || raw.map_or(physical, |raw| F::scaled(raw, self.exact_scale()));
-        match raw.and_then(R::bits_of).and_then(|bits| self.special(bits)) {
+    fn check_rounded(&self, physical: F, raw: i64, bits: u64, payload: &Payload) -> Result<(), Error> {
+        let sent = || F::scaled(raw, self.exact_scale());
+        match self.special(bits) {
             Some(_) if sent() == physical => Ok(()),
             Some(name) => {
-                self.check(physical, payload)?;
-                Err(self.hidden(Scaled::number(physical), name, payload))
+                self.check_finite(physical, payload)?;
+                Err(self.hidden(Scaled::number(physical), name, payload.message()))
             }
             None => {
-                self.check(physical, payload)?;
+                self.check_finite(physical, payload)?;
                 if self.has_limits_on_steps(payload) || sent() == physical {
                     Ok(())
                 } else {
-                    self.check(sent(), payload)
+                    self.check_finite(sent(), payload)
                 }
             }
         }

@@ -110,7 +110,7 @@ impl<R: Raw, F: Physical<R>> WriteSignal for Signal<R, F> {
             }
         }
         let raw = self.special_value(meaning).or_else(|| self.plain_value(meaning));
-        raw.ok_or_else(|| self.meaningless(payload)).and_then(|raw| self.put(raw, payload))
+        raw.ok_or_else(|| self.meaningless(payload.message())).and_then(|raw| self.put(raw, payload))
     }
 }
 
@@ -139,8 +139,8 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
                 self.check_fraction(value, raw, payload)?;
                 self.put(raw, payload)
             }
-            None if value.is_nan() => Err(self.not_finite(payload)),
-            None => Err(self.unfit(number, payload)),
+            None if value.is_nan() => Err(self.not_finite(payload.message())),
+            None => Err(self.unfit(number, payload.message())),
         }
     }
 
@@ -155,9 +155,9 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         let limits = self.limits_in(payload).map(|limits| self.numbers(limits));
         match (limits, self.special(raw.to_bits())) {
             (Some((minimum, maximum)), _) if !(minimum.to_f64()..=maximum.to_f64()).contains(&value) => {
-                Err(self.beyond([number, minimum, maximum], payload))
+                Err(self.beyond([number, minimum, maximum], payload.message()))
             }
-            (_, Some(name)) => Err(self.hidden(number, name, payload)),
+            (_, Some(name)) => Err(self.hidden(number, name, payload.message())),
             _ => Ok(()),
         }
     }

@@ -50,7 +50,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             return Ok(());
         }
         payload.replace(before);
-        Err(self.hidden(value(), "not_available", payload))
+        Err(self.hidden(value(), "not_available", payload.message()))
     }
 
     /// Writes that there is no value, unless the frame ends before it.

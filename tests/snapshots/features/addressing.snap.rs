@@ -75,17 +75,13 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::DEVICE.of(id) == 0x1
-                && (0x00..=0x3B).contains(&Self::TARGET.of(id))
-                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-            Self::DEVICE.of(id) == 0x2
-                && (0x00..=0x07).contains(&Self::TARGET.of(id))
-                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-            Self::DEVICE.of(id) == 0x1 && Self::TARGET.of(id) == 0x3F && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::DEVICE.of(id), Self::TARGET.of(id), Self::SOURCE.of(id)) {
+            (0x1, 0x00..=0x3B, 0xF0..=0xF8) => 1,
+            (0x2, 0x00..=0x07, 0xF0..=0xF8) => 1 << 1,
+            (0x1, 0x3F, 0xF0..=0xF8) => 1 << 2,
+            _ => 0,
+        }
     }
 }
 
@@ -395,6 +391,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x03 { &[8] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Level(message) => task.run(message),

@@ -246,6 +246,7 @@ impl Protocol for Message {
         &[4]
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::State(message) => task.run(message),

@@ -211,6 +211,7 @@ impl Protocol for Message {
         if frame.id(Identifier::FUNCTION) == 0x1 { &[8] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Measurement(message) => task.run(message),

@@ -291,6 +291,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x21 { &[8] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::PackPart(message) => task.run(message),

@@ -61,10 +61,11 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [(Self::TARGET.of(id) == 0x50 || Self::TARGET.of(id) == 0x51)
-            && (Self::SOURCE.of(id) == 0x20 || Self::SOURCE.of(id) == 0x40)]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(
+            (Self::TARGET.of(id) == 0x50 || Self::TARGET.of(id) == 0x51)
+                && (Self::SOURCE.of(id) == 0x20 || Self::SOURCE.of(id) == 0x40),
+        )
     }
 }
 
@@ -341,6 +342,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x91 { &[8] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SwitchRelay(message) => task.run(message),

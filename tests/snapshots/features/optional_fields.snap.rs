@@ -57,8 +57,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::DIRECTION.of(id) == 0x0 && (0x1..=0x9).contains(&Self::NODE.of(id))].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::DIRECTION.of(id) == 0x0 && (0x1..=0x9).contains(&Self::NODE.of(id)))
     }
 }
 
@@ -339,6 +339,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::State(message) => task.run(message),

@@ -57,8 +57,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::TO_HOST.of(id) == 0x0 && (0x1..=0x9).contains(&Self::BATTERY.of(id))].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::TO_HOST.of(id) == 0x0 && (0x1..=0x9).contains(&Self::BATTERY.of(id)))
     }
 }
 
@@ -336,6 +336,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x03 { &[4] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::LabelPart(message) => task.run(message),

@@ -69,8 +69,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::TO_HOST.of(id) == 0x0 && (0x1..=0x6).contains(&Self::DEVICE.of(id))].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::TO_HOST.of(id) == 0x0 && (0x1..=0x6).contains(&Self::DEVICE.of(id)))
     }
 }
 
@@ -308,6 +308,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x02 { &[8] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::LabelPart(message) => task.run(message),

@@ -59,8 +59,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::DIRECTION.of(id) == 0x0].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::DIRECTION.of(id) == 0x0)
     }
 }
 
@@ -261,6 +261,7 @@ impl Protocol for Message {
         &[8]
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Speed(message) => task.run(message),

@@ -144,6 +144,7 @@ impl Protocol for Message {
         &[2]
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Voltage(message) => task.run(message),

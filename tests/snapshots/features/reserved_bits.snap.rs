@@ -69,8 +69,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [(0x00..=0x3F).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0x40].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from((0x00..=0x3F).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0x40)
     }
 }
 
@@ -335,6 +335,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SetCurrent(message) => task.run(message),

@@ -53,8 +53,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::SENDER.of(id) == 0x0].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::SENDER.of(id) == 0x0)
     }
 }
 
@@ -342,6 +342,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x002 { &[4] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SetLimits(message) => task.run(message),

@@ -57,8 +57,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [(0x00..=0x3F).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0xF0].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from((0x00..=0x3F).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0xF0)
     }
 }
 
@@ -299,6 +299,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x0012 { &[8] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SetOutput(message) => task.run(message),

@@ -56,12 +56,12 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::FUNCTION.of(id) == 0xF && Self::NODE.of(id) == 0x00,
-            Self::FUNCTION.of(id) == 0x6 && (0x01..=0x64).contains(&Self::NODE.of(id)),
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::FUNCTION.of(id), Self::NODE.of(id)) {
+            (0xF, 0x00) => 1,
+            (0x6, 0x01..=0x64) => 1 << 1,
+            _ => 0,
+        }
     }
 }
 
@@ -322,6 +322,7 @@ impl Protocol for Message {
         if frame.id(Identifier::FUNCTION) == 0x5 { &[6] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::KeepAlive(message) => task.run(message),

@@ -78,12 +78,12 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::TARGET.of(id) == 0xF4 && Self::SOURCE.of(id) == 0x56,
-            Self::TARGET.of(id) == 0xFF && Self::SOURCE.of(id) == 0x56,
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::TARGET.of(id), Self::SOURCE.of(id)) {
+            (0xF4, 0x56) => 1,
+            (0xFF, 0x56) => 1 << 1,
+            _ => 0,
+        }
     }
 }
 
@@ -713,6 +713,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::TpRequestToSend(message) => task.run(message),

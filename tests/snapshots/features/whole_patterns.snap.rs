@@ -52,8 +52,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(_: u32) -> impl Iterator<Item = bool> {
-        [true].into_iter()
+    fn documented_modes(_: u32) -> u8 {
+        1
     }
 }
 
@@ -307,6 +307,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Wanted(message) => task.run(message),

@@ -78,10 +78,11 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [(0x01..=0x1F).contains(&Self::TARGET.of(id))
-            && (Self::SOURCE.of(id) == 0x20 || Self::SOURCE.of(id) == 0x40 || Self::SOURCE.of(id) == 0x80)]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(
+            (0x01..=0x1F).contains(&Self::TARGET.of(id))
+                && (Self::SOURCE.of(id) == 0x20 || Self::SOURCE.of(id) == 0x40 || Self::SOURCE.of(id) == 0x80),
+        )
     }
 }
 
@@ -1547,6 +1548,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::PackValues(message) => task.run(message),

@@ -123,19 +123,12 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::PROTOCOL.of(id) == 0x21
-                && Self::DIRECTION.of(id) == 0x1
-                && (0x01..=0x7F).contains(&Self::ADDRESS.of(id)),
-            Self::PROTOCOL.of(id) == 0x21 && Self::ADDRESS.of(id) == 0x00 && Self::DIRECTION.of(id) == 0x1,
-            false,
-            false,
-            false,
-            false,
-            false,
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::PROTOCOL.of(id), Self::ADDRESS.of(id), Self::DIRECTION.of(id)) {
+            (0x21, 0x01..=0x7F, 0x1) => 1,
+            (0x21, 0x00, 0x1) => 1 << 1,
+            _ => 0,
+        }
     }
 }
 
@@ -3394,6 +3387,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::OperatingHours(message) => task.run(message),

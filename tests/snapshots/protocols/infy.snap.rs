@@ -82,18 +82,14 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::DEVICE.of(id) == 0xA
-                && (0x00..=0x3B).contains(&Self::TARGET.of(id))
-                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-            Self::DEVICE.of(id) == 0xB
-                && (0x00..=0x3E).contains(&Self::TARGET.of(id))
-                && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-            Self::DEVICE.of(id) == 0xA && Self::TARGET.of(id) == 0x3F && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-            Self::DEVICE.of(id) == 0xB && Self::TARGET.of(id) == 0x3F && (0xF0..=0xF8).contains(&Self::SOURCE.of(id)),
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::DEVICE.of(id), Self::TARGET.of(id), Self::SOURCE.of(id)) {
+            (0xA, 0x00..=0x3B, 0xF0..=0xF8) => 1,
+            (0xB, 0x00..=0x3E, 0xF0..=0xF8) => 1 << 1,
+            (0xA, 0x3F, 0xF0..=0xF8) => 1 << 2,
+            (0xB, 0x3F, 0xF0..=0xF8) => 1 << 3,
+            _ => 0,
+        }
     }
 }
 
@@ -2193,6 +2189,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SystemOutput(message) => task.run(message),

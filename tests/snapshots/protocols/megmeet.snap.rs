@@ -109,12 +109,12 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::SENDER.of(id) == 0x1 && (0x01..=0x7F).contains(&Self::NODE.of(id)),
-            Self::NODE.of(id) == 0x00 && Self::SENDER.of(id) == 0x1,
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::NODE.of(id), Self::SENDER.of(id)) {
+            (0x01..=0x7F, 0x1) => 1,
+            (0x00, 0x1) => 1 << 1,
+            _ => 0,
+        }
     }
 }
 
@@ -5677,6 +5677,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::CharacteristicWord(message) => task.run(message),

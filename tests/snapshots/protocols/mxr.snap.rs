@@ -114,21 +114,14 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::POINT_TO_POINT.of(id) == 0x1
-                && (0x00..=0x3F).contains(&Self::TARGET.of(id))
-                && Self::SOURCE.of(id) == 0xF0,
-            Self::POINT_TO_POINT.of(id) == 0x0
-                && Self::TARGET.of(id) == 0xFE
-                && Self::SOURCE.of(id) == 0xF0
-                && (0x0..=0x7).contains(&Self::GROUP.of(id)),
-            Self::POINT_TO_POINT.of(id) == 0x0
-                && (0xC1..=0xFD).contains(&Self::TARGET.of(id))
-                && Self::SOURCE.of(id) == 0xF0,
-            Self::POINT_TO_POINT.of(id) == 0x0 && Self::TARGET.of(id) == 0xFF && Self::SOURCE.of(id) == 0xF0,
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::POINT_TO_POINT.of(id), Self::TARGET.of(id), Self::SOURCE.of(id), Self::GROUP.of(id)) {
+            (0x1, 0x00..=0x3F, 0xF0, _) => 1,
+            (0x0, 0xFE, 0xF0, 0x0..=0x7) => 1 << 1,
+            (0x0, 0xC1..=0xFD, 0xF0, _) => 1 << 2,
+            (0x0, 0xFF, 0xF0, _) => 1 << 3,
+            _ => 0,
+        }
     }
 }
 
@@ -2571,6 +2564,7 @@ impl Protocol for Message {
         &[8]
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::OutputVoltage(message) => task.run(message),

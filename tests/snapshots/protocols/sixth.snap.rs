@@ -70,15 +70,13 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [
-            Self::FUNCTION.of(id) == 0x6 && (0x01..=0x64).contains(&Self::NODE.of(id)),
-            Self::FUNCTION.of(id) == 0x6 && Self::NODE.of(id) == 0x00,
-            Self::FUNCTION.of(id) == 0xF && Self::NODE.of(id) == 0x00,
-            false,
-            false,
-        ]
-        .into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        match (Self::FUNCTION.of(id), Self::NODE.of(id)) {
+            (0x6, 0x01..=0x64) => 1,
+            (0x6, 0x00) => 1 << 1,
+            (0xF, 0x00) => 1 << 2,
+            _ => 0,
+        }
     }
 }
 
@@ -1714,6 +1712,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::MeasurementA(message) => task.run(message),

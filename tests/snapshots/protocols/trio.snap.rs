@@ -91,8 +91,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [(0xE0..=0xEF).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0xF3].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from((0xE0..=0xEF).contains(&Self::TARGET.of(id)) && Self::SOURCE.of(id) == 0xF3)
     }
 }
 
@@ -1045,6 +1045,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::ReferenceValues(message) => task.run(message),

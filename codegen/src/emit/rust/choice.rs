@@ -73,7 +73,8 @@ fn ranges(selector: &Selector, values: impl Iterator<Item = u64>) -> Vec<TokenSt
     runs.collect()
 }
 
-fn tuple(mut parts: Vec<TokenStream>) -> TokenStream {
+/// Writes several values or patterns as one.
+pub fn tuple(mut parts: Vec<TokenStream>) -> TokenStream {
     if parts.len() == 1 { parts.remove(0) } else { quote!((#(#parts),*)) }
 }
 

@@ -1,9 +1,11 @@
 //! The identifier: its fields, and how they show the direction.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::choice::tuple;
 use super::derives::Derives;
+use super::plan::documented::{Documented, Shown};
 use super::plan::identifier::{Comparison, Field, Identifier, Range, Test};
 
 /// Emits the struct of the identifier and its fields' places.
@@ -64,19 +66,43 @@ fn directions(Identifier { foreign, to_module, to_controller, documented, .. }: 
     }
 }
 
-/// Emits the test of each mode whether an identifier is one of its requests with documented addresses, if any mode has
-/// requests.
-fn documented_modes(modes: &[Test]) -> Option<TokenStream> {
-    let id = if modes.iter().any(Test::reads) { quote!(id) } else { quote!(_) };
-    let modes = modes.iter().map(condition);
-    (modes.len() > 0).then(|| {
-        quote! {
-            #[inline]
-            fn documented_modes(#id: u32) -> impl Iterator<Item = bool> {
-                [#(#modes),*].into_iter()
-            }
+/// Emits the test in which modes an identifier is a request with documented addresses only, if any mode has requests.
+fn documented_modes(Documented { fields, modes }: &Documented) -> Option<TokenStream> {
+    let values: Vec<_> = fields.iter().map(|place| quote!(Self::#place.of(id))).collect();
+    let bits = match modes.as_slice() {
+        [] => return None,
+        [only] => bit_of_only(&values, only),
+        several => {
+            let arms = several.iter().map(|Shown { mode, ranges }| {
+                let (pattern, bit) =
+                    (tuple(ranges.iter().map(|own| pattern(own)).collect()), shifted(quote!(1), *mode));
+                quote!(#pattern => #bit,)
+            });
+            let subject = tuple(values);
+            quote!(match #subject { #(#arms)* _ => 0 })
         }
-    })
+    };
+    let id = if fields.is_empty() { quote!(_) } else { quote!(id) };
+    Some(quote!(#[inline] fn documented_modes(#id: u32) -> u8 { #bits }))
+}
+
+fn bit_of_only(values: &[TokenStream], Shown { mode, ranges }: &Shown) -> TokenStream {
+    let tests = values.iter().zip(ranges).map(|(value, ranges)| is_among(value, ranges, true));
+    let bit = if values.is_empty() { quote!(1) } else { quote!(u8::from(#(#tests)&&*)) };
+    shifted(bit, *mode)
+}
+
+fn shifted(bit: TokenStream, mode: usize) -> TokenStream {
+    let place = Literal::usize_unsuffixed(mode);
+    if mode == 0 { bit } else { quote!(#bit << #place) }
+}
+
+fn pattern(ranges: &[Range]) -> TokenStream {
+    let ranges = ranges.iter().map(|range| match range {
+        Range::One(only) => quote!(#only),
+        Range::Span(first, last) => quote!(#first..=#last),
+    });
+    if ranges.len() == 0 { quote!(_) } else { quote!(#(#ranges)|*) }
 }
 
 /// Emits a test of an identifier. It takes none if the result is always the same.
@@ -103,8 +129,13 @@ fn all(tests: &[Comparison]) -> TokenStream {
 
 fn comparison(Comparison { place, inside, ranges }: &Comparison) -> TokenStream {
     let value = place.as_ref().map_or_else(|| quote!(id), |place| quote!(Self::#place.of(id)));
-    let tests = ranges.iter().map(|range| in_range(&value, range, *inside));
-    if *inside && ranges.len() > 1 { quote!((#(#tests)||*)) } else { quote!(#(#tests)&&*) }
+    is_among(&value, ranges, *inside)
+}
+
+/// Tests whether a value lies inside one of the ranges, or outside all.
+fn is_among(value: &TokenStream, ranges: &[Range], inside: bool) -> TokenStream {
+    let tests = ranges.iter().map(|range| in_range(value, range, inside));
+    if inside && ranges.len() > 1 { quote!((#(#tests)||*)) } else { quote!(#(#tests)&&*) }
 }
 
 /// Tests whether a value lies inside a range, or outside.

@@ -3,6 +3,7 @@
 pub mod address;
 pub mod carrier;
 pub mod doc;
+pub mod documented;
 mod encoding;
 pub mod exchange;
 pub mod identifier;

@@ -124,7 +124,8 @@ fn runs(carrying: Vec<&Ident>, empty: &TokenStream) -> Vec<TokenStream> {
 
 fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
     let name = part_name("run", index);
-    quote!(fn #name<T: Task>(&self, #task: T) -> T::Output { #body })
+    let inlined = (index == 0).then(|| quote!(#[inline(always)]));
+    quote!(#inlined fn #name<T: Task>(&self, #task: T) -> T::Output { #body })
 }
 
 fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {

@@ -53,8 +53,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::SENDER.of(id) == 0x0].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::SENDER.of(id) == 0x0)
     }
 }
 
@@ -283,6 +283,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::SetLimit(message) => task.run(message),

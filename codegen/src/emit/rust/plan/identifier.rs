@@ -3,11 +3,12 @@
 use proc_macro2::{Ident, TokenStream};
 
 use super::doc::{self, Comment};
+use super::documented::Documented;
 use super::encoding::integer;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming};
 use super::types::Types;
-use crate::model::{self, AddressPattern, Direction, FieldId, FieldTest, Foreign, FrameLayout, Numeral, Protocol};
+use crate::model::{self, Direction, FieldId, FieldTest, Foreign, FrameLayout, Numeral, Protocol};
 
 /// The identifier.
 pub struct Identifier {
@@ -23,8 +24,8 @@ pub struct Identifier {
     pub to_module: Test,
     /// How it shows that a frame goes to the controller.
     pub to_controller: Test,
-    /// How the requests of each addressing mode show documented addresses only; empty if no mode has requests.
-    pub documented: Vec<Test>,
+    /// How the requests of each addressing mode show documented addresses only.
+    pub documented: Documented,
 }
 
 /// A field of the identifier.
@@ -102,7 +103,7 @@ impl Identifier {
             foreign: (!foreign.is_empty()).then_some(Test { any: foreign }),
             to_module: direction(protocol, &protocol.recognition.to_module),
             to_controller: direction(protocol, &protocol.recognition.to_controller),
-            documented: documented(protocol),
+            documented: Documented::new(protocol),
         }
     }
 }
@@ -186,32 +187,14 @@ fn direction(protocol: &Protocol, direction: &Direction) -> Test {
     Test { any: lists.collect() }
 }
 
-/// Plans how the requests of each mode show documented addresses only.
-fn documented(protocol: &Protocol) -> Vec<Test> {
-    let requests = || protocol.modes.iter().map(|mode| mode.request.as_ref());
-    let tests =
-        requests().map(|request| Test { any: request.map(|request| shown(protocol, request)).into_iter().collect() });
-    if requests().any(|request| request.is_some()) { tests.collect() } else { Vec::new() }
-}
-
-/// Returns the tests of a pattern whose addresses the document names.
-fn shown(protocol: &Protocol, pattern: &AddressPattern) -> Vec<Comparison> {
-    let inside = |field, ranges| field_test(protocol, &FieldTest { field, inside: true, ranges });
-    let fields = protocol.identifier.fields.entries().filter(|(_, field)| pattern.mask & field.mask() != 0);
-    let constants =
-        fields.map(|(id, field)| (id, field.get(pattern.value))).map(|(id, value)| inside(id, vec![(value, value)]));
-    let addresses =
-        pattern.addresses.iter().map(|known| inside(known.field, protocol[known.address_type].raw_ranges()));
-    constants.chain(addresses).collect()
-}
-
 fn field_test(protocol: &Protocol, test: &FieldTest) -> Comparison {
     let (place, width) = field_place(protocol, test.field);
     let ranges = test.ranges.iter().map(|ends| range(*ends, width)).collect();
     Comparison { place: Some(place), inside: test.inside, ranges }
 }
 
-fn range((first, last): (u32, u32), width: u8) -> Range {
+/// Plans a range of values of so many bits.
+pub fn range((first, last): (u32, u32), width: u8) -> Range {
     let (start, end) = (hexadecimal(first, width), hexadecimal(last, width));
     if first == last { Range::One(start) } else { Range::Span(start, end) }
 }
