@@ -41,7 +41,7 @@ impl Verdicts {
         let bits = u64::try_from(raw).unwrap_or_else(|_| i64::try_from(raw).expect("64 bits").cast_unsigned());
         let mut payload = Payload::within_limits("message", [0; 8]).for_model(model.map(number));
         let written = known.put_bits(bits, &mut payload);
-        let is_legal = is_legal(signal, range, raw);
+        let is_legal = is_legal(signal, (model, range), raw);
         assert_eq!(written.is_ok(), is_legal, "raw {raw} of {signal:?}");
         let mut data = [0; 8];
         signal.place.put(&mut data, if is_legal { bits } else { 0 });
@@ -59,8 +59,9 @@ fn limits(protocol: &Protocol, message: &Message, signal: &Signal, model: Option
 }
 
 /// Tests by exact fractions whether a request may carry a raw value.
-fn is_legal(signal: &Signal, range: Option<Range>, raw: i128) -> bool {
-    let is_special = signal.specials.iter().any(|special| special.raw == raw);
+fn is_legal(signal: &Signal, (model, range): (Option<ModelId>, Option<Range>), raw: i128) -> bool {
+    let has = |models: &[ModelId]| models.is_empty() || model.is_none_or(|model| models.contains(&model));
+    let is_special = signal.specials.iter().any(|special| special.raw == raw && has(&special.models));
     let value = signal.encoding.value_of(raw);
     is_special || value.is_some_and(|value| range.is_none_or(|range| (range.minimum..=range.maximum).contains(&value)))
 }
