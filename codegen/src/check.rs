@@ -21,6 +21,7 @@ mod range_width;
 mod read_only_range;
 mod refusal;
 mod reply;
+mod role;
 pub(crate) mod rust_name;
 mod section;
 mod set;
@@ -44,7 +45,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 30] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 31] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -64,6 +65,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 30] = [
     (&ambiguous::AMBIGUOUS, Some(ambiguous::check)),
     (&no_match::NO_MATCH, Some(no_match::check)),
     (&refusal::REFUSAL, Some(refusal::check)),
+    (&role::ROLE, Some(role::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),
     (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),
     (&rust_name::RUST_NAME, Some(rust_name::check)),

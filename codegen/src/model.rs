@@ -21,13 +21,14 @@ mod place;
 mod recognition;
 mod set;
 mod signal;
+mod timing;
 mod transport;
 mod unit;
 
 pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
 pub use array::{Array, Element};
-pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, Timing, TypeOfModel};
+pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, TypeOfModel};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, LongExample, Meaning, Misfit, Origin, Said, ValueExample};
 pub use extent::Extent;
@@ -46,6 +47,8 @@ pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
 pub use signal::{Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
+pub(crate) use timing::nanoseconds;
+pub use timing::{TimeRole, Timing};
 pub use transport::{Groups, Isotp, Standard, Transport, TransportFrame};
 pub use unit::{Quantity, Symbol, Unit};
 

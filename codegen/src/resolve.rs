@@ -26,6 +26,7 @@ mod sides;
 mod signals;
 mod status;
 mod texts;
+mod timing;
 mod transports;
 mod types;
 mod units;

@@ -54,6 +54,7 @@ mod status;
 #[cfg(test)]
 mod tests;
 mod text;
+mod timing;
 pub mod tp;
 mod way;
 #[cfg(feature = "arbitrary")]
@@ -87,6 +88,7 @@ pub use set::FrameSet;
 pub use signal::{AnySignal, Reading, Signal, WriteSignal};
 pub use status::{Severity, StatusBit};
 pub use text::Text;
+pub use timing::{Time, Timing};
 
 /// Includes the code that a build script generated for a protocol, as the content of a module.
 ///

@@ -21,6 +21,7 @@ pub use crate::raw::{Integer, Raw};
 pub use crate::scale::{Scale, nearest};
 pub use crate::set::Continuation;
 pub use crate::signal::Lack;
+pub use crate::timing::{milliseconds, nanoseconds};
 pub use crate::way::{Shown, Way};
 pub use crate::word::{Legend, Word};
 
@@ -28,7 +29,7 @@ pub use crate::word::{Legend, Word};
 pub mod prelude {
     pub use super::{
         Address, Continuation, Decode, Encode, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern, Piece, Said,
-        Shown, Task, Way, Who, Word, left_aligned, right_aligned,
+        Shown, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};
 }

@@ -5,7 +5,7 @@ use core::fmt::{self, Debug};
 use crate::frame::raw_id;
 use crate::layout::Task;
 use crate::plumbing::{Incoming, Shown, Way};
-use crate::{Destination, Entry, Filter, Mode, Received};
+use crate::{Destination, Entry, Filter, Mode, Received, Timing};
 
 /// A protocol, implemented by the enum of its messages.
 pub trait Protocol: Copy + Debug + 'static {
@@ -27,6 +27,8 @@ pub trait Protocol: Copy + Debug + 'static {
     const FOREIGN_LIKE_OWN: bool = false;
     /// Whether requests can be refused by other messages than their replies.
     const REFUSALS: bool = false;
+    /// The times that the document states, by their roles.
+    const TIMING: Timing = Timing::NONE;
     /// All messages.
     const MESSAGES: &'static [Entry<Self>] = &[];
 

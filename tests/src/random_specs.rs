@@ -21,6 +21,7 @@ use canspec_codegen::{Outcome, compile};
 use serde_yaml::Value;
 
 use draft::Draft;
+use messages::Traffic;
 use names::Scope;
 use yaml::{Map, list, written};
 
@@ -101,6 +102,7 @@ impl Draft {
         let models = self.device_models();
         let allow = self.allow(&traffic.messages);
         self.by_isotp(&bus, &mut traffic);
+        let timing = self.roles(timing, &traffic);
         let maps = [
             ("units", units),
             ("identifier", bus.identifier),
@@ -190,6 +192,26 @@ impl Draft {
             let name = self.names.name(&mut scope);
             self.times.push(name.clone());
             timing.put(name, time);
+        }
+        timing
+    }
+
+    /// Says what times are for, and sometimes which message they are about.
+    fn roles(&mut self, mut timing: Map, traffic: &Traffic) -> Map {
+        let asked = traffic.asked();
+        let mut roles = vec!["request_gap", "reply_timeout", "watchdog", "boot", "settling"];
+        for time in timing.0.values_mut().filter_map(Value::as_mapping_mut) {
+            if self.chance(40) {
+                continue;
+            }
+            let role = roles.swap_remove(self.random.usize(..roles.len()));
+            time.insert("role".into(), role.into());
+            if role == "reply_timeout" && self.random.bool() {
+                time.insert("tries".into(), self.one(&["1", "2", "0xFF"]).into());
+            }
+            if role != "boot" && !asked.is_empty() && self.random.bool() {
+                time.insert("messages".into(), list(self.some(&asked)));
+            }
         }
         timing
     }

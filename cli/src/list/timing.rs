@@ -10,7 +10,8 @@ use crate::columns::{self, Row};
 
 /// Writes a table of the times and one of the procedures, if there are any.
 pub fn write(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
-    table(out, &["TIMING", "TIME", "MINIMUM", "SECTION"], &protocol.timing.iter().map(timing).collect::<Vec<_>>())?;
+    let times: Vec<_> = protocol.timing.iter().map(|time| timing(protocol, time)).collect();
+    table(out, &["TIMING", "TIME", "MINIMUM", "ROLE", "SECTION"], &times)?;
     table(out, &["PROCEDURE", "SECTION"], &protocol.procedures.iter().flat_map(procedure).collect::<Vec<_>>())
 }
 
@@ -22,7 +23,7 @@ fn table(out: &mut impl Write, headings: &[&str], rows: &[Row]) -> io::Result<()
     columns::write(out, headings, "MEANING", rows)
 }
 
-fn timing(timing: &Timing) -> Row {
+fn timing(protocol: &Protocol, timing: &Timing) -> Row {
     let Timing { name, doc, range, unit, minimum, .. } = timing;
     let time = if range.minimum == range.maximum {
         range.minimum.to_string()
@@ -32,9 +33,19 @@ fn timing(timing: &Timing) -> Row {
     let minimum = minimum.map_or(String::new(), |Quantity { value, unit, .. }| {
         format!("{value}{}", unit.map_or(String::new(), |unit| format!(" {}", unit.symbol)))
     });
-    let cells = vec![name.clone(), format!("{time} {}", unit.symbol), minimum, words(doc.section.as_ref())];
+    let time = format!("{time} {}", unit.symbol);
+    let cells = vec![name.clone(), time, minimum, role(protocol, timing), words(doc.section.as_ref())];
     let meaning: Vec<_> = [title(doc), doc.note.as_ref().map(Text::for_people)].into_iter().flatten().collect();
     Row { cells, last: split(&meaning.join("; ")), separator: " " }
+}
+
+/// Says what a time is for, and what it is about.
+fn role(protocol: &Protocol, timing: &Timing) -> String {
+    let Some(role) = timing.role else { return String::new() };
+    let messages: Vec<_> = timing.messages.iter().map(|id| protocol[*id].name.as_str()).collect();
+    let about = if messages.is_empty() { String::new() } else { format!(" of {}", messages.join(", ")) };
+    let tries = timing.tries.map_or_else(String::new, |tries| format!(", {tries} tries"));
+    format!("{}{about}{tries}", role.name())
 }
 
 /// Returns a row for a procedure, and one for each of its steps.

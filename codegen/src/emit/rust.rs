@@ -19,6 +19,7 @@ mod plan;
 mod protocol;
 mod scales;
 mod set;
+mod timing;
 mod transport;
 mod way;
 mod word;
@@ -98,13 +99,14 @@ fn head(plan: &Plan, derives: Derives) -> TokenStream {
     let targets = plan.targets.as_ref().map(|targets| address::targets(targets, &plan.ways, derives));
     let addresses = plan.address_types.iter().map(address::address_type);
     let modes = plan.modes.iter().map(address::mode);
+    let timing = plan.timing.as_ref().map(timing::timing);
     let (accesses, of_models) = (plan.accesses.iter().map(exchange::access), model::models(&plan.models, derives));
     quote! {
         use canspec_runtime::plumbing::prelude::*;
         #[doc(no_inline)]
         pub use canspec_runtime::prelude::*;
         #optional
-        #frame #(#selectors)* #identifier #continuation #targets #(#addresses)* #(#modes)* #(#accesses)* #of_models
+        #frame #(#selectors)* #identifier #continuation #targets #(#addresses)* #(#modes)* #timing #(#accesses)* #of_models
     }
 }
 

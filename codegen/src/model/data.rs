@@ -123,22 +123,6 @@ pub struct TypeOfModel {
     pub doc: Doc,
 }
 
-/// A time that the document states. Both ends are equal if it names one value.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[non_exhaustive]
-pub struct Timing {
-    /// Name in the spec, in `snake_case`.
-    pub name: String,
-    /// What the spec says beside it.
-    pub doc: Doc,
-    /// The shortest and the longest time.
-    pub range: Range,
-    /// Unit of the range.
-    pub unit: Unit,
-    /// Lower limit that holds beside a recommended time.
-    pub minimum: Option<Quantity>,
-}
-
 /// Steps in order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[non_exhaustive]

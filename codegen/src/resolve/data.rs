@@ -1,11 +1,9 @@
-//! Resolves what a spec says beside the codec: document, timing, procedures, models and errata.
+//! Resolves what a spec says beside the codec: document, procedures, models and errata.
 
 use super::Resolver;
 use super::keys::Role;
 use super::texts::{remarks, text};
-use crate::model::{
-    DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, Timing, TimingId, TypeOfModel, Unit,
-};
+use crate::model::{DeviceModel, Document, Erratum, Id, ModelId, Procedure, Quantity, Table, TypeOfModel};
 use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Key};
@@ -56,45 +54,6 @@ impl Resolver<'_> {
                 rate
             })
             .collect()
-    }
-
-    pub fn timing(&mut self) -> Table<TimingId, Timing> {
-        let root = Path::default().key("timing");
-        let entries = self.spec.timing.iter();
-        entries.filter_map(|(name, timing)| self.one_timing(&root.key(name), name, timing)).collect()
-    }
-
-    fn one_timing(&mut self, path: &Path, name: &str, timing: &ast::Timing) -> Option<Timing> {
-        self.check_name(path, name);
-        let at = path.key("time");
-        let Some((numbers, symbol)) = timing.time.split_once(' ') else {
-            let message = format!("the time `{}` has no unit", timing.time);
-            self.error_with_help(&rules::UNIT, at.at_value(), message, "write `10 s` or `50..200 ms`");
-            return None;
-        };
-        let unit = self.time_unit(&at, symbol)?;
-        let ends = if numbers.contains("..") { numbers.to_owned() } else { format!("{numbers}..{numbers}") };
-        let range = self.range(&at, &ends)?;
-        let minimum = timing.minimum.as_ref().and_then(|text| self.minimum(&path.key("minimum"), text));
-        Some(Timing { name: name.to_owned(), doc: remarks!(timing).doc(path, None), range, unit, minimum })
-    }
-
-    /// Reads a unit of time.
-    fn time_unit(&mut self, path: &Path, symbol: &str) -> Option<Unit> {
-        let unit = self.unit(path, symbol)?;
-        if matches!(&*unit.symbol, "s" | "ms" | "min" | "h") {
-            return Some(unit);
-        }
-        let message = format!("`{symbol}` is not a unit of time");
-        self.error_with_help(&rules::UNIT, path.at_value(), message, "the units of time are s ms min h");
-        None
-    }
-
-    /// Reads the shortest time.
-    fn minimum(&mut self, path: &Path, text: &str) -> Option<Quantity> {
-        let quantity = self.quantity(path, text)?;
-        self.time_unit(path, &quantity.unit.map_or_else(String::new, |unit| unit.symbol.to_string()))?;
-        Some(quantity)
     }
 
     pub fn procedures(&mut self) -> Vec<Procedure> {

@@ -250,18 +250,7 @@ impl Resolver<'_> {
 
     /// Finds the device models that have a message, a field or a status bit.
     pub fn models_named(&mut self, path: &Path, names: &[String]) -> Vec<ModelId> {
-        let mut models = Vec::new();
-        for (index, name) in names.iter().enumerate() {
-            let at = path.index(index);
-            let Some(model) = self.device_model(&at, name) else { continue };
-            if models.contains(&model) {
-                let text = format!("the model `{name}` is named twice");
-                self.error_with_help(&rules::NAME, at.at_value(), text, "take one of the two out");
-            } else {
-                models.push(model);
-            }
-        }
-        models
+        self.each_named(path, "model", names, &self.spec.models.keys().map(String::as_str))
     }
 
     /// Resolves the constants that choose the frames of a message.

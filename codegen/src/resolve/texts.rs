@@ -216,6 +216,28 @@ impl Resolver<'_> {
         self.find(path.at_value(), what, name, names, None)
     }
 
+    /// Finds the things that a list names, each once.
+    pub fn each_named<'n, I: Id + PartialEq>(
+        &mut self,
+        path: &Path,
+        what: &str,
+        names: &[String],
+        known: &(impl Iterator<Item = &'n str> + Clone),
+    ) -> Vec<I> {
+        let mut found = Vec::new();
+        for (index, name) in names.iter().enumerate() {
+            let at = path.index(index);
+            let Some(id) = self.lookup(&at, what, name, known.clone()).map(I::new) else { continue };
+            if found.contains(&id) {
+                let text = format!("the {what} `{name}` is named twice");
+                self.error_with_help(&rules::NAME, at.at_value(), text, "take one of the two out");
+            } else {
+                found.push(id);
+            }
+        }
+        found
+    }
+
     /// Finds the row whose name stands at `path` as a value.
     pub fn lookup_in<I: Id, T>(
         &mut self,

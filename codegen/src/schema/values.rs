@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::model::NoteRule;
-use crate::model::{Failure, Kind, Unit};
+use crate::model::{Failure, Kind, TimeRole, Unit};
 use crate::rules::RULES;
 use crate::syntax::ast::Key;
 use crate::words::{ABSENT, ANSWERS, ERRATUM_KINDS, EXPECTED, NUMBER_FORMATS, ORIGINS, OUTSIDE, SEVERITIES, SIDES};
@@ -36,7 +36,7 @@ enum Demand {
 
 /// Keys whose texts have a form, with the struct that has the key. The keys of a field are in
 /// [`of_field`].
-const FORMS: [(&str, &str, Form); 14] = [
+const FORMS: [(&str, &str, Form); 15] = [
     ("Access", "refusal", NUMBER),
     ("Access", "reply", NUMBER),
     ("Access", "report", NUMBER),
@@ -51,10 +51,11 @@ const FORMS: [(&str, &str, Form); 14] = [
     ("StatusBit", "byte", NUMBER),
     ("StatusBit", "first", NUMBER),
     ("StatusBit", "repeat", NUMBER),
+    ("Timing", "tries", NUMBER),
 ];
 
 /// Returns the keys whose value is one of a few words, with the struct that has the key.
-fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 12] {
+fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 13] {
     let answers = ANSWERS.map(|(word, _)| word).to_vec();
     [
         ("Access", "answers", answers.clone()),
@@ -69,6 +70,7 @@ fn choices() -> [(&'static str, &'static str, Vec<&'static str>); 12] {
         ("Message", "in", vec![Kind::Request.name(), Kind::Reply.name()]),
         ("Reserved", "expect", EXPECTED.map(|(word, _)| word).to_vec()),
         ("StatusBit", "severity", SEVERITIES.map(|(word, _)| word).to_vec()),
+        ("Timing", "role", TimeRole::ALL.map(TimeRole::name).to_vec()),
     ]
 }
 

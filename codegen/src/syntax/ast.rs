@@ -397,6 +397,18 @@ pub struct Timing {
     pub time: String,
     /// Lower limit that holds beside a recommended time, with its unit: `20 ms`; not stated if absent.
     pub minimum: Option<String>,
+    /// What it is for; not stated if absent. `request_gap` is the time from one request to the next,
+    /// and `reply_timeout` the wait for a reply. After a silence as long as `watchdog`, the other side
+    /// acts by itself. `boot` is the time from power-on until a device can be asked. `settling` is
+    /// that from a request until what it changes is in effect.
+    pub role: Option<String>,
+    /// How often a request is sent before it counts as unanswered, with `role: reply_timeout`: `2`;
+    /// not stated if absent.
+    pub tries: Option<String>,
+    /// List of the only messages that the time with a `role` is about: `[keep_alive]`; every message
+    /// if absent.
+    #[serde(default)]
+    pub messages: Vec<String>,
     /// What it is, in a few words without a full stop: `Silence until the module switches off`.
     pub title: Option<String>,
     /// What else a reader must know, in one sentence: `any command counts`.

@@ -55,6 +55,20 @@ pub struct Traffic {
     functions: u64,
 }
 
+impl Traffic {
+    /// Returns the names of messages that are asked and answered.
+    pub fn asked(&self) -> Vec<String> {
+        let is_asked = |access: &Value| {
+            let access = self.access.0.get(access).and_then(Value::as_mapping);
+            access.is_some_and(|access| access.contains_key("request") && access.contains_key("reply"))
+        };
+        let accesses =
+            |message: &Value| message["access"].as_sequence().is_some_and(|names| names.iter().any(is_asked));
+        let asked = self.messages.0.iter().filter(|(_, message)| accesses(message));
+        asked.filter_map(|(name, _)| name.as_str()).map(str::to_owned).collect()
+    }
+}
+
 impl Draft {
     /// Chooses what travels, and how.
     pub fn traffic(&mut self, bus: &Bus) -> Traffic {

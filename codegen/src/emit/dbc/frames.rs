@@ -211,13 +211,7 @@ fn common<T: PartialEq>(group: &[&Sent], of: impl Fn(&Sent) -> T) -> Option<T> {
 fn cycle(protocol: &Protocol, sent: &Sent) -> Option<u32> {
     let access = &protocol[sent.layout.access];
     let timing = &protocol[sent.message.every.or(access.every).filter(|_| sent.layout.kind == Kind::Report)?];
-    let milliseconds = match &*timing.unit.symbol {
-        "ms" => 1.0,
-        "s" => 1e3,
-        "min" => 6e4,
-        _ => 36e5,
-    };
-    let time = timing.range.minimum.to_f64() * milliseconds;
+    let [time, _] = timing.ends().map(|end| end.as_secs_f64() * 1e3);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it lies within a day")]
     (1.0..=864e5).contains(&time).then(|| time.round() as u32)
 }

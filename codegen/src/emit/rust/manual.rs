@@ -53,7 +53,9 @@ impl Manual<'_> {
     fn stated(&self, timing: &Timing) -> String {
         let least = timing.minimum.map(|minimum| format!(", at least {}", quantity(minimum)));
         let title = doc::title(&timing.doc, &timing.name);
-        let sentence = doc::sentence_of(&format!("{title}: {}{}", time(timing), least.unwrap_or_default()));
+        let role = timing.role.map(|role| format!(" (`{}`)", role.name()));
+        let [least, role] = [least, role].map(Option::unwrap_or_default);
+        let sentence = doc::sentence_of(&format!("{title}: {}{least}{role}", time(timing)));
         let errata_at_items = Doc { errata: Vec::new(), ..timing.doc.clone() };
         doc::paragraphs(self.protocol, &errata_at_items, &sentence, None).join(" ")
     }

@@ -20,6 +20,7 @@ pub mod scales;
 pub mod selector;
 pub mod set;
 pub mod signal;
+pub mod timing;
 pub mod transport;
 mod types;
 mod unit;
@@ -43,6 +44,7 @@ use recognition::Direction;
 use selector::{InData, Selectors, Source};
 use set::Set;
 use signal::Context;
+use timing::Timing;
 use transport::Transport;
 use types::Types;
 use variant::Variant;
@@ -69,6 +71,8 @@ pub struct Plan {
     pub address_types: Vec<AddressType>,
     /// Addressing modes.
     pub modes: Vec<Mode>,
+    /// The times that have a role, if there are any.
+    pub timing: Option<Timing>,
     /// The parts of accesses that messages share.
     pub accesses: Vec<Access>,
     /// Device models.
@@ -134,6 +138,7 @@ impl Plan {
                 .map(|(known, name)| AddressType::new(protocol, name, known, &mut constants))
                 .collect(),
             modes: addressing,
+            timing: Timing::new(protocol),
             enumerations: Enumeration::all(protocol, types),
             status_words: StatusWord::all(protocol, types),
             packed: Packed::all(protocol, types),

@@ -131,6 +131,11 @@ fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
 fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStream>) -> TokenStream {
     let normal = normal(&plan.base);
     let modes = plan.modes.iter().map(|mode| &mode.constant);
+    let timing = plan.timing.as_ref().map(|_| {
+        quote!(
+            const TIMING: Timing = TIMING;
+        )
+    });
     let truths = truths(plan);
     let (way, node) = (way(&plan.ways), node(&plan.ways));
     let length = common_length(plan).into_iter().map(Literal::u8_unsuffixed);
@@ -144,6 +149,7 @@ fn implementation<'a>(plan: &Plan, functions: impl Iterator<Item = &'a TokenStre
             const NORMAL: Filter = #normal;
             #(const LENGTH: Option<u8> = Some(#length);)*
             const MODES: &'static [Mode] = &[#(#modes),*];
+            #timing
             const MESSAGES: &'static [Entry<Self>] = MESSAGES;
             #(const #truths: bool = true;)*
 

@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 89] = [
+const TAKEN: [&str; 91] = [
     "Address",
     "AddressType",
     "Addressed",
@@ -95,6 +95,8 @@ const TAKEN: [&str; 89] = [
     "Target",
     "Task",
     "Text",
+    "Time",
+    "Timing",
     "Transferred",
     "Way",
     "Who",
@@ -103,7 +105,7 @@ const TAKEN: [&str; 89] = [
 ];
 
 /// Constants that every module has.
-const CONSTANTS: [&str; 3] = ["CONTINUATION", "FRAME", "MESSAGES"];
+const CONSTANTS: [&str; 4] = ["CONTINUATION", "FRAME", "MESSAGES", "TIMING"];
 
 /// Methods and constants that every message has.
 const OF_MESSAGES: [&str; 14] = [
