@@ -219,6 +219,12 @@ pub const EVERYBODY_MODE: Mode = Mode {
     coordinator: None,
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing = Timing::NONE.with_messages(&[
+    ("bcl", Timing::NONE.with_watchdog(Time::of(milliseconds(1000)))),
+    ("ccs", Timing::NONE.with_watchdog(Time::of(milliseconds(1000)))),
+]);
+
 /// What the charger sends in cycles. Section 3.5, 4, 8.1.
 ///
 /// A message whose fields are all optional may be left out.
@@ -5273,6 +5279,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[PEER_MODE, EVERYBODY_MODE];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const CONTROLLER_REPORTS: bool = true;
     const DATA_SELECTORS: bool = true;

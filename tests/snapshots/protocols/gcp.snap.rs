@@ -385,6 +385,11 @@ pub const BROADCAST_MODE: Mode = Mode {
     }),
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing = Timing::NONE
+    .with_request_gap(Time::between(milliseconds(50), milliseconds(200)))
+    .with_watchdog(Time::of(milliseconds(10_000)));
+
 /// Read from modules. Section 3.3, 3.5.
 pub const READ_ACCESS: Exchange =
     Exchange::new("read", &[Some(Who::One), Some(Who::One), Some(Who::Each), None]).request(FRAME).reply(FRAME);
@@ -1881,6 +1886,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, MPPT_MODE, GROUP_MODE, BROADCAST_MODE];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 

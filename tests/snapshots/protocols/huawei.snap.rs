@@ -334,6 +334,9 @@ pub const START_UP_MODE: Mode = Mode {
     coordinator: None,
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing = Timing::NONE.with_watchdog(Time::of(milliseconds(60_000)));
+
 /// Read several registers. Section 4, 5.
 pub const READ_ALL_ACCESS: Exchange = Exchange::new("read_all", &[Some(Who::One), None, None, None, None, None, None])
     .request(FRAME)
@@ -3166,6 +3169,7 @@ impl Protocol for Message {
         NO_ADDRESS_MODE,
         START_UP_MODE,
     ];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
 

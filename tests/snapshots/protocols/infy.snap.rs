@@ -333,6 +333,13 @@ pub const ALL_GROUPS_MODE: Mode = Mode {
     }),
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing = Timing::NONE
+    .with_request_gap(Time::between(milliseconds(50), milliseconds(200)).at_least(milliseconds(20)))
+    .with_watchdog(Time::of(milliseconds(10_000)))
+    .with_boot(Time::of(milliseconds(10_000)))
+    .with_messages(&[("set_group", Timing::NONE.with_settling(Time::of(milliseconds(4000))))]);
+
 /// Read from modules. Section 2.4.
 pub const READ_ACCESS: Exchange =
     Exchange::new("read", &[Some(Who::One), Some(Who::Each), None, None]).request(FRAME).reply(FRAME);
@@ -2065,6 +2072,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME.id(Identifier::ERROR, 0x0);
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, GROUP_MODE, BROADCAST_MODE, ALL_GROUPS_MODE];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn way(shown: &Shown) -> Option<Way> {

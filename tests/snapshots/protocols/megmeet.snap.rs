@@ -210,6 +210,24 @@ pub const BROADCAST_MODE: Mode = Mode {
     coordinator: None,
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing = Timing::NONE.with_watchdog(Time::of(milliseconds(60_000))).with_messages(&[
+    (
+        "inherent_information",
+        Timing::NONE
+            .with_request_gap(Time::between(milliseconds(15), milliseconds(120)))
+            .with_reply_timeout(Time::of(milliseconds(120)))
+            .with_tries(2),
+    ),
+    (
+        "real_time_data",
+        Timing::NONE
+            .with_request_gap(Time::between(milliseconds(30), milliseconds(140)))
+            .with_reply_timeout(Time::of(milliseconds(140)))
+            .with_tries(2),
+    ),
+]);
+
 /// Read from one module. Section 2.1, 4.
 pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None])
     .request(FRAME.selectors(&[ERROR_TYPE_SELECTOR, SIGNAL_SELECTOR]).id(Identifier::COMMAND, 0x82))
@@ -5498,6 +5516,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE, BROADCAST_MODE];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
     const FOREIGN_LIKE_OWN: bool = true;

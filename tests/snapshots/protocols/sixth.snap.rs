@@ -207,6 +207,10 @@ pub const MEASUREMENT_B_MODE: Mode = Mode {
     coordinator: None,
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing =
+    Timing::NONE.with_messages(&[("keep_alive", Timing::NONE.with_watchdog(Time::of(milliseconds(3000))))]);
+
 /// Read. Section 5.
 pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One), None, None, None, None])
     .request(
@@ -1607,6 +1611,7 @@ impl Protocol for Message {
     const FRAME: Filter = FRAME;
     const NORMAL: Filter = FRAME;
     const MODES: &'static [Mode] = &[RECTIFIER_MODE, ALL_MODE, KEEP_ALIVE_MODE, MEASUREMENT_A_MODE, MEASUREMENT_B_MODE];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
     const DATA_SELECTORS: bool = true;
     const REFUSALS: bool = true;

@@ -201,6 +201,9 @@ pub const POINT_TO_POINT_MODE: Mode = Mode {
     coordinator: None,
 };
 
+/// The times that the document states, by their roles.
+pub const TIMING: Timing = Timing::NONE.with_request_gap(Time::of(milliseconds(200)));
+
 /// Sent by modules unasked. Section 3.3.
 ///
 /// Erratum T18: printed is "equal-authority communication, with a unidirectional request/response
@@ -986,6 +989,7 @@ impl Protocol for Message {
     const NORMAL: Filter = FRAME;
     const LENGTH: Option<u8> = Some(8);
     const MODES: &'static [Mode] = &[POINT_TO_POINT_MODE];
+    const TIMING: Timing = TIMING;
     const MESSAGES: &'static [Entry<Self>] = MESSAGES;
 
     fn way(shown: &Shown) -> Option<Way> {
