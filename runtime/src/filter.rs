@@ -175,6 +175,13 @@ impl Filter {
         Self { data_mask, data_value, ..self.id_bits(other.id_mask, other.id_value) }
     }
 
+    /// Tests whether a frame can show what both require.
+    pub(crate) const fn overlaps(&self, other: &Self) -> bool {
+        let data = (word(self.data_value) ^ word(other.data_value)) & word(self.data_mask) & word(other.data_mask);
+        let id = (self.id_value ^ other.id_value) & self.id_mask & other.id_mask;
+        self.extended == other.extended && id == 0 && data == 0
+    }
+
     /// Tests a frame.
     #[inline]
     pub fn matches(&self, frame: &impl embedded_can::Frame) -> bool {
@@ -299,6 +306,16 @@ mod tests {
         assert!(reply.accepting().matches(&frame(0, 0x41)));
         let refused = reply.data(RESULT.place, 0xF2);
         assert_eq!(refused.accepting(), refused);
+    }
+
+    #[test]
+    fn filters_overlap_unless_they_require_different_values_of_one_bit() {
+        let one = Filter::EXTENDED.id(COMMAND, 0x1C).data(FUNCTION, 0x41);
+        assert!(one.overlaps(&one) && one.overlaps(&Filter::EXTENDED));
+        assert!(one.overlaps(&Filter::EXTENDED.id(ERROR, 2).data(Place::byte(1), 0)));
+        assert!(!one.overlaps(&Filter::EXTENDED.id(COMMAND, 0x1D)));
+        assert!(!one.overlaps(&Filter::EXTENDED.data(FUNCTION, 0x42)));
+        assert!(!one.overlaps(&Filter::STANDARD));
     }
 
     #[test]

@@ -26,6 +26,7 @@ mod address;
 pub mod assembler;
 mod bcd;
 mod bytes;
+pub mod client;
 mod entry;
 mod error;
 mod filter;

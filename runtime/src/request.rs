@@ -8,6 +8,7 @@ use crate::address::{Addressing, Kind, Mode, Who};
 use crate::filter::IdFilter;
 use crate::plumbing::{Continuation, Shown, Way};
 use crate::protocol::{is_to_controller, own_id};
+use crate::reply::has_error;
 use crate::{Bits, Data, Error, Filter, Frame, Layout, Payload, Protocol, Reply, Selector};
 
 /// A target that a request of a protocol can address. Generated code implements it.
@@ -443,6 +444,20 @@ impl<P, R> Request<P, R> {
         self.exchange.reply.filter(|_| self.reply != IdFilter::NONE).map(|reply| reply.narrowed(self.reply))
     }
 
+    /// Returns the same request, whatever its replies carry.
+    pub const fn untyped(self) -> Request<P, ()> {
+        let Self { frame, exchange, who, reply, refusal, .. } = self;
+        Request { frame, exchange, who, reply, refusal, carried: PhantomData }
+    }
+
+    /// Tests whether a frame can answer both requests.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        let answers = |request: &Self| [request.replies().filter(), request.refusal()];
+        let others = answers(other);
+        let overlaps = |own: Filter| others.iter().flatten().any(|other| own.overlaps(other));
+        answers(self).into_iter().flatten().any(overlaps)
+    }
+
     /// Makes the frame say that more follow. Generated code calls it.
     #[doc(hidden)]
     pub fn followed(mut self, continuation: &Continuation) -> Self {
@@ -470,6 +485,14 @@ impl<P: Protocol, R> Request<P, R> {
     /// Tests whether a frame answers this request, even with an error.
     pub fn is_reply(&self, frame: &impl embedded_can::Frame) -> bool {
         self.answer(frame).is_some()
+    }
+
+    /// Tells whether a frame that answers this request refuses it. Returns `None` for any other frame.
+    pub(crate) fn refuses(&self, frame: &impl embedded_can::Frame) -> Option<bool> {
+        Some(match self.answer(frame)? {
+            (Answer::Refusal(_), _) => true,
+            (Answer::Values(selectors), frame) => has_error::<P>(selectors, &frame),
+        })
     }
 
     /// Copies a frame that answers this request, and says how. Most frames on a bus fail at the identifier, which is

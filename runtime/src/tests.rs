@@ -1,6 +1,6 @@
 //! Requests, replies and what they say, of a made-up protocol.
 
-mod heaters;
+pub mod heaters;
 pub mod random;
 
 use std::string::ToString;

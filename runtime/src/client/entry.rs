@@ -1,0 +1,162 @@
+//! A request of a client, from the first time that it is sent until no answer can come any more.
+
+use super::{Heard, Pace, Step, has_one_answer};
+use crate::{Protocol, Received, Replies, Request};
+
+/// Names a request of a client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Ticket(pub(super) u32);
+
+/// A request in the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry<P> {
+    pub ticket: Ticket,
+    pub request: Request<P, ()>,
+    pub pace: Pace,
+    /// The time from one round to the next, if it is asked again and again.
+    pub period: Option<u32>,
+    pub state: State,
+    /// When this round was due.
+    round: u32,
+    /// How often it was sent in this round.
+    pub sent: u8,
+    /// How many modules have answered in this round.
+    answers: u8,
+}
+
+/// What an entry waits for.
+#[derive(Clone, Copy, Debug)]
+pub enum State {
+    /// It is to be sent.
+    Due {
+        /// Not before this time.
+        from: u32,
+    },
+    /// It waits for an answer.
+    Waiting {
+        /// When that has taken too long.
+        until: u32,
+    },
+    /// It has ended, and answers can still come.
+    Resting {
+        /// When none can come any more.
+        until: u32,
+        /// Whether it was lost or cancelled.
+        is_lost: bool,
+    },
+}
+
+/// Tests whether a time has come.
+pub fn has_come(time: u32, now: u32) -> bool {
+    now.wrapping_sub(time) < 1 << 31
+}
+
+/// Tests whether a time is before another one, both within 24 days of now.
+pub fn earlier(time: u32, other: u32, now: u32) -> bool {
+    let since = |time: u32| now.wrapping_sub(time) as i32;
+    since(time) > since(other)
+}
+
+impl<P: Protocol> Entry<P> {
+    pub const fn new(ticket: Ticket, request: Request<P, ()>, pace: Pace, now: u32) -> Self {
+        let state = State::Due { from: now };
+        Self { ticket, request, pace, period: None, state, round: now, sent: 0, answers: 0 }
+    }
+
+    /// Returns since when the request is to be sent, if it is.
+    pub fn due(&self, now: u32) -> Option<u32> {
+        match self.state {
+            State::Due { from } => Some(from).filter(|from| has_come(*from, now)),
+            State::Waiting { .. } | State::Resting { .. } => None,
+        }
+    }
+
+    /// Tests whether the entry would take a frame for its answer, now or later.
+    pub fn awaits(&self) -> bool {
+        self.sent > 0 && !matches!(self.state, State::Resting { .. })
+    }
+
+    /// Tests whether an answer can come.
+    pub fn is_open(&self, now: u32) -> bool {
+        match self.state {
+            State::Due { .. } | State::Waiting { .. } => self.sent > 0,
+            State::Resting { until, .. } => !has_come(until, now),
+        }
+    }
+
+    /// Notes that the request is sent.
+    pub fn start(&mut self, now: u32) {
+        self.sent = self.sent.saturating_add(1);
+        let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
+        self.state = State::Waiting { until: now.wrapping_add(wait) };
+    }
+
+    /// Ends a wait that has taken too long, and says how. Sends the request again if it may.
+    pub fn ended(&mut self, now: u32) -> Option<Step> {
+        let until = match self.state {
+            State::Waiting { until } if has_come(until, now) => until,
+            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => return None,
+        };
+        let is_done = self.answers > 0 || self.request.replies() == Replies::Nobody;
+        if !is_done && self.sent < self.pace.tries {
+            self.state = State::Due { from: now };
+            return None;
+        }
+        self.rest(until, !is_done);
+        Some(if is_done { Step::Done(self.ticket) } else { Step::Lost(self.ticket) })
+    }
+
+    /// Takes a frame for the answer.
+    pub fn answered(&mut self, received: Received<P>, is_refusal: bool) -> Heard<P> {
+        self.answers = self.answers.saturating_add(1);
+        if has_one_answer(&self.request) {
+            self.rest(self.until(), false);
+        }
+        let ticket = self.ticket;
+        if is_refusal { Heard::Refusal { ticket, received } } else { Heard::Answer { ticket, received } }
+    }
+
+    /// Says of a frame that answers a request which has ended.
+    pub fn too_late(&self, frame: &impl embedded_can::Frame, received: Received<P>) -> Option<Heard<P>> {
+        let State::Resting { is_lost, .. } = self.state else { return None };
+        self.request.refuses(frame)?;
+        let ticket = self.ticket;
+        Some(if is_lost { Heard::Late { ticket, received } } else { Heard::Twice { ticket, received } })
+    }
+
+    /// Returns the entry after it was cancelled.
+    pub fn cancelled(mut self) -> Self {
+        self.period = None;
+        if !matches!(self.state, State::Resting { .. }) {
+            self.rest(self.until(), true);
+        }
+        self
+    }
+
+    /// Returns the entry after its rest: due for the next round, or `None` if there is none.
+    pub fn rested(mut self, now: u32) -> Option<Self> {
+        match self.state {
+            State::Resting { until, .. } if has_come(until, now) => {
+                let period = self.period?;
+                let rounds = now.wrapping_sub(self.round) / period;
+                self.round = self.round.wrapping_add(period.wrapping_mul(rounds.max(1)));
+                (self.state, self.sent, self.answers) = (State::Due { from: self.round }, 0, 0);
+                Some(self)
+            }
+            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(self),
+        }
+    }
+
+    /// Returns when the wait for the last frame is over, or what comes after it.
+    pub const fn until(&self) -> u32 {
+        match self.state {
+            State::Due { from: time } | State::Waiting { until: time } | State::Resting { until: time, .. } => time,
+        }
+    }
+
+    /// Ends the round, whose last wait is over at `until`.
+    fn rest(&mut self, until: u32, is_lost: bool) {
+        let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
+        self.state = State::Resting { until: until.wrapping_add(late), is_lost };
+    }
+}

@@ -1,0 +1,194 @@
+//! A client on a bus with faults, and in single situations.
+
+mod bus;
+
+use std::vec::Vec;
+
+use super::{Client, Full, Heard, Pace, Step, Ticket};
+use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
+use crate::{Frame, Problem, Request};
+
+const PACE: Pace = Pace { gap: 20, wait: 100, tries: 2, late: 100 };
+
+type Asking = Client<Message, 4>;
+
+fn heat(heater: u8) -> Request<Message, Heat> {
+    HEAT.set(To::Heater(heater)).expect("a legal request")
+}
+
+fn answer(heater: u8) -> Frame {
+    frame(0x0107_F000 | u32::from(heater), [2, 0xF0, 0, 150])
+}
+
+/// Asks a heater, and sends the request.
+fn asked(heater: u8, now: u32) -> (Asking, Ticket) {
+    let mut client = Asking::new(PACE);
+    let ticket = client.ask(heat(heater), now).expect("room");
+    assert_eq!(client.poll(now), Step::Send(*heat(heater).frame()));
+    (client, ticket)
+}
+
+fn is_answer(heard: &Heard<Message>, to: Ticket) -> bool {
+    matches!(heard, Heard::Answer { ticket, received } if *ticket == to && *received.content() == Message::Heat(HEAT))
+}
+
+#[test]
+fn an_answer_ends_a_request() {
+    let (mut client, ticket) = asked(3, 0);
+    assert_eq!(client.poll(0), Step::Wait(Some(100)));
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+    assert_eq!(client.poll(99), Step::Wait(Some(200)));
+    assert_eq!(client.poll(200), Step::Wait(None));
+}
+
+#[test]
+fn a_request_is_sent_again_and_then_lost() {
+    let (mut client, ticket) = asked(3, u32::MAX - 50);
+    assert_eq!(client.poll(48), Step::Wait(Some(49)));
+    assert_eq!(client.poll(49), Step::Send(*heat(3).frame()));
+    assert_eq!(client.poll(148), Step::Wait(Some(149)));
+    assert_eq!(client.poll(149), Step::Lost(ticket));
+    assert_eq!(client.poll(149), Step::Wait(Some(249)));
+}
+
+#[test]
+fn an_answer_to_the_first_frame_ends_a_request_that_is_to_be_sent_again() {
+    let (mut client, ticket) = asked(3, 0);
+    let other = client.ask(heat(4), 90).expect("room");
+    assert_eq!(client.poll(90), Step::Send(*heat(4).frame()));
+    assert_eq!(client.poll(100), Step::Wait(Some(110)));
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+    assert_eq!(client.poll(110), Step::Wait(Some(190)));
+    assert!(is_answer(&client.handle(&answer(4)), other));
+}
+
+#[test]
+fn no_frame_is_sent_before_the_gap_is_over_and_the_oldest_goes_first() {
+    let mut client = Asking::new(PACE);
+    for heater in [3, 1, 2] {
+        client.ask(heat(heater), u32::from(heater)).expect("room");
+    }
+    assert_eq!(client.poll(10), Step::Send(*heat(1).frame()));
+    assert_eq!(client.poll(10), Step::Wait(Some(30)));
+    assert_eq!(client.poll(29), Step::Wait(Some(30)));
+    assert_eq!(client.poll(30), Step::Send(*heat(2).frame()));
+    assert_eq!(client.poll(50), Step::Send(*heat(3).frame()));
+}
+
+#[test]
+fn late_and_repeated_answers_are_no_answers() {
+    let (mut client, ticket) = asked(3, 0);
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+    assert!(matches!(client.handle(&answer(3)), Heard::Twice { ticket: of, .. } if of == ticket));
+    assert!(matches!(client.handle(&answer(4)), Heard::Other(_)));
+    let (mut client, ticket) = asked(3, 0);
+    assert_eq!([client.poll(100), client.poll(200)], [Step::Send(*heat(3).frame()), Step::Lost(ticket)]);
+    assert!(matches!(client.handle(&answer(3)), Heard::Late { ticket: of, .. } if of == ticket));
+    assert_eq!(client.poll(300), Step::Wait(None));
+    assert!(matches!(client.handle(&answer(3)), Heard::Other(_)));
+}
+
+#[test]
+fn a_request_waits_until_no_answer_to_one_like_it_can_come() {
+    let (mut client, first) = asked(3, 0);
+    let second = client.ask(heat(3), 1).expect("room");
+    let other = client.ask(heat(4), 2).expect("room");
+    assert_eq!(client.poll(20), Step::Send(*heat(4).frame()));
+    assert!(is_answer(&client.handle(&answer(3)), first));
+    assert!(is_answer(&client.handle(&answer(4)), other));
+    assert_eq!(client.poll(199), Step::Wait(Some(200)));
+    assert_eq!(client.poll(200), Step::Send(*heat(3).frame()));
+    assert!(is_answer(&client.handle(&answer(3)), second));
+}
+
+#[test]
+fn a_refusal_ends_a_request_and_a_broken_answer_does_not() {
+    let (mut client, ticket) = asked(3, 0);
+    let broken = Frame::new_raw(0x0107_F003, true, [2, 0xF0, 0, 150, 0, 0, 0, 0], 5);
+    assert!(matches!(client.handle(&broken), Heard::Broken(of) if of == ticket));
+    let refused = frame(0x0107_F003, [2, 0xF2, 0, 150]);
+    assert!(matches!(client.handle(&refused), Heard::Refusal { ticket: of, .. } if of == ticket));
+    assert!(matches!(client.handle(&answer(3)), Heard::Twice { .. }));
+    assert!(matches!(client.handle(&broken), Heard::Unrecognised(Problem::Length)));
+    let foreign = frame(0x0455_0000, [0; 4]);
+    assert!(matches!(client.handle(&foreign), Heard::Unrecognised(Problem::Identifier)));
+}
+
+#[test]
+fn nobody_answers_all_and_each_module_answers_a_group() {
+    let mut client = Asking::new(PACE);
+    let all = client.ask(HEAT.set(To::All).expect("a legal request"), 0).expect("room");
+    let group = client.ask(HEAT.set(To::Group(2)).expect("a legal request"), 0).expect("room");
+    assert!(matches!(client.poll(0), Step::Send(_)));
+    assert_eq!(client.poll(0), Step::Done(all));
+    assert!(matches!(client.poll(20), Step::Send(_)));
+    assert!(is_answer(&client.handle(&answer(1)), group));
+    assert!(is_answer(&client.handle(&answer(2)), group));
+    assert_eq!([client.poll(119), client.poll(120)], [Step::Wait(Some(120)), Step::Done(group)]);
+    assert!(matches!(client.handle(&answer(5)), Heard::Twice { .. }));
+}
+
+#[test]
+fn a_group_that_does_not_answer_is_asked_again() {
+    let mut client = Asking::new(PACE);
+    let request = HEAT.set(To::Group(2)).expect("a legal request");
+    let ticket = client.ask(request, 0).expect("room");
+    let steps = [0, 100, 200].map(|now| client.poll(now));
+    assert_eq!(steps, [Step::Send(*request.frame()), Step::Send(*request.frame()), Step::Lost(ticket)]);
+}
+
+#[test]
+fn a_request_is_asked_again_and_again_and_missed_rounds_are_left_out() {
+    let mut client = Asking::new(PACE);
+    let ticket = client.every(300, heat(3), 0).expect("room");
+    assert_eq!(client.poll(0), Step::Send(*heat(3).frame()));
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+    assert_eq!(client.poll(299), Step::Wait(Some(300)));
+    assert_eq!(client.poll(300), Step::Send(*heat(3).frame()));
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+    assert_eq!(client.poll(1000), Step::Send(*heat(3).frame()));
+    assert!(is_answer(&client.handle(&answer(3)), ticket));
+    assert_eq!(client.poll(1200), Step::Send(*heat(3).frame()));
+    client.cancel(ticket);
+    assert!(matches!(client.handle(&answer(3)), Heard::Late { ticket: of, .. } if of == ticket));
+    assert_eq!([client.poll(1399), client.poll(1400)], [Step::Wait(Some(1400)), Step::Wait(None)]);
+}
+
+#[test]
+fn a_cancelled_request_that_was_not_sent_is_forgotten() {
+    let mut client = Asking::new(PACE);
+    let ticket = client.ask(heat(3), 0).expect("room");
+    client.cancel(ticket);
+    assert_eq!(client.poll(0), Step::Wait(None));
+}
+
+#[test]
+fn a_full_table_refuses_a_request_until_one_has_ended() {
+    let mut client = Client::<Message, 1>::new(PACE);
+    let slow = Pace { tries: 1, gap: 0, ..PACE };
+    let ticket = client.ask_at(slow, heat(3), 0).expect("room");
+    assert_eq!(client.ask(heat(4), 0), Err(Full));
+    assert!(matches!(client.poll(0), Step::Send(_)));
+    assert_eq!([client.poll(100), client.poll(200)], [Step::Lost(ticket), Step::Wait(None)]);
+    assert!(client.ask(heat(4), 200).is_ok_and(|other| other != ticket));
+}
+
+#[test]
+fn on_a_bus_with_faults_every_request_ends_once_with_its_own_answer() {
+    let mut ends = [0; 3];
+    for seed in 1..=300 {
+        let outcome = bus::run(seed, PACE);
+        assert_eq!(outcome.wrong, 0, "seed {seed}: an answer was taken for one to another request");
+        assert!(outcome.shortest_gap >= PACE.gap, "seed {seed}: a gap of {} ms", outcome.shortest_gap);
+        let open: Vec<_> = outcome.ends.iter().enumerate().filter(|(_, ends)| **ends != 1).collect();
+        assert!(open.is_empty(), "seed {seed}: these requests did not end once: {open:?}");
+        ends.iter_mut().zip(outcome.counts).for_each(|(sum, count)| *sum += count);
+    }
+    assert!(ends.iter().all(|count| *count > 500), "answered, refused, lost: {ends:?}");
+}
+
+#[test]
+fn a_client_that_does_not_wait_for_late_answers_takes_them_for_others() {
+    let careless = Pace { late: 0, ..PACE };
+    assert!((1..=100).any(|seed| bus::run(seed, careless).wrong > 0));
+}
