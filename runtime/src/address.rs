@@ -144,6 +144,11 @@ impl Address {
         Self { excluded, ..self }
     }
 
+    /// Returns the field.
+    pub(crate) const fn bits(&self) -> Bits {
+        self.bits
+    }
+
     /// Returns the kind of address.
     pub(crate) const fn kind(&self) -> &'static AddressType {
         self.kind

@@ -97,6 +97,30 @@ pub enum Error {
         /// Name of the addressing mode, if the identifier shows one.
         mode: Option<&'static str>,
     },
+    /// The frame is no request, or nobody answers it in this addressing mode.
+    Unanswered {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the access.
+        access: &'static str,
+    },
+    /// The module that should answer was not asked.
+    Node {
+        /// Name of the message.
+        message: &'static str,
+        /// Number of the module.
+        node: i32,
+        /// Number of the module that was asked.
+        asked: i32,
+    },
+    /// Replies of the message have no such error code. They have no field for it or none with room for
+    /// it, or the code says that there is no error.
+    Code {
+        /// Name of the message.
+        message: &'static str,
+        /// The refused code.
+        code: u64,
+    },
     /// The address lies outside the documented range.
     Address {
         /// Name of the kind of address.
@@ -159,6 +183,17 @@ impl fmt::Display for Error {
             Self::Mode { message, access, mode: None } => {
                 write!(formatter, "the identifier shows no addressing mode for `{access}` of `{message}`")
             }
+            Self::Unanswered { message, access } => {
+                write!(
+                    formatter,
+                    "this `{access}` of `{message}` gets no reply: nobody answers it, or it is no request"
+                )
+            }
+            Self::Node { message, node, asked } => {
+                let [node, asked] = [node, asked].map(Hexadecimal);
+                write!(formatter, "{node} cannot answer the request of `{message}`, which went to {asked}")
+            }
+            Self::Code { message, code } => write!(formatter, "replies of `{message}` have no error code {code}"),
             Self::Address { address, number, first, last } => {
                 let [number, first, last] = [number, first, last].map(Hexadecimal);
                 write!(formatter, "`{address}` is {number}, but its limits are {first}..={last}")

@@ -25,6 +25,11 @@ impl Selector {
         Self { normal: Some(normal), ..self }
     }
 
+    /// Tests whether it says that a reply reports no error.
+    pub(crate) const fn has_normal(&self) -> bool {
+        self.normal.is_some()
+    }
+
     #[inline]
     pub(crate) fn is_normal(&self, raw: u64) -> bool {
         self.normal.is_none_or(|normal| raw == normal)
@@ -56,6 +61,11 @@ impl IdFilter {
     #[inline(always)]
     pub const fn address(self, bits: Bits, kind: &AddressType, number: i32) -> Self {
         self.id(bits, kind.raw(number))
+    }
+
+    /// Tests whether it requires a value in a field.
+    pub(crate) const fn requires(self, bits: Bits) -> bool {
+        bits.of(self.mask) != 0
     }
 
     /// Tests an identifier of the right width.

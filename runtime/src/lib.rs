@@ -23,6 +23,7 @@
 extern crate std;
 
 mod address;
+mod answer;
 pub mod assembler;
 mod bcd;
 mod bytes;

@@ -154,6 +154,11 @@ impl<P: Protocol> Received<P> {
         P::node(&self.way()?)
     }
 
+    /// Returns the reply of this exchange that carries `content`. Encoding tests that it is one.
+    pub(crate) const fn reply_with(&self, frame: Frame, content: P) -> Self {
+        Self { content, frame, kind: Kind::Reply, is_other: true, ..*self }
+    }
+
     fn way(&self) -> Option<Way> {
         self.exchange.way::<P>(self.kind, self.frame.raw_id())
     }

@@ -189,6 +189,16 @@ impl Exchange {
         Self { request, ..self }
     }
 
+    /// Sets data bits that a reply has as 1 although nothing names them. Any are accepted.
+    #[must_use]
+    pub const fn fill_reply(self, ones: Data) -> Self {
+        let reply = match self.reply {
+            Some(reply) => Some(reply.filled(ones)),
+            None => None,
+        };
+        Self { reply, ..self }
+    }
+
     /// Adds the refusal, which answers a request in place of the reply. It is another message's
     /// reply and says why.
     #[must_use]
@@ -275,6 +285,11 @@ impl Exchange {
             Kind::Reply => false,
             Kind::Report => P::CONTROLLER_REPORTS && self.is_from_controller,
         }
+    }
+
+    /// Returns who answers in a mode, if the message has it.
+    pub(crate) fn who(&self, mode: usize) -> Option<Who> {
+        self.answers.get(mode).copied().flatten()
     }
 
     /// Finds the way by which a frame with an identifier travels, if the message has it.

@@ -89,9 +89,10 @@ pub fn entries<P: Protocol>() {
 }
 
 /// Asks for every message without naming one, and whom a frame reaches.
-pub fn questions<T: Destination<Protocol: Addressed> + Unknown>() {
+pub fn questions<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
     if let Ok(received) = Received::<T::Protocol>::decode(&unknown_frame()) {
         sink((received.target(), received.route()));
+        sink((received.answer(unknown::<i32>(), unknown()), received.refuse(unknown::<i32>(), unknown())));
     }
     for entry in T::Protocol::MESSAGES {
         entry.request(unknown(), unknown::<Route<T>>()).into_iter().for_each(request);

@@ -24,6 +24,13 @@ pub fn flow(model: Model, frame: &impl embedded_can::Frame) -> Option<f64> {
     }
 }
 
+/// Answers as a simulated pump, which obeys.
+pub fn answer(pump: u8, request: &impl embedded_can::Frame) -> Option<Frame> {
+    let received = Message::decode(request).ok()?;
+    let set = *received.request()?;
+    received.answer(pump, set).ok()
+}
+
 /// Builds the report of a simulated pump.
 pub fn report(pump: u8, motion: Motion) -> Option<Frame> {
     let blank = Message::decode(&Motion::REPORT.filter(Kind::Report)?.frame(4)).ok()?;

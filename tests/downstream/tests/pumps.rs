@@ -1,7 +1,7 @@
 //! What the manual of the pumps says, and what this crate does with it.
 
 use winch_driver::pump::{Frame, Kind, Message, Model, Motion, SetSpeed, Target};
-use winch_driver::pumps::{flow, model, report, turn, urgent};
+use winch_driver::pumps::{answer, flow, model, report, turn, urgent};
 
 #[test]
 fn a_model_takes_its_own_speeds_only() {
@@ -18,6 +18,13 @@ fn without_a_model_the_hull_of_what_both_models_take_counts() {
     // The P30 takes 300 to 3000 rpm, the P60 300 to 4500.
     let takes = |speed_rpm| SetSpeed { speed_rpm }.set(Target::Pump(3)).is_ok();
     assert_eq!([299, 300, 4500, 4501].map(takes), [false, true, true, false]);
+}
+
+#[test]
+fn a_simulated_pump_answers_what_it_is_asked() {
+    let request = turn(Model::P30, 3, 3000).expect("the model runs so fast");
+    assert_eq!(answer(3, request.frame()), Some(frame(0x483, [0x0B, 0xB8, 0, 0])), "it is printed");
+    assert_eq!(answer(4, request.frame()), None);
 }
 
 #[test]

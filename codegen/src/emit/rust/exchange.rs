@@ -37,13 +37,14 @@ pub fn exchange(exchange: &Exchange) -> TokenStream {
     let models = (!models.is_empty()).then(|| quote!(.models(&[#(Model::#models as u8),*])));
     let sends = exchange.sends.iter().map(|(place, value)| quote!(.send_id(Identifier::#place, #value)));
     let filled = exchange.filled.iter().map(|ones| quote!(.fill_request(#ones)));
+    let filled_reply = exchange.filled_reply.iter().map(|ones| quote!(.fill_reply(#ones)));
     let refusal = exchange.refusal.as_ref().map(|refusal| {
         let filter = filter(refusal);
         quote!(.refusal(&#filter))
     });
     quote! {
         #comment
-        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #(#sends)* #(#filled)* #refusal;
+        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #(#sends)* #(#filled)* #(#filled_reply)* #refusal;
     }
 }
 

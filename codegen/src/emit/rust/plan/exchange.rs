@@ -64,6 +64,8 @@ pub struct Exchange {
     pub sends: Vec<(Ident, TokenStream)>,
     /// The bits of the data that its request has as 1 although nothing names them.
     pub filled: Option<TokenStream>,
+    /// The same of its reply.
+    pub filled_reply: Option<TokenStream>,
     /// What a frame that refuses its request shows.
     pub refusal: Option<Filter>,
 }
@@ -228,6 +230,11 @@ fn sends(protocol: &Protocol, message: &Message) -> Vec<(Ident, TokenStream)> {
     sends.map(|(field, value)| (screaming(&field.name), hexadecimal(value, field.width))).collect()
 }
 
+/// Writes the bits of the data that a frame has as 1 although nothing names them.
+fn filled(frame: &FrameLayout) -> Option<TokenStream> {
+    Some(frame.filled()).filter(|ones| *ones != 0).map(|ones| data(ones.to_be_bytes()))
+}
+
 impl Exchange {
     /// Plans how a message travels; `constant` and `shared` are those of the exchange.
     pub fn new(
@@ -240,9 +247,9 @@ impl Exchange {
         let exchange = &message[id];
         let known = &protocol[exchange.access];
         let set = membership(protocol, exchange.set);
-        let frames = protocol.frames_of(message).filter(|frame| frame.exchange == id);
-        let mut requests = frames.filter(|frame| frame.is_to_module());
-        let filled = requests.next().map(FrameLayout::filled).filter(|ones| *ones != 0);
+        let frames = || protocol.frames_of(message).filter(|frame| frame.exchange == id);
+        let request = frames().find(|frame| frame.is_to_module());
+        let reply = frames().find(|frame| frame.kind == Kind::Reply);
         let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
         Self {
             constant: constant.clone(),
@@ -254,7 +261,8 @@ impl Exchange {
             length: (message.shortest() != 8).then(|| decimal(message.shortest())),
             models: message.models.iter().map(|model| models.variant(*model).clone()).collect(),
             sends: sends(protocol, message),
-            filled: filled.map(|ones| data(ones.to_be_bytes())),
+            filled: request.and_then(filled),
+            filled_reply: reply.and_then(filled),
             refusal: refusal.map(|refusal| Filter::new(selectors, &refusal.selectors, &refusal.constants)),
         }
     }

@@ -1,0 +1,88 @@
+//! The frames by which a module answers a request.
+
+use crate::plumbing::{Address, IdFilter};
+use crate::{Addressed, Destination, Error, Filter, Frame, Kind, Protocol, Received, Selector};
+
+impl<P: Addressed> Received<P> {
+    /// Builds the reply of a module to this request. `content` is what the reply carries, and reports
+    /// no error. The frame goes to the controller that asked.
+    ///
+    /// # Errors
+    ///
+    /// Refuses
+    /// - a frame that is no request, or that nobody answers in its addressing mode,
+    /// - a module that was not asked, and one whose address the document does not name,
+    /// - content of another message or of another kind of frame,
+    /// - values that the signals cannot hold.
+    pub fn answer(&self, node: impl Into<i32>, content: P) -> Result<Frame, Error> {
+        let (_, blank) = self.blank_reply(node.into())?;
+        self.reply_with(blank, content).encode()
+    }
+
+    /// Builds the frame by which a module refuses this request: a reply with an error code, in the
+    /// identifier or in a selector. Its signals are 0.
+    ///
+    /// # Errors
+    ///
+    /// Refuses
+    /// - a frame that is no request, or that nobody answers in its addressing mode,
+    /// - a module that was not asked, and one whose address the document does not name,
+    /// - a code that the field cannot hold, and the one that reports no error,
+    /// - any code if the replies have no field for it.
+    pub fn refuse(&self, node: impl Into<i32>, code: u64) -> Result<Frame, Error> {
+        let (reply, blank) = self.blank_reply(node.into())?;
+        let refused = with_code::<P>(&reply, &blank, code);
+        refused.filter(|refused| *refused != blank).ok_or(Error::Code { message: self.exchange().message(), code })
+    }
+
+    /// Returns what replies to this request show, and one that reports no error and has no values.
+    fn blank_reply(&self, node: i32) -> Result<(Filter, Frame), Error> {
+        let exchange = self.exchange();
+        let unanswered = Error::Unanswered { message: exchange.message(), access: exchange.access() };
+        let (reply, id) = self.reply_filter(node).ok_or(unanswered)?;
+        let reply = reply.narrowed(id?);
+        let blank = reply.frame(exchange.data_length());
+        match exchange.way::<P>(Kind::Reply, blank.raw_id()).and_then(|way| P::node(&way)) {
+            Some(asked) if asked != node => Err(Error::Node { message: exchange.message(), node, asked }),
+            _ => Ok((reply, blank)),
+        }
+    }
+
+    /// Returns what replies show, and what identifiers of those of a module do.
+    fn reply_filter(&self, node: i32) -> Option<(Filter, Result<IdFilter, Error>)> {
+        let exchange = self.exchange();
+        let route = self.route().filter(|_| self.kind() == Kind::Request)?;
+        let mode = route.target().mode();
+        let who = exchange.who(mode)?;
+        let known = route.target().replies(who, route.sender())?;
+        let addresses = P::MODES.get(mode)?.reply(who)?.addresses;
+        Some((exchange.filter(Kind::Reply)?, from(known, addresses, node)))
+    }
+}
+
+/// Adds the module to what the identifier of its reply shows, if the request does not say it.
+fn from(known: IdFilter, addresses: &[Address], node: i32) -> Result<IdFilter, Error> {
+    addresses
+        .iter()
+        .filter(|address| !known.requires(address.bits()))
+        .try_fold(known, |known, address| known.documented(address.bits(), address.kind(), node))
+}
+
+/// Puts an error code where replies have one: in the identifier or in a selector.
+fn with_code<P: Protocol>(reply: &Filter, blank: &Frame, code: u64) -> Option<Frame> {
+    let in_id = P::NORMAL.id_mask() & !P::FRAME.id_mask();
+    if in_id == 0 {
+        let selector = reply.data_selectors().iter().find(|selector| selector.has_normal())?;
+        return in_data(selector, blank, code);
+    }
+    let (shift, greatest) = (in_id.trailing_zeros(), in_id.checked_shr(in_id.trailing_zeros())?);
+    let code = u32::try_from(code).ok().filter(|code| *code <= greatest)?;
+    let id = blank.raw_id() & !in_id | code.checked_shl(shift)?;
+    Some(blank.with_id(id.into()))
+}
+
+fn in_data(selector: &Selector, blank: &Frame, code: u64) -> Option<Frame> {
+    let mut data = blank.bytes();
+    selector.place.put(&mut data, code);
+    (selector.place.get(&data) == code).then(|| blank.with_data(data))
+}
