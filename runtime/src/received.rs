@@ -8,9 +8,10 @@ use crate::layout::Signals;
 use crate::plumbing::Way;
 use crate::protocol::{Direction, direction, own_id};
 use crate::reply::{has_error, selected};
+use crate::status::set_bits;
 use crate::{
     Addressed, Addressing, AnySignal, Data, Destination, Error, Exchange, Failure, Frame, IdentifierFields, Kind,
-    Payload, Place, Problem, Protocol, Reading, Route, Selector,
+    Meaning, Payload, Place, Problem, Protocol, Reading, Route, Selector, Severity, StatusBit,
 };
 
 /// A recognised frame.
@@ -192,6 +193,26 @@ impl<P: Protocol> Received<P> {
         }
     }
 
+    /// Returns the set bits of all status words that have a name, whatever their severity. An error
+    /// reply has none, since its values mean nothing.
+    pub fn conditions(&self) -> impl Iterator<Item = &'static StatusBit> {
+        let (data, length) = (self.frame.bytes(), self.frame.length());
+        let signals = self.signals().iter().filter(move |signal| signal.place().is_within(length));
+        let is_of_error_reply = self.is_error_reply();
+        let words = signals.filter(move |_| !is_of_error_reply).filter_map(move |signal| status_word(*signal, &data));
+        words.flat_map(|(bits, known)| set_bits(bits, known))
+    }
+
+    /// Returns the set bits that report a defect.
+    pub fn faults(&self) -> impl Iterator<Item = &'static StatusBit> {
+        self.conditions().filter(|bit| bit.severity == Some(Severity::Fault))
+    }
+
+    /// Returns the set bits that warn of something that the device recovers from.
+    pub fn alarms(&self) -> impl Iterator<Item = &'static StatusBit> {
+        self.conditions().filter(|bit| bit.severity == Some(Severity::Alarm))
+    }
+
     /// Returns the set bits that neither signals nor selectors cover.
     pub fn reserved(&self) -> Data {
         let selectors = self.selectors().map(|(selector, _)| selector.place);
@@ -301,6 +322,17 @@ impl<P: Addressed> Received<P> {
 #[cold]
 fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Result<Received<P>, Problem> {
     Err(problem::<P>(if P::DATA_SELECTORS { classic(frame) } else { without_data(frame) }))
+}
+
+/// Returns the bits of a status word, and those that have a name.
+fn status_word(signal: &dyn AnySignal, data: &Data) -> Option<(u64, &'static [StatusBit])> {
+    let mut word = None;
+    signal.read(data, &mut |reading| {
+        if let Meaning::Status(bits, known) = reading.meaning {
+            word = Some((bits, known));
+        }
+    });
+    word
 }
 
 fn cleared(mut data: Data, place: Place) -> Data {

@@ -154,3 +154,16 @@ fn an_identifier_keeps_every_field() {
     assert_eq!(identifier.to_raw(), 0x0E9C_F03F);
     assert!(Message::decode(&frame(0x0E9C_F03F, 0)).expect("a reply").frame().is_extended());
 }
+#[test]
+fn faults_and_alarms_are_the_set_bits_of_all_status_words_by_severity() {
+    let names = |id, length| {
+        let frame = Frame::new_raw(id, true, [0, 0, 2, 0, 0x16, 0x0A, 0x52, 0x20], length);
+        let received = Message::decode(&frame).expect("a frame of the protocol");
+        let faults: Vec<_> = received.faults().map(|bit| bit.name).collect();
+        let alarms: Vec<_> = received.alarms().map(|bit| bit.name).collect();
+        (faults, alarms, received.conditions().count())
+    };
+    let faults = vec!["duplicate_id", "fault", "discharge_abnormal"];
+    assert_eq!(names(0x0284_F000, 8), (faults, vec!["input_phase_lost", "overtemperature"], 6));
+    assert_eq!(names(0x0E84_F000, 8), (vec![], vec![], 0), "an error reply has no values");
+}

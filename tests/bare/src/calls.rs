@@ -71,6 +71,7 @@ pub fn received<P: Protocol<Identifier: Unknown> + Unknown>() {
     sink((received.identifier(), received.frame(), received.kind(), received.exchange()));
     sink((received.addressing(), received.node(), received.is_error_reply(), received.reserved()));
     received.selectors().for_each(sink);
+    received.conditions().chain(received.faults()).chain(received.alarms()).for_each(sink);
     received.visit(reading);
     sink(received.encode());
     sink(received.with_identifier(unknown()).encode());
