@@ -1,7 +1,9 @@
 //! The fields of a decoded frame: signals alone, and arrays with their elements.
 
+use std::collections::HashMap;
+
 use canspec_codegen::interpret::{Decoded, Reading};
-use canspec_codegen::model::{Message, Signal, SignalId};
+use canspec_codegen::model::{ArrayId, Message, Signal};
 
 /// What a frame says about a signal.
 pub type Read<'a> = (&'a Signal, &'a Reading);
@@ -16,18 +18,25 @@ pub enum Field<'a> {
 }
 
 /// Returns the fields of a frame, each with its name. An array comes where its first element comes.
-pub fn fields<'a>(
-    message: &'a Message,
-    decoded: &'a Decoded,
-) -> impl Iterator<Item = (&'a str, Field<'a>)> + Clone + use<'a> {
-    let read = |reading: &'a Reading| (message.signals[reading.signal].on(decoded.model), reading);
-    decoded.signals.iter().enumerate().filter_map(move |(index, reading)| {
-        let signal = &message.signals[reading.signal];
-        let Some(array) = message.array_of(signal) else { return Some((&*signal.name, Field::Signal(read(reading)))) };
-        let is_known = decoded.signals[..index].iter().any(|known| array.elements.contains(&known.signal));
-        let find = |id: &SignalId| decoded.signals.iter().find(|reading| reading.signal == *id).map(read);
-        let mut elements: Vec<_> = array.elements.iter().map(find).collect();
-        elements.truncate(elements.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
-        (!is_known).then_some((&*array.name, Field::Array(elements)))
-    })
+pub fn fields<'a>(message: &'a Message, decoded: &'a Decoded) -> Vec<(&'a str, Field<'a>)> {
+    let mut fields = Vec::with_capacity(decoded.signals.len());
+    let mut places: HashMap<ArrayId, usize> = HashMap::new();
+    for reading in &decoded.signals {
+        let known = &message.signals[reading.signal];
+        let read = (known.on(decoded.model), reading);
+        let Some(element) = known.element else {
+            fields.push((&*known.name, Field::Signal(read)));
+            continue;
+        };
+        let place = *places.entry(element.array).or_insert(fields.len());
+        if place == fields.len() {
+            fields.push((&*message[element.array].name, Field::Array(Vec::new())));
+        }
+        if let Field::Array(elements) = &mut fields[place].1 {
+            let index = usize::from(element.index);
+            elements.resize(elements.len().max(index + 1), None);
+            elements[index] = Some(read);
+        }
+    }
+    fields
 }

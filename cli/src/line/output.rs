@@ -102,13 +102,14 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     let numbers = numbers.filter(|(signal, _)| is_number(signal)).map(|(signal, bits)| (signal.name.as_str(), bits));
     selectors(out, protocol, &decoded.identifier, known.chain(numbers))?;
     out.write_all(b",\"signals\":")?;
-    let values = fields(content, decoded).filter(|(_, field)| match field {
+    let values = fields(content, decoded);
+    let shown = values.iter().filter(|(_, field)| match field {
         Field::Signal((signal, _)) => !is_number(signal),
         Field::Array(_) => true,
     });
-    object(out, values, |out, field| match field {
+    object(out, shown.map(|(name, field)| (*name, field)), |out, field| match field {
         Field::Signal((signal, reading)) => value(out, protocol, signal, reading),
-        Field::Array(elements) => array(out, protocol, &elements),
+        Field::Array(elements) => array(out, protocol, elements),
     })?;
     let of_frame = || decoded.reserved.get(..decoded.length).unwrap_or(&decoded.reserved);
     let reserved = outcome.whole.as_ref().map_or_else(of_frame, |whole| whole.reserved);

@@ -1,5 +1,7 @@
 //! Encodes a message with its values to a frame.
 
+use std::collections::HashSet;
+
 use super::decode::transported;
 use super::value::{Limits, raw_of};
 use super::{Content, Decoded, Form, Frame, Input, Refusal, arrays, decode, long, padded, transfer};
@@ -276,8 +278,8 @@ fn put_signals(
 
 /// Returns a name that is given twice.
 pub fn twice<T>(given: &[(String, T)]) -> Option<&str> {
-    let is_known = |(index, (name, _)): &(usize, &(String, T))| given[..*index].iter().any(|(known, _)| known == name);
-    given.iter().enumerate().find(is_known).map(|(_, (name, _))| name.as_str())
+    let mut known = HashSet::new();
+    given.iter().map(|(name, _)| name.as_str()).find(|name| !known.insert(*name))
 }
 
 fn put_reserved(
