@@ -6,6 +6,7 @@ use canspec_codegen::interpret::{Reading, Value, escape};
 use canspec_codegen::model::{Linear, Protocol, Signal};
 
 use crate::line::bit_names;
+use crate::log;
 
 /// More decimals than any scale needs that `check` accepts.
 const MOST_DECIMALS: usize = 18;
@@ -13,6 +14,7 @@ const MOST_DECIMALS: usize = 18;
 /// Adds the value of a signal, without its unit, to a text.
 pub fn write(text: &mut String, protocol: &Protocol, signal: &Signal, reading: &Reading) {
     let _ = match &reading.value {
+        Value::None if signal.run.is_some() => write!(text, "? (raw 0x{})", log::hexadecimal(&reading.bytes)),
         Value::None => write!(text, "? (raw 0x{:X})", reading.bits),
         Value::Integer(number) => text.write_str(itoa::Buffer::new().format(*number)),
         Value::Number(number) => match signal.encoding.linear() {
@@ -154,7 +156,7 @@ mod tests {
                     continue;
                 }
                 let mut text = String::new();
-                write(&mut text, protocol, signal, &Reading { signal: id, bits, value });
+                write(&mut text, protocol, signal, &Reading::of(protocol, (id, signal), bits));
                 let found = back(protocol, message, signal, &text);
                 assert_eq!(found, Some(bits), "{}.{}.{}: {text}", protocol.name, message.name, signal.name);
                 numbers += 1;

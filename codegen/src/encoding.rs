@@ -16,7 +16,9 @@ mod status;
 mod text;
 
 pub use allowed::Allowed;
+use text::Text;
 
+use crate::hex;
 use crate::model::{
     DeviceModel, Encoding, Enumeration, EnumerationId, Misfit, ModelId, NoteRule, Protocol, Said, Signal, StatusWord,
     StatusWordId, Table,
@@ -57,6 +59,13 @@ pub enum Input {
     Number(f64),
     /// A name, or a text.
     Text(String),
+    /// The bytes of a text. Another text beside them counts alone.
+    Bytes {
+        /// The bytes, with those that fill the text up.
+        bytes: Vec<u8>,
+        /// The text, if it is given too.
+        text: Option<String>,
+    },
     /// The set bits of a status word.
     Status {
         /// Names of the set bits.
@@ -73,7 +82,8 @@ impl Input {
             Self::Raw(raw) => format!("raw {raw}"),
             Self::Integer(value) => value.to_string(),
             Self::Number(value) => value.to_string(),
-            Self::Text(text) => format!("the text `{}`", escape::written(text)),
+            Self::Text(text) | Self::Bytes { text: Some(text), .. } => format!("the text `{}`", escape::written(text)),
+            Self::Bytes { bytes, text: None } => format!("raw 0x{}", hex::digits(bytes)),
             Self::Status { .. } => "a set of bits".to_owned(),
         };
         format!("{what} is not {wanted}")
@@ -128,7 +138,7 @@ impl Words<'_> {
             Encoding::Float => ask(&float::Float { signal }),
             Encoding::Named(id) => ask(&named::Named { signal, known: &self.enumerations[*id], models: self.models }),
             Encoding::Status(id) => ask(&status::Status { signal, word: &self.statuses[*id] }),
-            Encoding::Text(form) => ask(&text::Text { signal, form: *form }),
+            Encoding::Text(form) => ask(&Text { signal, form: *form }),
             Encoding::Packed { pieces, parts } => ask(&packed::Packed { signal, pieces, parts }),
         }
     }
@@ -136,6 +146,10 @@ impl Words<'_> {
 
 /// Reads what an example says about a signal: a value, or a rounded number after `~`.
 pub fn said(words: Words, signal: &Signal, text: &str) -> Result<Said, Misfit> {
+    if let Some(known) = Text::of(signal).filter(|_| signal.run.is_some()) {
+        let bytes = known.bytes(&escape::read(text)?)?;
+        return Ok(Said::Text(known.form.text(&bytes).unwrap_or_default()));
+    }
     let is_number = signal.encoding.linear().is_some() || signal.encoding.is_single();
     match text.strip_prefix('~').filter(|_| is_number) {
         Some(number) => quantity::rounded(signal, number).map(Said::Rounded),
@@ -146,6 +160,21 @@ pub fn said(words: Words, signal: &Signal, text: &str) -> Result<Said, Misfit> {
 /// Describes in a few words how the bits of a signal become values.
 pub fn description(protocol: &Protocol, signal: &Signal) -> Vec<String> {
     Words::from(protocol).with(signal, |room| room.description())
+}
+
+/// Returns the value of a text's bytes.
+pub fn value_of_bytes(signal: &Signal, bytes: &[u8]) -> Value {
+    Text::of(signal).and_then(|known| known.form.text(bytes)).map_or(Value::None, Value::Text)
+}
+
+/// Returns the bytes of a text to send, or says what the text must be.
+pub fn bytes_of(signal: &Signal, input: &Input) -> Result<Vec<u8>, String> {
+    let known = Text::of(signal).ok_or_else(|| input.is_not("a value of this signal"))?;
+    match input {
+        Input::Text(text) => known.bytes(text),
+        Input::Bytes { bytes, text } => known.given(bytes, text.as_deref()),
+        Input::Raw(_) | Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("a text")),
+    }
 }
 
 /// Returns the bits of a raw value, unless the signal is too narrow for it.

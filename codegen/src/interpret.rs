@@ -22,11 +22,12 @@ pub use value::{Limits, physical, raw_of};
 
 use std::fmt;
 
+use crate::encoding::value_of_bytes;
 pub use crate::encoding::{Input, Value, description, escape};
 use crate::hex;
 use crate::model::{
     AccessId, AddressTypeId, FieldId, FrameId, Kind, LongMessageId, Message, MessageId, ModelId, NoteRule, Protocol,
-    SelectorId, Side, SignalId, Table, Travel,
+    SelectorId, Side, Signal, SignalId, Table, Travel,
 };
 
 /// A frame as it stood on the bus.
@@ -143,10 +144,30 @@ impl Decoded {
 pub struct Reading {
     /// The signal.
     pub signal: SignalId,
-    /// The bits, as the low bits of a number without sign extension.
+    /// The bits, as the low bits of a number without sign extension. Of a run they are 0.
     pub bits: u64,
+    /// The bytes of a run.
+    pub bytes: Vec<u8>,
     /// The physical value.
     pub value: Value,
+}
+
+impl Reading {
+    /// Returns what the bits of a signal say. The signal is as the device model has it.
+    pub fn of(protocol: &Protocol, (id, signal): (SignalId, &Signal), bits: u64) -> Self {
+        Self { signal: id, bits, bytes: Vec::new(), value: physical(protocol, signal, bits) }
+    }
+
+    /// Returns what the bytes of a run say.
+    pub fn of_bytes((id, signal): (SignalId, &Signal), bytes: Vec<u8>) -> Self {
+        Self { signal: id, bits: 0, value: value_of_bytes(signal, &bytes), bytes }
+    }
+
+    /// Returns the bits, or those of each byte of a run.
+    fn words(&self, signal: &Signal) -> impl Iterator<Item = u64> {
+        let alone = signal.run.is_none().then_some(self.bits);
+        alone.into_iter().chain(self.bytes.iter().copied().map(u64::from))
+    }
 }
 
 /// Something about a recognised frame that the document does not foresee.

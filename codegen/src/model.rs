@@ -38,7 +38,7 @@ pub use id::{
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use lacking::{Lacking, only};
-pub use long::{Carrier, LongMessage, Parts};
+pub use long::{Carrier, LongMessage, Parts, Varying};
 pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
@@ -46,7 +46,7 @@ pub use numeral::Numeral;
 pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
-pub use signal::{Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
+pub use signal::{ByteRun, Enumeration, NamedValue, OfModel, Range, Severity, Signal, StatusBit, StatusWord};
 pub(crate) use timing::nanoseconds;
 pub use timing::{TimeRole, Timing};
 pub use transport::{Groups, Isotp, Standard, Transport, TransportFrame};

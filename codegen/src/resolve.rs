@@ -19,6 +19,7 @@ mod messages;
 mod patterns;
 mod printed;
 pub(crate) mod rules;
+mod runs;
 mod scales;
 mod sending;
 mod sets;

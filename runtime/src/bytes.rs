@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::Meaning;
-use crate::plumbing::Raw;
+use crate::plumbing::{ByteRun, Raw};
 
 /// Raw bytes, which are shown in hexadecimal. The first one stands at the most significant byte of
 /// the place.
@@ -88,6 +88,21 @@ impl<const N: usize> Raw for Bytes<N> {
             Meaning::Text(text) => Self::from_hex(text),
             Meaning::Number(_) | Meaning::Name(_) | Meaning::Packed(_) | Meaning::Status(..) | Meaning::None => None,
         }
+    }
+}
+
+impl<const N: usize> ByteRun for Bytes<N> {
+    const MOST: usize = N;
+    const FILL: Option<u8> = None;
+
+    fn from_slice(bytes: &[u8]) -> Self {
+        let mut own = Self::default();
+        own.0.iter_mut().zip(bytes).for_each(|(byte, given)| *byte = *given);
+        own
+    }
+
+    fn as_slice(&self) -> &[u8] {
+        &self.0
     }
 }
 

@@ -76,7 +76,7 @@ pub use error::Error;
 pub use filter::{Filter, Selector};
 pub use frame::Frame;
 pub use layout::Layout;
-pub use long::{Elements, LongLayout, LongSignal, parts, transfers};
+pub use long::{Elements, LongLayout, LongSignal, LongText, parts, transfers};
 pub use number::Number;
 pub use packed::PackedText;
 pub use payload::Payload;

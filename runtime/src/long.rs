@@ -7,12 +7,14 @@ pub(crate) mod buffer;
 mod elements;
 pub mod parts;
 mod signal;
+mod text;
 pub mod transfers;
 
 use crate::{Error, Payload};
 
 pub use elements::Elements;
 pub use signal::{LongPayload, LongSignal};
+pub use text::{ByteRun, LongText};
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use core::fmt::{self, Write};
 
 use crate::Meaning;
-use crate::plumbing::Raw;
+use crate::plumbing::{ByteRun, Raw};
 
 /// A text of at most `N` ASCII characters. The bytes after a shorter text are `FILL`.
 ///
@@ -109,6 +109,21 @@ impl<const N: usize, const FILL: u8> Raw for Text<N, FILL> {
     fn from_meaning(meaning: Meaning<'_>) -> Option<Self> {
         let Meaning::Text(text) = meaning else { return None };
         Self::new(text)
+    }
+}
+
+impl<const N: usize, const FILL: u8> ByteRun for Text<N, FILL> {
+    const MOST: usize = N;
+    const FILL: Option<u8> = Some(FILL);
+
+    fn from_slice(bytes: &[u8]) -> Self {
+        let mut text = Self::default();
+        text.0.iter_mut().zip(bytes).for_each(|(byte, given)| *byte = *given);
+        text
+    }
+
+    fn as_slice(&self) -> &[u8] {
+        &self.0
     }
 }
 

@@ -39,7 +39,11 @@ pub fn is_same(value: &Value, json: &Json) -> bool {
             json.as_f64().is_some_and(|json| (json as f32).to_bits() == (*number as f32).to_bits())
         }
         Value::Name(name) if json.is_null() => *name == "not_available",
-        Value::Name(text) | Value::Text(text) => json.as_str() == Some(text.trim_end()),
+        Value::Text(text) if json.is_array() => {
+            let bytes = json.as_array().into_iter().flatten().filter_map(Json::as_u64);
+            bytes.map(|byte| format!("{byte:02X}")).collect::<String>() == *text
+        }
+        Value::Name(text) | Value::Text(text) => json.as_str() == Some(text),
         Value::None | Value::Status { .. } => true,
     }
 }

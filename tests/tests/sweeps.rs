@@ -1,7 +1,7 @@
 //! Raw values survive the way to a physical value and back, in both engines; set-points on the grid meet their own raw value.
 
-use canspec_codegen::interpret::{Input, Limits, physical, raw_of};
-use canspec_codegen::model::{Message, MessageId, Protocol, Signal, SignalId};
+use canspec_codegen::interpret::{self, Input, Limits, raw_of};
+use canspec_codegen::model::{Id, Message, MessageId, Protocol, Signal, SignalId};
 use canspec_protocols::infy::SetModuleOutput;
 use canspec_protocols::{mxr, trio};
 use canspec_runtime::{Meaning, Payload, Reading, WriteSignal};
@@ -46,9 +46,9 @@ impl Visitor for Sweep {
 
 fn interpreter(protocol: &Protocol, message: &Message, signal: &Signal) {
     for bits in raw_values(signal.place.width()) {
-        let value = physical(protocol, signal, bits);
-        let back = raw_of(protocol, message, signal, &Input::of(protocol, signal, &value, bits), Limits::Bits);
-        assert_eq!(back, Ok(bits), "{}.{}.{}: {value:?}", protocol.name, message.name, signal.name);
+        let reading = interpret::Reading::of(protocol, (Id::new(0), signal), bits);
+        let back = raw_of(protocol, message, signal, &Input::of(protocol, signal, &reading), Limits::Bits);
+        assert_eq!(back, Ok(bits), "{}.{}.{}: {:?}", protocol.name, message.name, signal.name, reading.value);
     }
 }
 

@@ -80,7 +80,11 @@ fn cells(outcome: &Outcome<'_>, reading: &Reading) -> [String; 4] {
         Value::Status { set, .. } => bit_names(outcome.protocol, signal, set).collect::<Vec<_>>().join(" "),
     };
     let unit = signal.unit.map_or_else(String::new, |unit| unit.symbol.to_string());
-    [signal.name.clone(), signal.raw_of(reading.bits).to_string(), value, unit]
+    let raw = match signal.run {
+        Some(_) => log::hexadecimal(&reading.bytes),
+        None => signal.raw_of(reading.bits).to_string(),
+    };
+    [signal.name.clone(), raw, value, unit]
 }
 
 fn notes(outcome: &Outcome<'_>, notes: &[Note]) -> String {

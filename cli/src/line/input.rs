@@ -191,12 +191,16 @@ fn kind(word: &str) -> Result<Kind, String> {
 
 fn reserved(digits: &str, most: usize) -> Result<Vec<u8>, String> {
     let refusal = || format!("`reserved` is an even number of hexadecimal digits, at most {most}, not {digits:?}");
-    let hexadecimal = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
-    if !hexadecimal || digits.len() > most || !digits.len().is_multiple_of(2) {
-        return Err(refusal());
+    hexadecimal(digits, most).ok_or_else(refusal)
+}
+
+/// Reads two digits a byte, of at most `most` digits.
+fn hexadecimal(digits: &str, most: usize) -> Option<Vec<u8>> {
+    let is_hexadecimal = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    if !is_hexadecimal || digits.len() > most || !digits.len().is_multiple_of(2) {
+        return None;
     }
-    let byte = |place: usize| u8::from_str_radix(&digits[place..place + 2], 16).map_err(|_| refusal());
-    (0..digits.len()).step_by(2).map(byte).collect()
+    (0..digits.len()).step_by(2).map(|place| u8::from_str_radix(&digits[place..place + 2], 16).ok()).collect()
 }
 
 fn stamp(time: Box<RawValue>) -> Result<Box<RawValue>, String> {
@@ -250,6 +254,7 @@ impl SignalObject {
 
     fn input(self) -> Result<Input, String> {
         match (self.value, self.set, self.unknown) {
+            (Some(Value::String(text)), None, None) => Ok(with_bytes(text, self.raw.as_ref())),
             (Some(value), None, None) => physical(value),
             (None, Some(set), Some(unknown)) => status(set, unknown),
             (None, None, None) => raw(&self.raw.ok_or("`value` is missing, and so is `raw`")?),
@@ -278,7 +283,18 @@ fn physical(value: Value) -> Result<Input, String> {
     .ok_or_else(|| "`value` is no number of 64 bits".to_owned())
 }
 
+/// Returns a name or a text. Digits beside a text say which bytes fill it up.
+fn with_bytes(text: String, raw: Option<&Value>) -> Input {
+    match raw.and_then(Value::as_str).and_then(|digits| hexadecimal(digits, MOST_LONG_DIGITS)) {
+        Some(bytes) => Input::Bytes { bytes, text: Some(text) },
+        None => Input::Text(text),
+    }
+}
+
 fn raw(value: &Value) -> Result<Input, String> {
+    if let Some(bytes) = value.as_str().and_then(|digits| hexadecimal(digits, MOST_LONG_DIGITS)) {
+        return Ok(Input::Bytes { bytes, text: None });
+    }
     let number = value.as_number().and_then(whole);
     number.map(Input::Raw).ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))
 }

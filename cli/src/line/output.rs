@@ -181,7 +181,10 @@ fn value(out: &mut impl Write, protocol: &Protocol, signal: &Signal, reading: &R
 }
 
 fn raw(out: &mut impl Write, (signal, reading): Read) -> io::Result<()> {
-    long_integer(out, signal.raw_of(reading.bits))
+    match signal.run {
+        Some(_) => name(out, &log::hexadecimal(&reading.bytes)),
+        None => long_integer(out, signal.raw_of(reading.bits)),
+    }
 }
 
 fn physical(out: &mut impl Write, (_, reading): Read) -> io::Result<()> {

@@ -15,10 +15,9 @@ pub use self::unproven::{Unproven, unproven};
 use self::unreadable::Slip;
 use super::overlap::bits;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::encoding::{about_offset, escape};
-use crate::interpret::{
-    Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode, physical,
-};
+use crate::encoding::{about_offset, escape, value_of_bytes};
+use crate::hex;
+use crate::interpret::{Content, Decoded, Frame, Input, Note, Problem, Reading, Unrecognised, Value, decode, encode};
 use crate::model::{Example, Failure, Meaning, Message, Misfit, NoteRule, Protocol, Side, Signal, ValueExample};
 use crate::resolve::rules;
 
@@ -170,7 +169,7 @@ impl<'a> Checker<'a> {
                 let text = format!("a {} has no signal `{}`", decoded.kind.name(), signal.name);
                 return Err(contradicted(meaning.path.at_value(), text, field));
             };
-            let read = shown(self.protocol, signal, &reading.value, reading.bits);
+            let read = shown(self.protocol, signal, reading);
             let diagnostic = if self.is_slip_in_frame(signal, meaning, &read) {
                 let text = format!("this frame says {read} for `{}`, one digit from {}", signal.name, meaning.text);
                 contradicted(self.frame_at(), text, (meaning.path.at_value(), "what it means"))
@@ -192,7 +191,7 @@ impl<'a> Checker<'a> {
             None => Ok(()),
             Some(reading) => {
                 let signal = &message.signals[reading.signal];
-                let read = shown(self.protocol, signal, &reading.value, reading.bits);
+                let read = shown(self.protocol, signal, reading);
                 let text =
                     format!("the example does not say what `{}` means, which is {read} in this frame", signal.name);
                 let diagnostic = wrong(self.example.doc.path.key("means").at_key(), text);
@@ -349,13 +348,20 @@ impl<'a> Checker<'a> {
 }
 
 /// Shows a value as a spec writes it.
-fn shown(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> String {
+fn shown(protocol: &Protocol, signal: &Signal, reading: &Reading) -> String {
     let unit = signal.unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol));
-    match Input::of(protocol, signal, value, bits) {
+    match Input::of(protocol, signal, reading) {
         Input::Raw(raw) => format!("raw {raw:#X}"),
         Input::Integer(value) => format!("{value}{unit}"),
         Input::Number(value) => format!("{value}{unit}"),
         Input::Text(text) => escape::written(&text),
+        Input::Bytes { bytes, .. } => {
+            if let Value::Text(text) = value_of_bytes(signal, &bytes) {
+                escape::written(&text)
+            } else {
+                format!("raw 0x{}", hex::digits(&bytes))
+            }
+        }
         Input::Status { set, unknown } => {
             let numbers = (0..64).filter(|bit| unknown >> bit & 1 == 1).map(|bit: u8| bit.to_string());
             format!("[{}]", set.into_iter().chain(numbers).collect::<Vec<_>>().join(", "))
@@ -410,8 +416,8 @@ fn check_value(protocol: &Protocol, example: &ValueExample, diagnostics: &mut Di
     match &example.meaning.said {
         Err(misfit) => diagnostics.push(no_value(&example.meaning, misfit)),
         Ok(said) if !said.is(&example.signal, bits) => {
-            let value = physical(protocol, &example.signal, bits);
-            let read = shown(protocol, &example.signal, &value, bits);
+            let reading = Reading::of(protocol, (example.meaning.signal, &example.signal), bits);
+            let read = shown(protocol, &example.signal, &reading);
             let text = format!("these bytes say {read}, not {}", example.meaning.text);
             diagnostics.push(Diagnostic::error(&rules::EXAMPLE, example.meaning.path.at_value(), text));
         }

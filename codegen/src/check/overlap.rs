@@ -36,7 +36,7 @@ fn check_windows<'a>(content: &'a Message, diagnostics: &mut Diagnostics) {
     let mut owners: HashMap<(usize, u8), &'a Signal> = HashMap::new();
     let mut reported = HashSet::new();
     for signal in &content.signals {
-        let bytes = signal.place.mask().into_iter().enumerate();
+        let bytes = signal.masks().into_iter().enumerate();
         let bits =
             bytes.flat_map(|(byte, mask)| (0..8).filter(move |bit| mask >> bit & 1 == 1).map(move |bit| (byte, bit)));
         for (byte, bit) in bits {

@@ -27,7 +27,7 @@ impl Room for ByModel<'_> {
                 bits(self.signal, *raw)
             }
             Input::Text(name) if let Some(special) = self.special(name) => bits(self.signal, special.raw),
-            Input::Integer(_) | Input::Number(_) | Input::Text(_) | Input::Status { .. } => {
+            Input::Integer(_) | Input::Number(_) | Input::Text(_) | Input::Bytes { .. } | Input::Status { .. } => {
                 Err(format!("its scale depends on the device model; choose {}", self.names(" or ")))
             }
         }

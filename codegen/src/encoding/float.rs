@@ -22,7 +22,7 @@ impl Room for Float<'_> {
             }
             Input::Number(value) => self.number(*value, allowed),
             Input::Integer(value) => self.number(as_double(*value), allowed),
-            Input::Text(_) | Input::Status { .. } => Err(input.is_not(&wanted(self.signal))),
+            Input::Text(_) | Input::Bytes { .. } | Input::Status { .. } => Err(input.is_not(&wanted(self.signal))),
         }
     }
 

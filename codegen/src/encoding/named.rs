@@ -19,7 +19,9 @@ impl Room for Named<'_> {
         match input {
             Input::Raw(raw) => bits(self.signal, *raw),
             Input::Text(name) => bits(self.signal, self.called(name).ok_or_else(|| self.unnamed(name))?.raw),
-            Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("the name of a value")),
+            Input::Integer(_) | Input::Number(_) | Input::Bytes { .. } | Input::Status { .. } => {
+                Err(input.is_not("the name of a value"))
+            }
         }
     }
 

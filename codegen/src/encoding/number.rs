@@ -35,7 +35,7 @@ impl Room for Number<'_> {
                 let special = self.signal.specials.iter().find(|special| special.name == *name);
                 bits(self.signal, special.ok_or_else(|| input.is_not(&wanted(self.signal)))?.raw)
             }
-            Input::Status { .. } => Err(input.is_not(&wanted(self.signal))),
+            Input::Bytes { .. } | Input::Status { .. } => Err(input.is_not(&wanted(self.signal))),
         }
     }
 

@@ -21,7 +21,9 @@ impl Room for Packed<'_> {
             Input::Text(text) => {
                 self.bits(text).ok_or_else(|| format!("`{}` is not of the documented form", escape::written(text)))
             }
-            Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("a text")),
+            Input::Integer(_) | Input::Number(_) | Input::Bytes { .. } | Input::Status { .. } => {
+                Err(input.is_not("a text"))
+            }
         }
     }
 
@@ -97,7 +99,7 @@ impl Packed<'_> {
 /// Returns how many bytes of the rest of a text belong to a part.
 fn length(part: &Signal, digits: Option<usize>, rest: &str, is_last: bool) -> usize {
     if let Some(text) = Text::of(part) {
-        return text.length();
+        return text.lengths()[1];
     }
     match digits {
         Some(digits) => digits,

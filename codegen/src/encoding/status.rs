@@ -27,7 +27,9 @@ impl Room for Status<'_> {
                 }
                 bits(self.signal, (named | unknown).into())
             }
-            Input::Integer(_) | Input::Number(_) | Input::Text(_) => Err(input.is_not("a set of bits")),
+            Input::Integer(_) | Input::Number(_) | Input::Text(_) | Input::Bytes { .. } => {
+                Err(input.is_not("a set of bits"))
+            }
         }
     }
 

@@ -11,14 +11,14 @@ pub struct Text<'a> {
 
 impl Room for Text<'_> {
     fn value(&self, bits: u64) -> Value {
-        self.text(bits).map_or(Value::None, Value::Text)
+        super::value_of_bytes(self.signal, self.bytes_of(&bits.to_be_bytes()))
     }
 
     fn raw(&self, input: &Input, _: &Allowed) -> Result<u64, String> {
-        match input {
-            Input::Raw(raw) => bits(self.signal, *raw),
-            Input::Text(text) => self.bits(text),
-            Input::Integer(_) | Input::Number(_) | Input::Status { .. } => Err(input.is_not("a text")),
+        if let Input::Raw(raw) = input {
+            bits(self.signal, *raw)
+        } else {
+            Ok(joined(&super::bytes_of(self.signal, input)?))
         }
     }
 
@@ -35,7 +35,7 @@ impl Room for Text<'_> {
     }
 
     fn description(&self) -> Vec<String> {
-        let length = self.length();
+        let length = self.count();
         match self.form {
             TextForm::Ascii { fill: 0 } => vec![format!("text of {length} characters")],
             TextForm::Ascii { fill } => vec![format!("text of {length} characters, filled with {fill:#04X}")],
@@ -56,9 +56,58 @@ impl<'a> Text<'a> {
         signal.encoding.text_form().map(|form| Self { signal, form })
     }
 
-    /// Returns how many characters fit.
-    pub fn length(&self) -> usize {
-        usize::from(self.signal.place.width() / 8)
+    /// Returns the least and the greatest number of bytes.
+    pub fn lengths(&self) -> [usize; 2] {
+        let length = u16::from(self.signal.place.width() / 8);
+        self.signal.run.map_or([length; 2], |run| [run.least, run.most]).map(usize::from)
+    }
+
+    /// Writes the number of bytes.
+    fn count(&self) -> String {
+        let [least, most] = self.lengths();
+        if least == most { most.to_string() } else { format!("{least} to {most}") }
+    }
+
+    /// Returns the bytes of a text, as few as there may be.
+    ///
+    /// # Errors
+    ///
+    /// Says how long the text may be.
+    pub fn bytes(&self, text: &str) -> Result<Vec<u8>, String> {
+        let ([least, most], name) = (self.lengths(), &self.signal.name);
+        match self.form {
+            TextForm::Ascii { fill } => {
+                let fits = text.len() <= most && text.bytes().all(is_character);
+                let missing = least.saturating_sub(text.len());
+                let bytes = || text.bytes().chain(std::iter::repeat_n(fill, missing)).collect();
+                fits.then(bytes).ok_or_else(|| {
+                    let text = escape::written(text);
+                    format!("`{text}` is not a text of at most {most} ASCII characters without NUL for `{name}`")
+                })
+            }
+            TextForm::Hexadecimal => {
+                let bytes = hex::bytes(text).filter(|bytes| (least..=most).contains(&bytes.len()));
+                bytes.ok_or_else(|| {
+                    let (text, count) = (escape::written(text), self.count());
+                    format!("`{text}` is not {count} bytes of two hexadecimal digits each for `{name}`")
+                })
+            }
+        }
+    }
+
+    /// Returns the bytes that are given, unless the text beside them is another one.
+    ///
+    /// # Errors
+    ///
+    /// Says how many bytes there may be, or how long the text may be.
+    pub fn given(&self, bytes: &[u8], text: Option<&str>) -> Result<Vec<u8>, String> {
+        let [least, most] = self.lengths();
+        let fits = (least..=most).contains(&bytes.len());
+        match text {
+            Some(text) if !fits || self.form.text(bytes).as_deref() != Some(text) => self.bytes(text),
+            _ if fits => Ok(bytes.to_vec()),
+            _ => Err(format!("raw 0x{} has {} bytes instead of {}", hex::digits(bytes), bytes.len(), self.count())),
+        }
     }
 
     /// Returns the bits of a text.
@@ -67,40 +116,37 @@ impl<'a> Text<'a> {
     ///
     /// Says how long the text may be.
     pub fn bits(&self, text: &str) -> Result<u64, String> {
-        let (count, name) = (self.length(), &self.signal.name);
-        let bytes = match self.form {
-            TextForm::Ascii { fill } => filled(text, count, fill).ok_or_else(|| {
-                format!(
-                    "`{}` is not a text of at most {count} ASCII characters without NUL for `{name}`",
-                    escape::written(text)
-                )
-            }),
-            TextForm::Hexadecimal => hex::bytes(text).filter(|bytes| bytes.len() == count).ok_or_else(|| {
-                let text = escape::written(text);
-                format!("`{text}` is not {count} bytes of two hexadecimal digits each for `{name}`")
-            }),
-        };
-        Ok(bytes?.into_iter().fold(0, |bits, byte| bits << 8 | u64::from(byte)))
+        Ok(joined(&self.bytes(text)?))
+    }
+
+    /// Returns those bytes of eight that a place has.
+    fn bytes_of<'b>(&self, bytes: &'b [u8; 8]) -> &'b [u8] {
+        &bytes[8 - usize::from(self.signal.place.width() / 8)..]
     }
 
     /// Returns the text of raw bits. It is `None` if the text would not give the same bits.
     pub fn text(&self, bits: u64) -> Option<String> {
-        let bytes = &bits.to_be_bytes()[8 - self.length()..];
-        match self.form {
-            TextForm::Ascii { fill } => {
+        self.form.text(self.bytes_of(&bits.to_be_bytes()))
+    }
+}
+
+impl TextForm {
+    /// Returns the text of bytes, without those that fill it up. It is `None` for bytes that no text gives.
+    pub fn text(self, bytes: &[u8]) -> Option<String> {
+        match self {
+            Self::Ascii { fill } => {
                 let length = bytes.iter().rposition(|byte| *byte != fill).map_or(0, |last| last + 1);
                 let text = std::str::from_utf8(&bytes[..length]).ok()?;
                 text.bytes().all(is_character).then(|| text.to_owned())
             }
-            TextForm::Hexadecimal => Some(hex::digits(bytes)),
+            Self::Hexadecimal => Some(hex::digits(bytes)),
         }
     }
 }
 
-/// Returns the bytes of a text of ASCII characters, filled up to `count`.
-fn filled(text: &str, count: usize, fill: u8) -> Option<Vec<u8>> {
-    let missing = count.checked_sub(text.len()).filter(|_| text.bytes().all(is_character))?;
-    Some(text.bytes().chain(std::iter::repeat_n(fill, missing)).collect())
+/// Returns the number that bytes write, the first one highest.
+fn joined(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte))
 }
 
 /// Tests a byte for an ASCII character. NUL is none, since what stands behind it is seldom a part of a text.

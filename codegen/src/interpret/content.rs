@@ -1,6 +1,6 @@
 //! Turns what was decoded into what can be encoded.
 
-use super::{Assembled, Content, Decoded, Form, Frame, Input, Value};
+use super::{Assembled, Content, Decoded, Form, Frame, Input, Reading, Value};
 use crate::model::{Example, FrameLayout, Message, Protocol, Signal};
 
 impl Frame {
@@ -43,7 +43,7 @@ impl Content {
         let selectors = decoded.selectors.iter().map(|(id, value)| (protocol[*id].name.clone(), *value));
         let signals = decoded.signals.iter().map(|reading| {
             let signal = &message[reading.signal];
-            (signal.name.clone(), Input::of(protocol, signal, &reading.value, reading.bits))
+            (signal.name.clone(), Input::of(protocol, signal, reading))
         });
         Self {
             message: message.name.clone(),
@@ -68,8 +68,10 @@ impl Content {
 
 impl Input {
     /// Takes over a value. Without a physical value it takes the bits.
-    pub fn of(protocol: &Protocol, signal: &Signal, value: &Value, bits: u64) -> Self {
-        match value {
+    pub fn of(protocol: &Protocol, signal: &Signal, reading: &Reading) -> Self {
+        let bits = reading.bits;
+        match &reading.value {
+            _ if signal.run.is_some() => Self::Bytes { bytes: reading.bytes.clone(), text: None },
             Value::None => Self::Raw(signal.raw_of(bits)),
             Value::Integer(value) => Self::Integer(*value),
             Value::Number(value) => Self::Number(*value),

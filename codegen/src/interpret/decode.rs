@@ -3,7 +3,6 @@
 use std::cmp::Reverse;
 
 use super::notes::signal_note;
-use super::value::physical;
 use super::{Decoded, Form, Frame, Problem, Reading, Unrecognised, hexadecimal};
 use crate::model::{
     AddressPattern, Choice, Course, Direction, FieldId, FieldTest, FrameId, FrameLayout, Group, Id, Message, ModelId,
@@ -348,7 +347,7 @@ impl<'a> Decoder<'a> {
         let present = known.filter(|(_, signal)| usize::from(signal.end()) <= self.frame.data.len());
         let readings = present.map(|(id, signal)| {
             let bits = signal.place.get(&self.data);
-            Reading { signal: id, bits, value: physical(self.protocol, signal.on(self.model), bits) }
+            Reading::of(self.protocol, (id, signal.on(self.model)), bits)
         });
         let signals: Vec<_> = readings.collect();
         let selectors = self.selectors(&frame.selectors);

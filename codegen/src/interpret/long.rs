@@ -1,12 +1,15 @@
 //! Reads what the joined parts of a long message say, and makes its parts.
 
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
 use super::arrays::parted_texts;
 use super::encode::{refuse, twice};
 use super::notes::signal_note;
-use super::value::{Limits, physical, raw_of};
+use super::value::{Limits, bytes_of, raw_of};
 use super::{Input, Note, Reading, Refusal};
 use crate::hex;
-use crate::model::{Extent, LongMessage, Message, ModelId, NoteRule, Protocol, Signal};
+use crate::model::{Extent, LongMessage, Message, ModelId, NoteRule, Protocol, Signal, TextForm};
 
 /// What a call writes for each signal, by name.
 pub type Texts = Vec<(String, String)>;
@@ -35,41 +38,51 @@ impl Joined {
     /// Reads the signals whose bytes all came.
     pub fn read(&self, protocol: &Protocol, extent: Extent, model: Option<ModelId>) -> Values {
         let content = &extent.long().content;
-        let present = extent.signals().filter(|(_, signal)| self.has(extent.long(), signal));
+        let present =
+            extent.signals().filter_map(|(id, signal)| Some((id, signal, self.bytes(extent.long(), signal)?)));
         let signals: Vec<_> = present
-            .map(|(id, signal)| {
+            .map(|(id, signal, bytes)| {
+                if signal.run.is_some() {
+                    return Reading::of_bytes((id, signal), self.data[bytes].to_vec());
+                }
                 let bits = signal.place.get(&window(&self.data, signal));
-                Reading { signal: id, bits, value: physical(protocol, signal.on(model), bits) }
+                Reading::of(protocol, (id, signal.on(model)), bits)
             })
             .collect();
         let note = |reading: &Reading| signal_note(protocol, content, model, reading);
         let mut notes: Vec<_> = signals.iter().filter_map(note).collect();
         notes.extend(self.count_note(extent));
-        let reserved = self.without(extent, signals.iter().map(|reading| &content[reading.signal]));
+        let covered = signals.iter().map(|known| (&content[known.signal], Some(known.bytes.len())));
+        let reserved = without(&self.data, extent, covered);
         notes.extend(self.reserved_note(extent));
         Values { signals, notes, reserved }
     }
 
-    /// Tests whether a signal came. An element beyond the known number is none.
-    fn has(&self, long: &LongMessage, signal: &Signal) -> bool {
-        long.is_among(self.count, signal)
-            && self.came.get(signal.bytes()).is_some_and(|came| came.iter().all(|came| *came))
+    /// Returns the bytes of a signal, if all of them came. An element beyond the known number is none.
+    fn bytes(&self, long: &LongMessage, signal: &Signal) -> Option<Range<usize>> {
+        let mut bytes = signal.bytes();
+        if let Some(run) = signal.run.filter(|run| run.varies()) {
+            bytes.end = signal.reach_with(self.count).min(self.data.len()).max(bytes.start + usize::from(run.least));
+        }
+        let came = self.came.get(bytes.clone()).filter(|_| long.is_among(self.count, signal))?;
+        came.iter().all(|came| *came).then_some(bytes)
     }
 
     /// Notes that some of the elements may be none.
     fn count_note(&self, extent: Extent) -> Option<Note> {
-        let array = extent.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
-        let text = format!("nothing says how many of the elements of `{}` are real", array.name);
+        let field = extent.varying().filter(|_| self.count.is_none() && !self.is_ended)?;
+        let what = if field.is_text { "bytes" } else { "elements" };
+        let text = format!("nothing says how many of the {what} of `{}` are real", field.name);
         Some(Note { rule: NoteRule::Count, text })
     }
 
     /// Notes bits that nothing covers, if they are not as they are sent.
     fn reserved_note(&self, extent: Extent) -> Option<Note> {
         let reserved = extent.long().content.reserved;
-        let without = |data: &Self| data.without(extent, extent.signals().map(|(_, signal)| signal));
-        let mut odd = without(self);
+        let named = || extent.signals().map(|(_, signal)| (signal, None));
+        let mut odd = without(&self.data, extent, named());
         if reserved.are_ones {
-            let unnamed = without(&Self { data: vec![0xFF; self.data.len()], came: Vec::new(), ..*self });
+            let unnamed = without(&vec![0xFF; self.data.len()], extent, named());
             odd.iter_mut().zip(unnamed).for_each(|(byte, unnamed)| *byte ^= unnamed);
         }
         let found = if reserved.are_ones { "clear" } else { "set" };
@@ -77,17 +90,22 @@ impl Joined {
         let is_odd = odd.iter().zip(&self.came).any(|(byte, came)| *came && *byte != 0);
         (is_odd && !reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
     }
+}
 
-    /// Returns the bits that neither the header nor one of these signals covers.
-    fn without<'s>(&self, extent: Extent, signals: impl IntoIterator<Item = &'s Signal>) -> Vec<u8> {
-        let mut rest = self.data.clone();
-        rest.iter_mut().zip(extent.header().to_be_bytes()).for_each(|(byte, mask)| *byte &= !mask);
-        for signal in signals {
-            let bytes = rest.iter_mut().skip(signal.window.into());
-            bytes.zip(signal.place.mask()).for_each(|(byte, mask)| *byte &= !mask);
+/// Returns the bits of data that neither the header nor one of these signals covers. Beside each stands the number of
+/// bytes of a text whose length varies; without one it is the longest.
+fn without<'s>(data: &[u8], extent: Extent, signals: impl Iterator<Item = (&'s Signal, Option<usize>)>) -> Vec<u8> {
+    let mut rest = data.to_vec();
+    rest.iter_mut().zip(extent.header().to_be_bytes()).for_each(|(byte, mask)| *byte &= !mask);
+    for (signal, count) in signals {
+        let start = usize::from(signal.window);
+        let bytes = rest.iter_mut().skip(start);
+        match signal.run {
+            Some(_) => bytes.take(signal.reach_with(count) - start).for_each(|byte| *byte = 0),
+            None => bytes.zip(signal.place.mask()).for_each(|(byte, mask)| *byte &= !mask),
         }
-        rest
     }
+    rest
 }
 
 /// Returns the eight bytes in which a signal has its place.
@@ -107,17 +125,16 @@ pub fn joined(
     reserved: Option<&[u8]>,
     (model, limits): (Option<ModelId>, Limits),
 ) -> Result<Vec<u8>, Refusal> {
-    let content = &extent.long().content;
-    let is_unknown = |name: &String| extent.signals().all(|(_, signal)| signal.name != *name);
-    if let Some((name, _)) = given.iter().find(|(name, _)| is_unknown(name)) {
-        return Err(refuse(content, &format!("there is no signal `{name}`")));
-    }
-    let is_given = |signal: &Signal| given.iter().any(|(name, _)| *name == signal.name);
-    let long = extent.long();
-    let count = extent.varying().map(|array| {
-        let given = content.signals.iter().filter(|signal| is_given(signal)).filter_map(|signal| long.counted(signal));
-        given.map(|index| index + 1).max().unwrap_or(0).max(array.least.unwrap_or(0))
-    });
+    let (long, content) = (extent.long(), &extent.long().content);
+    let given = known(extent, given)?;
+    let is_given = |signal: &Signal| given.contains_key(&*signal.name);
+    let missing = |signal: &Signal| refuse(content, &format!("the signal `{}` is missing", signal.name));
+    let text = |signal: &Signal| {
+        let input = given.get(&*signal.name).ok_or_else(|| missing(signal))?;
+        bytes_of(protocol, content, signal, input, limits)
+    };
+    let open = extent.open_text().map(|(signal, _)| text(signal)).transpose()?;
+    let count = open.map(|bytes| bytes.len()).or_else(|| count(extent, is_given));
     let mut data = vec![0; length(extent, count, reserved.unwrap_or_default().len(), is_given)?];
     if reserved.is_none() && content.reserved.are_ones {
         data.fill(0xFF);
@@ -126,20 +143,38 @@ pub fn joined(
     for (byte, (bits, mask)) in data.iter_mut().zip(header.into_iter().zip(extent.header().to_be_bytes())) {
         *byte = *byte & !mask | bits & mask;
     }
-    let is_there = |signal: &&Signal| long.is_among(count, signal) && signal.reach() <= data.len();
+    let is_there = |signal: &&Signal| long.is_among(count, signal) && signal.reach_with(count) <= data.len();
     for signal in extent.signals().map(|(_, signal)| signal).filter(is_there).collect::<Vec<_>>() {
-        let input = given.iter().find(|(name, _)| *name == signal.name).map(|(_, input)| input.clone());
+        let places = data.iter_mut().skip(signal.window.into());
+        if signal.run.is_some() {
+            places.zip(text(signal)?).for_each(|(place, byte)| *place = byte);
+            continue;
+        }
         let has_default = reserved.is_none() && long.counted(signal).is_none();
-        let default = || signal.default_for(model).filter(|_| has_default).map(Input::Raw);
-        let input = input
-            .or_else(default)
-            .ok_or_else(|| refuse(content, &format!("the signal `{}` is missing", signal.name)))?;
-        let bits = raw_of(protocol, content, signal.on(model), &input, limits)?;
+        let default = signal.default_for(model).filter(|_| has_default).map(Input::Raw);
+        let input = given.get(&*signal.name).copied().or(default.as_ref()).ok_or_else(|| missing(signal))?;
+        let bits = raw_of(protocol, content, signal.on(model), input, limits)?;
         let mut bytes = window(&data, signal);
         signal.place.put(&mut bytes, bits);
         data.iter_mut().skip(signal.window.into()).zip(bytes).for_each(|(byte, new)| *byte = new);
     }
     Ok(data)
+}
+
+/// Returns the values that are given by the names of their signals.
+fn known<'g>(extent: Extent, given: &'g [(String, Input)]) -> Result<HashMap<&'g str, &'g Input>, Refusal> {
+    let names: HashSet<_> = extent.signals().map(|(_, signal)| signal.name.as_str()).collect();
+    match given.iter().find(|(name, _)| !names.contains(&**name)) {
+        Some((name, _)) => Err(refuse(&extent.long().content, &format!("there is no signal `{name}`"))),
+        None => Ok(given.iter().map(|(name, input)| (name.as_str(), input)).collect()),
+    }
+}
+
+/// Returns how many elements the arrays of varying length have, if there are any.
+fn count(extent: Extent, is_given: impl Fn(&Signal) -> bool) -> Option<usize> {
+    let given = extent.signals().map(|(_, signal)| signal).filter(|signal| is_given(signal));
+    let given = given.filter_map(|signal| extent.long().counted(signal)).map(|index| index + 1).max();
+    extent.varying().map(|array| given.unwrap_or(0).max(array.least))
 }
 
 /// Returns how many bytes a long message has with these signals, or at least these reserved bytes.
@@ -173,13 +208,20 @@ pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<
         let text = "the first part has another number on each model; choose a model";
         refuse(&long.content, text)
     })?;
-    let (size, fill) = (long.size(), if long.content.reserved.are_ones { 0xFF } else { 0 });
-    let chunks = data.chunks(size).map(|chunk| {
-        let mut whole = chunk.to_vec();
-        whole.resize(size, fill);
-        hex::digits(&whole)
-    });
-    Ok((first..).zip(chunks).collect())
+    let parts = filled(long, data);
+    Ok((first..).zip(parts.chunks(long.size()).map(hex::digits)).collect())
+}
+
+/// Fills up the last part.
+fn filled(long: &LongMessage, data: &[u8]) -> Vec<u8> {
+    let (mut whole, length) = (data.to_vec(), long.parts_of(data.len()) * long.size());
+    if let Some((text, _)) = long.open_text()
+        && let Some(TextForm::Ascii { fill }) = text.encoding.text_form()
+    {
+        whole.resize(text.reach().min(length).max(data.len()), fill);
+    }
+    whole.resize(length, if long.content.reserved.are_ones { 0xFF } else { 0 });
+    whole
 }
 
 /// Returns the texts for the signals of each frame, if what is given are signals of a message in parts.

@@ -111,7 +111,8 @@ impl<'a> Decoder<'a> {
 
 pub fn signal_note(protocol: &Protocol, message: &Message, model: Option<ModelId>, reading: &Reading) -> Option<Note> {
     let signal = message[reading.signal].on(model);
-    if let Some(text) = model.and_then(|model| protocol.lack(message, signal, model, reading.bits)) {
+    let lack = |model| reading.words(signal).find_map(|bits| protocol.lack(message, signal, model, bits));
+    if let Some(text) = model.and_then(lack) {
         return Some(Note { rule: NoteRule::ModelDependent, text });
     }
     if model.is_some_and(|model| !signal.is_of(model)) {

@@ -1,7 +1,7 @@
 //! Turns the raw bits of one signal into a physical value, and back.
 
 use super::{Input, Refusal, Value};
-use crate::encoding::{Allowed, Words};
+use crate::encoding::{self, Allowed, Words};
 use crate::model::{FrameLayout, Message, ModelId, Protocol, Signal};
 
 /// Returns the physical value of a signal's raw bits.
@@ -31,6 +31,18 @@ impl Limits {
             Self::Bits => None,
             Self::Range(model) => model,
         }
+    }
+
+    /// Says that the device model does not have what the bits of a signal show.
+    fn refused(
+        self,
+        protocol: &Protocol,
+        message: &Message,
+        signal: &Signal,
+        bits: impl IntoIterator<Item = u64>,
+    ) -> Option<String> {
+        let model = self.model()?;
+        bits.into_iter().find_map(|bits| protocol.lack(message, signal, model, bits))
     }
 
     /// Returns the limits of a signal.
@@ -63,12 +75,33 @@ pub fn raw_of(
     limits: Limits,
 ) -> Result<u64, Refusal> {
     let allowed = limits.allowed(protocol, message, signal);
-    let raw = Words::from(protocol).with(signal, |room| room.raw(input, &allowed));
-    let raw = raw.and_then(|bits| match limits.model().and_then(|model| protocol.lack(message, signal, model, bits)) {
-        Some(why) => Err(why),
-        None => Ok(bits),
+    let text = if let Input::Bytes { text: Some(text), .. } = input { Some(Input::Text(text.clone())) } else { None };
+    let raw = Words::from(protocol).with(signal, |room| room.raw(text.as_ref().unwrap_or(input), &allowed));
+    let raw = raw.and_then(|bits| limits.refused(protocol, message, signal, [bits]).map_or(Ok(bits), Err));
+    raw.map_err(|why| refused(message, signal, &why))
+}
+
+/// Returns the bytes of a text to send that is a run.
+///
+/// # Errors
+///
+/// Names message, signal and text.
+pub fn bytes_of(
+    protocol: &Protocol,
+    message: &Message,
+    signal: &Signal,
+    input: &Input,
+    limits: Limits,
+) -> Result<Vec<u8>, Refusal> {
+    let bytes = encoding::bytes_of(signal, input).and_then(|bytes| {
+        let words = bytes.iter().copied().map(u64::from);
+        limits.refused(protocol, message, signal, words).map_or(Ok(bytes), Err)
     });
-    raw.map_err(|why| Refusal(format!("{}.{}: {why}", message.name, signal.name)))
+    bytes.map_err(|why| refused(message, signal, &why))
+}
+
+fn refused(message: &Message, signal: &Signal, why: &str) -> Refusal {
+    Refusal(format!("{}.{}: {why}", message.name, signal.name))
 }
 
 /// Reads a value of a signal as a person types it.

@@ -101,7 +101,7 @@ impl Meaning {
     pub fn bits(&self) -> Option<u64> {
         match self.said {
             Ok(Said::Bits(bits)) => Some(bits),
-            Ok(Said::Rounded(_)) | Err(_) => None,
+            Ok(Said::Rounded(_) | Said::Text(_)) | Err(_) => None,
         }
     }
 }
@@ -113,6 +113,8 @@ pub enum Said {
     Bits(u64),
     /// A rounded number: every value that gives it.
     Rounded(Range),
+    /// A text that is a run, as it is shown.
+    Text(String),
 }
 
 impl Said {
@@ -121,6 +123,7 @@ impl Said {
         match self {
             Self::Bits(said) => *said == bits,
             Self::Rounded(range) => signal.is_in(range, bits),
+            Self::Text(_) => false,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! How many data bytes long messages have.
 
-use crate::model::{Array, FrameLayout, LongMessage, Signal, SignalId};
+use crate::model::{ByteRun, FrameLayout, LongMessage, Signal, SignalId, Varying};
 
 /// What frames of a long message carry together.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +57,7 @@ impl<'a> Extent<'a> {
 
     /// Returns the least number of data bytes.
     pub fn shortest(self) -> usize {
-        let of_signals = || self.bytes_with(self.varying().and_then(|array| array.least));
+        let of_signals = || self.bytes_with(self.varying().map(|field| field.least));
         self.lengths().first().map_or_else(of_signals, |length| usize::from(*length))
     }
 
@@ -66,26 +66,31 @@ impl<'a> Extent<'a> {
         if !self.lengths().is_empty() {
             return self.lengths().iter().any(|known| usize::from(*known) == length);
         }
-        let Some(array) = self.varying() else { return length == self.longest() };
-        (array.least.unwrap_or(0)..=array.elements.len()).any(|count| self.bytes_with(Some(count)) == length)
+        let Some(field) = self.varying() else { return length == self.longest() };
+        (field.least..=field.most).any(|count| self.bytes_with(Some(count)) == length)
     }
 
-    /// Returns how many elements an array of varying length has in some number of data bytes.
+    /// Returns how many elements the field of varying length has in some number of data bytes.
     pub fn elements_in(self, length: usize) -> Option<usize> {
-        let array = self.varying()?;
-        (0..=array.elements.len()).rev().find(|count| self.bytes_with(Some(*count)) <= length)
+        let field = self.varying()?;
+        (0..=field.most).rev().find(|count| self.bytes_with(Some(*count)) <= length)
     }
 
-    /// Returns how many data bytes it has with some number of elements in arrays of varying length, or with all.
+    /// Returns how many data bytes it has with some number of elements in fields of varying length, or with all.
     pub fn bytes_with(self, elements: Option<usize>) -> usize {
         let present = self.signals().filter(|(_, signal)| self.long.is_among(elements, signal));
-        present.map(|(_, signal)| signal.reach()).max().unwrap_or(0).max(self.head())
+        present.map(|(_, signal)| signal.reach_with(elements)).max().unwrap_or(0).max(self.head())
     }
 
-    /// Returns an array whose length varies, if there is one. Others vary with it.
-    pub fn varying(self) -> Option<&'a Array> {
-        self.long
-            .varying()
-            .filter(|array| array.elements.iter().any(|id| self.signals().any(|(known, _)| known == *id)))
+    /// Returns the first field whose length varies, if there is one. Others vary with it.
+    pub fn varying(self) -> Option<Varying<'a>> {
+        let is_there = |name: &str| self.signals().any(|(_, signal)| self.long.content.field_name(signal) == name);
+        self.long.varying().filter(|field| is_there(field.name))
+    }
+
+    /// Returns the text whose length varies, if there is one.
+    pub fn open_text(self) -> Option<(&'a Signal, ByteRun)> {
+        let mut texts = self.signals().filter_map(|(_, signal)| Some((signal, signal.run?)));
+        texts.find(|(_, run)| run.varies())
     }
 }

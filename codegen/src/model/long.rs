@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
-    Array, FrameLayout, Groups, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId,
+    ByteRun, Doc, FrameLayout, Groups, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId,
     Transport, TransportId,
 };
 
@@ -52,6 +52,22 @@ pub struct Parts {
     pub count: Option<(MessageId, SignalId)>,
 }
 
+/// A field that has any number of elements, or of bytes if it is a text.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Varying<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// What the spec says beside it.
+    pub doc: &'a Doc,
+    /// Whether it is a text.
+    pub is_text: bool,
+    /// The least number.
+    pub least: usize,
+    /// The greatest number.
+    pub most: usize,
+}
+
 impl LongMessage {
     /// Returns its numbered parts, if it travels in them.
     pub fn parts(&self) -> Option<&Parts> {
@@ -84,12 +100,18 @@ impl LongMessage {
         self.whole().shortest()
     }
 
+    /// Returns the number of data bytes up to the end of the last field that is always there.
+    pub fn least(&self) -> usize {
+        let text = self.open_text().map_or(0, |(_, run)| run.least.into());
+        self.lengths.first().map_or_else(|| self.bytes_with(Some(text)), |length| usize::from(*length))
+    }
+
     /// Tests whether it can have some number of data bytes.
     pub fn has_length(&self, length: usize) -> bool {
         self.whole().has_length(length)
     }
 
-    /// Returns how many data bytes it has with some number of elements in arrays of varying length, or with all.
+    /// Returns how many data bytes it has with some number of elements in fields of varying length, or with all.
     pub fn bytes_with(&self, elements: Option<usize>) -> usize {
         self.whole().bytes_with(elements)
     }
@@ -106,9 +128,28 @@ impl LongMessage {
         self.content[element.array].least.map(|_| element.index.into())
     }
 
-    /// Returns an array whose length varies, if there is one. Others vary with it.
-    pub fn varying(&self) -> Option<&Array> {
-        self.content.arrays.iter().find(|array| array.least.is_some())
+    /// Returns the first field whose length varies, if there is one. Others vary with it.
+    pub fn varying(&self) -> Option<Varying<'_>> {
+        self.all_varying().next()
+    }
+
+    /// Returns the fields whose length varies.
+    pub fn all_varying(&self) -> impl Iterator<Item = Varying<'_>> {
+        let arrays = self.content.arrays.iter().filter_map(|array| {
+            let (name, most) = (array.name.as_str(), array.elements.len());
+            Some(Varying { name, doc: &array.doc, is_text: false, least: array.least?, most })
+        });
+        let text = self.open_text().map(|(text, run)| {
+            let [least, most] = [run.least, run.most].map(usize::from);
+            Varying { name: &text.name, doc: &text.doc, is_text: true, least, most }
+        });
+        arrays.chain(text)
+    }
+
+    /// Returns the text whose length varies, if there is one.
+    pub fn open_text(&self) -> Option<(&Signal, ByteRun)> {
+        let mut texts = self.content.signals.iter().filter_map(|signal| Some((signal, signal.run?)));
+        texts.find(|(_, run)| run.varies())
     }
 
     /// Returns how many frames carry some number of bytes.

@@ -133,9 +133,11 @@ pub struct Signal {
     pub types: Vec<String>,
     /// How many data bytes of a long message come before the eight that `place` counts. It is 0 in a frame.
     pub window: u16,
-    /// Bits of the data bytes.
+    /// Bits of the data bytes. Of a run it is the first byte.
     #[serde(with = "place")]
     pub place: Place,
+    /// How many bytes it takes from its window on, if it is a text that no place can hold.
+    pub run: Option<ByteRun>,
     /// What these bits mean.
     pub encoding: Encoding,
     /// Unit of the physical value.
@@ -162,6 +164,23 @@ pub struct Signal {
     pub models: Vec<ModelId>,
     /// The array of the message that it is an element of.
     pub element: Option<Element>,
+}
+
+/// The number of whole bytes that a text takes, if they are more than eight or may vary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ByteRun {
+    /// The least number.
+    pub least: u16,
+    /// The greatest number.
+    pub most: u16,
+}
+
+impl ByteRun {
+    /// Tests whether the number varies.
+    pub fn varies(self) -> bool {
+        self.least < self.most
+    }
 }
 
 /// A value that a device model has of its own.
@@ -264,9 +283,24 @@ impl Signal {
         u8::try_from(8 - last).unwrap_or(8)
     }
 
-    /// Returns how many data bytes a long message with the signal has at least.
+    /// Returns how many data bytes a long message with the signal has at least, or with the longest text.
     pub fn reach(&self) -> usize {
-        usize::from(self.window) + usize::from(self.end())
+        self.reach_with(None)
+    }
+
+    /// Returns the same for a text of some number of bytes, if that varies.
+    pub fn reach_with(&self, bytes: Option<usize>) -> usize {
+        let size = self.run.map_or_else(|| self.end().into(), |run| run.most.into());
+        let own = bytes.filter(|_| self.run.is_some_and(ByteRun::varies));
+        usize::from(self.window) + own.map_or(size, |bytes| bytes.min(size))
+    }
+
+    /// Returns its bits in each data byte from its window on.
+    pub fn masks(&self) -> Vec<u8> {
+        match self.run {
+            Some(run) => vec![u8::MAX; run.most.into()],
+            None => self.place.mask().to_vec(),
+        }
     }
 
     /// Returns the data bytes that have its bits.

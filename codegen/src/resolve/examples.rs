@@ -4,6 +4,7 @@ use canspec_runtime::Place;
 use indexmap::IndexSet;
 
 use super::Resolver;
+use super::long::MOST_BYTES;
 use super::printed::Printed;
 use super::texts::{remarks, suggestion};
 use crate::diagnostic::Diagnostic;
@@ -182,7 +183,7 @@ impl Resolver<'_> {
         let model = example.model.as_ref().and_then(|name| self.device_model(&path.key("model"), name));
         let model = model.or_else(|| content.models.first().copied());
         let content = content.on(model);
-        let count = example.count.as_ref().and_then(|text| self.integer(&path.key("count"), text, 1, 256));
+        let count = example.count.as_ref().and_then(|text| self.integer(&path.key("count"), text, 0, MOST_BYTES));
         let means = self.meanings(&path.key("means"), example.means.as_ref(), &content);
         let example = LongExample {
             doc: example_remarks(example).doc(path, Some(outer)),

@@ -5,10 +5,11 @@ use super::Resolver;
 use super::arrays::{Row, Windowed};
 use super::keys::{Role, Site};
 use super::long::{DATA, PART};
+use super::runs::is_run;
 use super::texts::{self, remarks};
 use super::types::Merged;
 use crate::diagnostic::Diagnostic;
-use crate::model::{Array, ArrayId, Doc, Encoding, Kind, PartId, Signal, Table};
+use crate::model::{Array, ArrayId, ByteRun, Doc, Encoding, Kind, PartId, Signal, Table};
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Field, Key};
 use crate::syntax::tree::Path;
@@ -200,6 +201,10 @@ impl Resolver<'_> {
             leaves.signals.push(self.packed(name, merged, doc, outer)?);
             return Some(());
         }
+        if is_run(merged) {
+            let run = self.run(merged, outer.is_long)?;
+            return self.long_text(path, name, merged, (run, doc), outer, leaves);
+        }
         let place = self.place(path, name, merged, outer.word, outer.is_long)?;
         if field.fields.is_empty() {
             return self.value(path, name, merged, (place, doc), outer, leaves);
@@ -240,6 +245,23 @@ impl Resolver<'_> {
         self.check_in_no_array(path, "a constant", outer.row)?;
         let value = self.integer(&merged.path(self.diagnostics, Key::Const), text, 0, place.max())?;
         leaves.constants.push((signal, value));
+        self.is_sound(merged).then_some(())
+    }
+
+    /// Resolves a text that no eight bytes can hold.
+    fn long_text(
+        &mut self,
+        path: &Path,
+        name: &str,
+        merged: &Merged,
+        (((window, place), run), doc): ((Windowed, ByteRun), Doc),
+        outer: Outer,
+        leaves: &mut Leaves,
+    ) -> Option<()> {
+        self.check_in_no_array(path, "a text of more than eight bytes, or without an end,", outer.row)?;
+        let signal = self.signal(outer.own_name(name), merged, place, doc, outer.owner)?;
+        self.check_keys(merged, Role::of_run(&signal.encoding));
+        leaves.signals.push(Signal { name: name.to_owned(), window, run: Some(run), ..signal });
         self.is_sound(merged).then_some(())
     }
 
@@ -296,6 +318,7 @@ impl Resolver<'_> {
             types: merged.types.clone(),
             window: 0,
             place,
+            run: None,
             encoding: Encoding::Packed { pieces, parts },
             unit: None,
             range: None,

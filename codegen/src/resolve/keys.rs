@@ -34,6 +34,8 @@ pub enum Role {
     Status,
     Text,
     Bytes,
+    LongText,
+    LongBytes,
     Packed,
     PackedWord,
     PackedNumber,
@@ -46,6 +48,9 @@ const QUANTITIES: &[Role] = &[Role::Number, Role::Decimal, Role::Float];
 
 /// Signals that have no parts.
 const SIGNALS: &[&[Role]] = &[QUANTITIES, &[Role::Named, Role::Status, Role::Text, Role::Bytes]];
+
+/// Texts that no eight bytes can hold.
+const RUNS: &[Role] = &[Role::LongText, Role::LongBytes];
 
 /// Numbers in a packed value.
 const PACKED_NUMBERS: &[Role] = &[Role::PackedNumber, Role::PackedDecimal];
@@ -78,6 +83,8 @@ impl Role {
             Self::Status => "a status word",
             Self::Text => "a text",
             Self::Bytes => "a field of raw bytes",
+            Self::LongText => "a text of more than eight bytes",
+            Self::LongBytes => "a field of more than eight raw bytes",
             Self::Packed => "a packed value",
             Self::PackedWord => "a word of a packed value",
             Self::PackedNumber => "a number of a packed value",
@@ -95,10 +102,14 @@ impl Role {
             Key::Title | Key::Note => !among(WORDS) && self != Self::OfModel,
             Key::Repeat | Key::Step | Key::First => signal || self == Self::Word,
             Key::Type => !among(&[Self::Address, Self::OfModel]),
-            Key::Bytes => signal || among(WORDS) || among(PLACED),
+            Key::Bytes => signal || among(RUNS) || among(WORDS) || among(PLACED),
             Key::Bits => signal || among(WORDS) || among(PLACED) || among(IDENTIFIER),
-            Key::As => among(QUANTITIES) || among(&[Self::Text, Self::Bytes, Self::PackedDecimal, Self::PackedText]),
-            Key::Fill => self == Self::Text,
+            Key::As => {
+                among(QUANTITIES)
+                    || among(RUNS)
+                    || among(&[Self::Text, Self::Bytes, Self::PackedDecimal, Self::PackedText])
+            }
+            Key::Fill => among(&[Self::Text, Self::LongText]),
             Key::Scale | Key::Offset => among(&[Self::Number, Self::Address, Self::OfModel]),
             Key::Unit => among(QUANTITIES) || self == Self::OfModel,
             Key::Range => among(QUANTITIES) || among(PACKED_NUMBERS) || among(&[Self::Address, Self::OfModel]),
@@ -116,9 +127,9 @@ impl Role {
             Key::Normal | Key::Continues => among(&[Self::Identifier, Self::Header]),
             Key::Default => among(QUANTITIES) || among(&[Self::Named, Self::Text, Self::Bytes, Self::OfModel]),
             Key::Outside | Key::Examples => self == Self::Address,
-            Key::Reply => signal || among(&[Self::Word, Self::Packed]),
-            Key::In => signal || among(&[Self::Constant, Self::Packed]),
-            Key::Models => signal || self == Self::Packed,
+            Key::Reply => signal || among(RUNS) || among(&[Self::Word, Self::Packed]),
+            Key::In => signal || among(RUNS) || among(&[Self::Constant, Self::Packed]),
+            Key::Models => signal || among(RUNS) || self == Self::Packed,
         }
     }
 
@@ -167,6 +178,14 @@ impl Role {
                 Numeral::Unsigned | Numeral::Signed => Self::PackedNumber,
                 Numeral::Bcd => Self::PackedDecimal,
             },
+        }
+    }
+
+    /// Returns the role of a text that no eight bytes can hold.
+    pub fn of_run(encoding: &Encoding) -> Self {
+        match encoding.text_form() {
+            Some(TextForm::Hexadecimal) => Self::LongBytes,
+            Some(TextForm::Ascii { .. }) | None => Self::LongText,
         }
     }
 

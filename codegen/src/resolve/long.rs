@@ -8,8 +8,8 @@ use super::arrays::Windowed;
 use super::fields::Leaves;
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Array, ArrayId, Carrier, Doc, Element, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, ModelId,
-    Numeral, OfModel, Parts, Range, Reserved, Signal, SignalId, Table, TransportId,
+    Array, ArrayId, ByteRun, Carrier, Doc, Element, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId,
+    ModelId, Numeral, OfModel, Parts, Range, Reserved, Signal, SignalId, Table, TransportId, Varying,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -28,6 +28,9 @@ pub const MOST_BYTES: u16 = 4095;
 
 /// Data bytes that the first frame of ISO-TP has.
 const FIRST_BYTES: usize = 6;
+
+/// Most data bytes of a frame.
+const ONE_FRAME: usize = 8;
 
 /// What a long message is, whatever carries it.
 #[derive(Clone, Copy)]
@@ -55,18 +58,24 @@ impl Resolver<'_> {
         id: MessageId,
         path: &Path,
         message: &ast::Message,
-        contents: Leaves,
+        mut contents: Leaves,
         head: Head,
         length: u8,
     ) -> Carried {
         let at = path.key("length");
+        let is_long = message.parts.is_some() || message.via.is_some();
+        let (range, written) = match &message.length.0[..] {
+            [range] if is_long && range.contains("..") => (Some(range), &[][..]),
+            written => (None, written),
+        };
+        self.bound(&at, range, &mut contents);
         if let (Some(_), Some(_)) = (&message.parts, &message.via) {
             let text = format!("`{}` has both `parts` and `via`", head.name);
             let help = "numbered parts need no transport; write one of the two";
             self.error_with_help(&rules::TRANSPORT, path.key("via").at_key(), text, help);
         }
         if let Some(name) = &message.via {
-            let lengths = self.long_lengths(&at, &message.length.0);
+            let lengths = self.long_lengths(&at, written);
             let Some(transport) = self.transport(&path.key("via"), name) else {
                 let given_up = contents.names().collect();
                 return Carried { leaves: Leaves { given_up, ..Leaves::default() }, long: None, lengths: Vec::new() };
@@ -80,7 +89,7 @@ impl Resolver<'_> {
             let lengths = known.map(|long| (0..=8).filter(|bytes| long.has_length(usize::from(*bytes))).collect());
             return Carried { leaves, long, lengths: lengths.unwrap_or_default() };
         }
-        let lengths = self.lengths(&at, &message.length.0, length);
+        let lengths = self.lengths(&at, written, length);
         let (leaves, long) = match &message.parts {
             Some(parts) => {
                 self.refuse_constants(&contents);
@@ -99,7 +108,8 @@ impl Resolver<'_> {
         let window = first.min(last);
         let [Ok(from @ 0..8), Ok(to @ 0..8)] = [first - window, last - window].map(u8::try_from) else {
             let text = format!("`{text}` has {} bytes", first.abs_diff(last) + 1);
-            self.error_with_help(&rules::PLACE, path.at_value(), text, "a field has at most 8 bytes; make two of it");
+            let help = "only a text and raw bytes have more than 8; make two fields of any other";
+            self.error_with_help(&rules::PLACE, path.at_value(), text, help);
             return None;
         };
         Some((window, Place::bytes(from, to)))
@@ -271,6 +281,14 @@ impl Resolver<'_> {
             self.error_with_help(&rules::TRANSPORT, at.at_key(), text, "take `length` out");
             return None;
         }
+        let is_plain = long.shortest() <= ONE_FRAME && self.tables.transports[transport].standard.has_plain_frames();
+        if let Some((signal, _)) = long.open_text().filter(|_| is_plain) {
+            let text = format!("a message of up to 8 bytes is one frame, in which `{}` cannot be open", signal.name);
+            let help =
+                "let the length begin at 9 or more, or make an array of it: `{bytes: 0, repeat: 1..400, as: text}`";
+            self.error_with_help(&rules::TRANSPORT, at.at_value(), text, help);
+            return None;
+        }
         let cut = long.lengths.iter().find_map(|length| {
             let is_cut = |signal: &&Signal| (signal.bytes().start + 1..signal.reach()).contains(&usize::from(*length));
             Some((length, long.content.signals.iter().find(is_cut)?))
@@ -301,21 +319,21 @@ impl Resolver<'_> {
                 None
             };
         }
-        let Some(array) = long.varying() else { return Some(()) };
-        let at = array.doc.path.key("repeat");
-        let others = content.arrays.iter().filter(|other| other.least.is_some());
-        if let Some(other) =
-            others.into_iter().find(|other| (other.least, other.elements.len()) != (array.least, array.elements.len()))
-        {
-            let text = format!("`{}` and `{}` vary in length, each in its own way", array.name, other.name);
-            return refuse(&at, text, "only one field has a range in `repeat`, and it stands last");
+        let mut varying = long.all_varying();
+        let Some(field) = varying.next() else { return Some(()) };
+        let at = field.doc.path.key(if field.is_text { "bytes" } else { "repeat" });
+        let is_alike =
+            |other: &Varying| (other.is_text, other.least, other.most) == (field.is_text, field.least, field.most);
+        if let Some(other) = varying.find(|other| !is_alike(other)) {
+            let text = format!("`{}` and `{}` vary in length, each in its own way", field.name, other.name);
+            return refuse(&at, text, "only one field has a range in `repeat` or ends open, and it stands last");
         }
-        let is_of_array = |signal: &&Signal| long.counted(signal).is_some();
-        let start = content.signals.iter().filter(is_of_array).map(|signal| signal.bytes().start).min().unwrap_or(0);
-        let mut others = content.signals.iter().filter(|signal| !is_of_array(signal));
+        let is_its = |signal: &&Signal| long.counted(signal).is_some() || signal.run.is_some_and(ByteRun::varies);
+        let start = content.signals.iter().filter(is_its).map(|signal| signal.bytes().start).min().unwrap_or(0);
+        let mut others = content.signals.iter().filter(|signal| !is_its(signal));
         if let Some(other) = others.find(|signal| signal.reach() > start) {
-            let text = format!("`{}` stands behind `{}`, whose length varies", other.name, array.name);
-            return refuse(&at, text, "an array of varying length stands last");
+            let text = format!("`{}` stands behind `{}`, whose length varies", other.name, field.name);
+            return refuse(&at, text, "a field of varying length stands last");
         }
         Some(())
     }
@@ -391,7 +409,8 @@ impl Resolver<'_> {
 
 /// Returns the signals that end in a frame of some bytes, and the arrays that have elements there.
 fn in_one_frame(whole: &Leaves, bytes: usize) -> (Vec<Signal>, Table<ArrayId, Array>) {
-    let signals: Vec<_> = whole.signals.iter().filter(|signal| signal.reach() <= bytes).filter_map(in_frame).collect();
+    let signals = whole.signals.iter().filter(|signal| signal.run.is_none() && signal.reach() <= bytes);
+    let signals: Vec<_> = signals.filter_map(in_frame).collect();
     let has_element = |array: &ArrayId| signals.iter().filter_map(|signal| signal.element).any(|of| of.array == *array);
     let kept: Vec<ArrayId> = whole.arrays.ids().filter(has_element).collect();
     let arrays = kept.iter().map(|id| Array { least: None, ..whole.arrays[*id].clone() }).collect();

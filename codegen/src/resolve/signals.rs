@@ -97,6 +97,7 @@ impl Resolver<'_> {
             types: merged.types.clone(),
             window: 0,
             place,
+            run: None,
             encoding,
             unit,
             range,

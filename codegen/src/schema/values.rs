@@ -22,6 +22,10 @@ const RANGE: Form = Form { pattern: r"N\.\.N( [^0-9 ]+)?", message: "Write the l
 /// From the most to the least significant.
 pub const PLACE: Form = Form { pattern: r"N(\.\.N)?", message: "Write `7..4` or one number." };
 
+/// A text can end where the message ends.
+const BYTES: Form = Form { pattern: r"N(\.\.(N)?)?", message: "Write `0..3` or one number." };
+const LENGTH: Form = Form { pattern: PLACE.pattern, message: "Write one number, or `0..400` for an open text." };
+
 /// What a value must be, beyond its kind.
 enum Demand {
     /// A text has a form.
@@ -42,7 +46,7 @@ const FORMS: [(&str, &str, Form); 15] = [
     ("Access", "report", NUMBER),
     ("Access", "request", NUMBER),
     ("Example", "count", NUMBER),
-    ("Message", "length", NUMBER),
+    ("Message", "length", LENGTH),
     ("Message", "match", NUMBER),
     ("Message", "send", NUMBER),
     ("Parts", "data", PLACE),
@@ -81,7 +85,7 @@ fn kinds() -> Vec<&'static str> {
 /// Returns what the value of a field's key must be.
 fn of_field(key: Key) -> Demand {
     match key {
-        Key::Bytes => Demand::Form(Form { message: "Write `0..3` or one number.", ..PLACE }),
+        Key::Bytes => Demand::Form(BYTES),
         Key::Bits => Demand::Form(PLACE),
         Key::Repeat => Demand::Form(Form { message: "Write `3`, or `1..48` in a message of parts.", ..PLACE }),
         Key::Step | Key::First => Demand::Form(NUMBER),

@@ -188,8 +188,8 @@ impl<R: Raw, F: Physical<R>> LongSignal<R, F> {
 #[derive(Debug)]
 pub struct LongPayload<'a> {
     /// The message, and the limits that its values keep to.
-    rules: Payload,
-    data: &'a mut [u8],
+    pub(super) rules: Payload,
+    pub(super) data: &'a mut [u8],
     /// The number of bytes, if the message can have several.
     length: Option<usize>,
     /// The least and the greatest number of elements of arrays that vary in length, if there are any.
@@ -220,8 +220,8 @@ impl<'a> LongPayload<'a> {
         self.elements
     }
 
-    /// Takes the number of elements of an array.
-    fn count(&mut self, signal: &'static str, count: usize) -> Result<(), Error> {
+    /// Takes the number of elements of an array, or of bytes of a text.
+    pub(super) fn count(&mut self, signal: &'static str, count: usize) -> Result<(), Error> {
         let (minimum, maximum) = match self.elements {
             Some(elements) => (elements, elements),
             None => self.limits.unwrap_or((0, usize::MAX)),

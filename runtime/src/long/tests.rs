@@ -3,7 +3,7 @@
 use std::string::ToString;
 
 use super::*;
-use crate::{Payload, Place, Signal};
+use crate::{Bytes, Payload, Place, Signal, Text};
 
 /// Eleven bytes at most: a count of cycles, four valves of two bits each, and one to four cells of two bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,4 +111,130 @@ fn elements_can_run_against_the_order_of_bytes_and_bits() {
     )
     .expect("three bits each");
     assert_eq!(data, [0x01, 0x4A]);
+}
+
+/// A code of two bytes, a name of nine letters in messages of at least eleven bytes, and a serial number of 12.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plate {
+    code: u16,
+    name: Text<9, b' '>,
+    serial: Option<Bytes<12>>,
+}
+
+impl Plate {
+    const CODE: LongSignal<u16> = LongSignal::new(0, Signal::new("code", Place::bytes(0, 1)));
+    const NAME: LongText<Text<9, b' '>> = LongText::new(2, Signal::new("name", Place::byte(0)));
+    const SERIAL: LongText<Bytes<12>> =
+        LongText::new(11, Signal::new("serial", Place::byte(0)).lacking(&[(7, 0xFF, 0)]));
+}
+
+impl LongLayout for Plate {
+    const MESSAGE: &'static str = "plate";
+    const SHORTEST: usize = 11;
+    const LONGEST: usize = 23;
+    const DECODE: fn(&[u8]) -> Self = |data| Self {
+        code: Self::CODE.read(data, Signal::get),
+        name: Self::NAME.read(data),
+        serial: Self::SERIAL.read_optional(data),
+    };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        payload.end_after(11);
+        if message.serial.is_some() {
+            payload.end_after(23);
+        }
+        Self::CODE.write(message.code, payload, Signal::put)?;
+        Self::NAME.write(&message.name, payload)?;
+        Self::SERIAL.write_optional(&message.serial, payload)
+    };
+}
+
+#[test]
+fn a_text_of_more_than_eight_bytes_has_them_in_their_order() {
+    let data = *b"\x01\x02PUMP 4711\0\x01\x02\x03\x04\x05\x06\x07\x08\x09\x0A\x0B";
+    let plate = Plate::decode(&data).expect("all bytes");
+    assert_eq!((plate.code, plate.name.as_str()), (0x0102, Some("PUMP 4711")));
+    assert_eq!(plate.serial, Bytes::from_hex("000102030405060708090A0B"));
+    assert_eq!(plate.encode(&mut [0xEE; 23]), Ok(&data[..]));
+    let short = Plate::decode(&data[..22]).expect("the name came");
+    assert_eq!((short.serial, short.encode(&mut [0xEE; 11])), (None, Ok(&data[..11])));
+    assert_eq!(plate.encode(&mut [0; 22]), Err(Error::Room { message: "plate", length: 23, room: 22 }));
+    assert_eq!((Plate::NAME.reach(4), Plate::NAME.byte().own_name()), (6, "name"));
+}
+
+#[test]
+fn a_text_cannot_be_left_out_before_the_end() {
+    let mut data = [0; 23];
+    let mut payload = LongPayload::new(Payload::new("plate", [0; 8]), None, &mut data);
+    payload.end_after(22);
+    assert_eq!(Plate::SERIAL.write_optional(&None, &mut payload), Ok(()));
+    payload.end_after(23);
+    let missing = Error::Missing { message: "plate", signal: "serial" };
+    assert_eq!(Plate::SERIAL.write_optional(&None, &mut payload), Err(missing));
+}
+
+#[test]
+fn a_device_model_has_only_blank_bytes_where_it_lacks_a_text() {
+    let on = |model| Payload::within_limits("plate", [0; 8]).for_model(Some(model));
+    let plate = |serial| Plate { code: 1, name: Text::default(), serial: Some(Bytes::new(serial)) };
+    let mut last = [0; 12];
+    last[11] = 1;
+    assert!(plate([0; 12]).encode_by(on(7), &mut [0; 23]).is_ok());
+    let refused = Error::Meaning { message: "plate", signal: "serial" };
+    assert_eq!(plate(last).encode_by(on(7), &mut [0; 23]), Err(refused));
+    assert!(plate(last).encode_by(on(8), &mut [0; 23]).is_ok());
+}
+
+/// A count, and 2 to 6 letters or bytes behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Open<T> {
+    count: u8,
+    text: T,
+}
+
+impl<T: ByteRun + 'static> Open<T> {
+    const COUNT: LongSignal<u8> = LongSignal::new(0, Signal::new("count", Place::byte(0)));
+    const TEXT: LongText<T> = LongText::new(1, Signal::new("text", Place::byte(0))).at_least(2);
+}
+
+impl<T: ByteRun + 'static> LongLayout for Open<T> {
+    const MESSAGE: &'static str = "open";
+    const SHORTEST: usize = 3;
+    const LONGEST: usize = 7;
+    const ELEMENTS: Option<(usize, usize)> = Some((2, 6));
+    const BYTES: fn(usize) -> usize = |elements| Self::TEXT.reach(elements).max(Self::SHORTEST);
+    const DECODE: fn(&[u8]) -> Self =
+        |data| Self { count: Self::COUNT.read(data, Signal::get), text: Self::TEXT.read(data) };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::COUNT.write(message.count, payload, Signal::put)?;
+        Self::TEXT.write(&message.text, payload)
+    };
+}
+
+#[test]
+fn an_open_text_is_as_long_as_it_must_be_and_what_follows_fills_it_up() {
+    let written = |text: &str, expected: &[u8], rest: &[u8]| {
+        let open = Open { count: 5, text: Text::<6, b'_'>::new(text).expect("at most six letters") };
+        let mut buffer = [0xEE; 7];
+        let written = open.encode(&mut buffer).map(<[u8]>::to_vec);
+        assert_eq!(written.as_deref(), Ok(expected));
+        assert_eq!(buffer[expected.len()..], *rest);
+        assert_eq!(Open::decode(expected), Some(open));
+    };
+    written("", b"\x05__", b"____");
+    written("A", b"\x05A_", b"____");
+    written("A_CD", b"\x05A_CD", b"__");
+    written("ABCDEF", b"\x05ABCDEF", b"");
+    assert_eq!(Open::<Text<6, b'_'>>::decode(b"\x05A"), None);
+    let longer = Open::<Text<6, b'_'>>::decode(b"\x05AB____XY").expect("enough bytes");
+    assert_eq!((longer.text.as_str(), longer.encode(&mut [0; 7])), (Some("AB"), Ok(&b"\x05AB"[..])));
+}
+
+#[test]
+fn all_bytes_of_open_raw_bytes_belong_to_them() {
+    let data = [5, 1, 0, 0];
+    let open = Open::<Elements<u8, 6>>::decode(&data).expect("enough bytes");
+    assert_eq!(*open.text, [1, 0, 0]);
+    assert_eq!(open.encode(&mut [0xEE; 7]), Ok(&data[..]));
+    let one = Open { count: 5, text: Elements::<u8, 6>::from_fn(1, |_| 9) };
+    assert_eq!(one.encode(&mut [0xEE; 7]), Ok(&[5, 9, 0][..]));
 }

@@ -2,9 +2,9 @@
 
 use canspec_codegen::interpret::{
     Assembled, Assembly, Content, Decoded, Frame, Input, Problem, Reading, Unrecognised, Value as Meaning, decode,
-    encode, encode_long, escape, physical,
+    encode, encode_long, escape,
 };
-use canspec_codegen::model::{Encoding, Kind, LongMessage, Message, ModelId, Protocol, Signal};
+use canspec_codegen::model::{Encoding, Id, Kind, LongMessage, Message, ModelId, Protocol, Signal};
 use canspec_codegen::number::Rational;
 use serde_yaml::Value;
 
@@ -126,7 +126,7 @@ impl Draft {
         let (_, long) = protocol.long_message(message).filter(|_| !decoded.signals.is_empty())?;
         let parts = long.parts()?;
         let (number, data) = (message[parts.number].place, message[parts.data].place);
-        let varying = long.varying().and_then(|array| Some(array.least?..=array.elements.len()));
+        let varying = long.varying().map(|field| field.least..=field.most);
         let count = varying.map(|counts| self.random.usize(counts));
         let mut assembly = Assembly::default();
         assembly.count_as(count);
@@ -186,8 +186,7 @@ impl Draft {
             let raws = protocol[address.address_type].raw_ranges();
             protocol[address.field].put(id, raws.first().map_or(0, |(first, _)| *first))
         });
-        let least = long.varying().and_then(|array| Some((array.least?, array.elements.len())));
-        let count = least.map(|(least, most)| self.random.usize(least..=most));
+        let count = long.varying().map(|field| self.random.usize(field.least..=field.most));
         let signals = long.content.signals.iter().filter(|signal| long.is_among(count, signal));
         let content = Content {
             message: long.content.name.clone(),
@@ -219,8 +218,13 @@ impl Draft {
 
     /// Returns random bits of a signal.
     fn input(&mut self, protocol: &Protocol, signal: &Signal) -> Input {
+        if let Some(run) = signal.run {
+            let count = self.random.u16(run.least..=run.most);
+            let bytes = (0..count).map(|_| self.random.u8(b' '..=b'~')).collect();
+            return Input::Bytes { bytes, text: None };
+        }
         let bits = self.random.u64(..) & signal.place.max();
-        Input::of(protocol, signal, &physical(protocol, signal, bits), bits)
+        Input::of(protocol, signal, &Reading::of(protocol, (Id::new(0), signal), bits))
     }
 
     /// Writes some numbers as rounded ones.

@@ -19,6 +19,16 @@ pub struct Site<'a> {
     pub is_member: bool,
 }
 
+/// The number of data bytes of a message that is longer than a frame.
+pub enum Length {
+    /// Without and with the last field.
+    Fixed([u16; 2]),
+    /// Any number of elements decides.
+    Elements,
+    /// The last text is open, and the message says how long it can be.
+    Open(String),
+}
+
 impl Draft {
     /// Returns the fields of a message.
     pub fn fields(&mut self, site: &Site) -> Map {
@@ -38,9 +48,8 @@ impl Draft {
         fields
     }
 
-    /// Returns the fields of a message that is longer than a frame. If the last one does not vary in length, it also
-    /// returns how many bytes the message has without and with it.
-    pub fn long_fields(&mut self) -> (Map, Option<[u16; 2]>) {
+    /// Returns the fields of a message that is longer than a frame, and how long it is.
+    pub fn long_fields(&mut self) -> (Map, Length) {
         let (mut fields, mut scope, mut first) = (Map::default(), Scope::default(), 0);
         for _ in 0..self.random.u8(1..5) {
             let count = self.random.u8(1..=8);
@@ -49,6 +58,22 @@ impl Draft {
             let name = self.names.plain(&mut scope);
             fields.put(name, field);
             first += count + self.random.u8(..2);
+        }
+        if self.chance(30) {
+            let count = self.random.u8(9..=40);
+            let mut text = Map::of([("bytes", format!("{first}..{}", first + count - 1))]);
+            self.long_text(&mut text);
+            let name = self.names.plain(&mut scope);
+            fields.put(name, text);
+            first += count;
+        }
+        if self.chance(25) {
+            let mut text = Map::of([("bytes", format!("{first}.."))]);
+            self.long_text(&mut text);
+            let name = self.names.plain(&mut scope);
+            fields.put(name, text);
+            let least = u16::from(first) + self.random.u16(9..20);
+            return (fields, Length::Open(format!("{least}..{}", least + self.random.u16(1..300))));
         }
         let varies = self.random.bool();
         let (size, most) = (self.random.u8(1..=4), self.random.u8(2..=30));
@@ -64,7 +89,7 @@ impl Draft {
         let name = self.names.plain(&mut scope);
         fields.put(name, array);
         let whole = u16::from(first) + u16::from(size) * u16::from(most);
-        (fields, if varies { None } else { Some([u16::from(first), whole]) })
+        (fields, if varies { Length::Elements } else { Length::Fixed([u16::from(first), whole]) })
     }
 
     /// Returns a field of `count` bytes.
@@ -304,6 +329,16 @@ impl Draft {
         }
         self.remark(&mut known);
         known
+    }
+
+    /// Says what a text is that no place holds.
+    fn long_text(&mut self, field: &mut Map) {
+        field.put("as", self.one(&["text", "bytes"]));
+        if field.text("as") == "text" && self.chance(30) {
+            field.put("fill", self.one(&["0", "0x20", "255", "0x41"]));
+        }
+        self.only_on_some(field, 8);
+        self.remark(field);
     }
 
     fn ascii(&mut self, field: &mut Map, count: u8) {

@@ -3,7 +3,7 @@
 use serde_yaml::{Mapping, Value};
 
 use super::draft::Draft;
-use super::fields::Site;
+use super::fields::{Length, Site};
 use super::identifier::{Bus, Chooser, Mode};
 use super::names::Scope;
 use super::yaml::{Map, list};
@@ -279,10 +279,14 @@ impl Draft {
         let is_sent = accesses.iter().any(|access| access.sends);
         let is_by_command = !first.has_command && !has_register;
         if bus.transport.is_some() && is_by_command && self.chance(50) {
-            let (fields, lengths) = self.long_fields();
+            let (fields, length) = self.long_fields();
             message.put("via", TRANSPORT);
-            if let Some(lengths) = lengths.filter(|_| self.chance(40)) {
-                message.put("length", list(lengths.map(|length| length.to_string())));
+            match length {
+                Length::Fixed(lengths) if self.chance(40) => {
+                    message.put("length", list(lengths.map(|length| length.to_string())));
+                }
+                Length::Open(range) => message.put("length", range),
+                Length::Fixed(_) | Length::Elements => {}
             }
             message.put("fields", fields);
         } else if bus.header_bytes < 5 && !is_sent && self.chance(25) {
@@ -308,10 +312,10 @@ impl Draft {
         }
         let last = self.random.u8(data..8);
         parts.put("data", format!("{data}..{last}"));
-        let (fields, lengths) = self.long_fields();
+        let (fields, length) = self.long_fields();
         let ordinary = |access: &&Access| access.role == Role::Ordinary && !access.has_command;
         let access = traffic.accesses.iter().find(ordinary).cloned();
-        if let Some(access) = access.filter(|_| lengths.is_none() && self.random.bool()) {
+        if let Some(access) = access.filter(|_| !matches!(length, Length::Fixed(_)) && self.random.bool()) {
             let (name, value) = self.command(bus, traffic);
             let mut counting = Map::of([("match", Map::of([(name, value)]))]);
             counting.put("access", list([access.name]));
@@ -320,6 +324,9 @@ impl Draft {
             parts.put("count", format!("{name}.value"));
         }
         message.put("parts", parts);
+        if let Length::Open(range) = length {
+            message.put("length", range);
+        }
         message.put("fields", fields);
     }
 

@@ -5,8 +5,8 @@ use canspec_runtime::plumbing::ByteOrder;
 
 use super::shown;
 use crate::encoding::Words;
-use crate::interpret::physical;
-use crate::model::{Protocol, Signal};
+use crate::interpret::Reading;
+use crate::model::{Id, Protocol, Signal};
 
 /// Says what a signal would be by the other byte order, if nothing is odd about it then.
 pub fn explain(protocol: &Protocol, signal: &Signal, data: [u8; 8]) -> Option<String> {
@@ -20,7 +20,7 @@ pub fn explain(protocol: &Protocol, signal: &Signal, data: [u8; 8]) -> Option<St
         return None;
     }
     let bits = other.place.get(&data);
-    let read = shown(protocol, &other, &physical(protocol, &other, bits), bits);
+    let read = shown(protocol, &other, &Reading::of(protocol, (Id::new(0), &other), bits));
     Some(format!(
         "with `bytes: {first}..{last}`, `{}` would be {read}; write that place, or correct the frame",
         signal.name

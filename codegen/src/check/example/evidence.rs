@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 
 use super::shown;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::interpret::{Frame, Reading, decode};
+use crate::interpret::{Frame, decode};
 use crate::model::{Meaning, MessageId, Protocol, Signal, SignalId, StatusBit};
 use crate::resolve::rules;
 use crate::syntax::tree::{Content, Path};
@@ -93,14 +93,13 @@ pub fn collect(protocol: &Protocol) -> IndexMap<(MessageId, SignalId), Vec<Evide
             if !signal.encoding.by_model().is_empty() {
                 continue;
             }
-            let Reading { bits, value, .. } = reading;
-            let read = shown(protocol, signal, value, *bits);
+            let (bits, read) = (reading.bits, shown(protocol, signal, reading));
             fields.entry((decoded.message, meaning.signal)).or_default().push(Evidence {
                 meaning,
                 data,
                 reserved: decoded.reserved,
-                bits: *bits,
-                agrees: meaning.is(signal, *bits),
+                bits,
+                agrees: meaning.is(signal, bits),
                 read,
             });
         }

@@ -61,5 +61,5 @@ fn limit<'a>(protocol: &'a Protocol, example: &Example, message: MessageId, read
     let (minimum, maximum) = (range.minimum.to_f64(), range.maximum.to_f64());
     let beyond = (minimum - number).max(number - maximum) / (maximum - minimum);
     let at = of_model.map_or(&signal.range_path, |own| &own.path).clone();
-    Some(Limit { signal, range, at, value: shown(protocol, signal, &reading.value, reading.bits), beyond })
+    Some(Limit { signal, range, at, value: shown(protocol, signal, reading), beyond })
 }

@@ -4,8 +4,8 @@ use canspec_runtime::Place;
 
 use super::{Checked, misfitting, shown, wrong};
 use crate::diagnostic::{At, Diagnostic};
-use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, decode, encode_long};
-use crate::model::{LongExample, LongMessage, Protocol, Standard, TransportFrame};
+use crate::interpret::{Assembled, Assembly, Content, Decoded, Form, Frame, Value, decode, encode_long};
+use crate::model::{LongExample, LongMessage, Protocol, Said, Standard, TransportFrame};
 use crate::resolve::rules;
 
 /// Decodes the frames, joins their parts, compares the values, and makes the frames again.
@@ -122,8 +122,12 @@ impl Checker<'_> {
             let Some(reading) = reading else {
                 return Err(wrong(meaning.path.at_value(), format!("the frames have no `{}`", signal.name)));
             };
-            if !meaning.is(signal, reading.bits) {
-                let read = shown(self.protocol, signal, &reading.value, reading.bits);
+            let is_said = match &meaning.said {
+                Ok(Said::Text(text)) => reading.value == Value::Text(text.clone()),
+                _ => meaning.is(signal, reading.bits),
+            };
+            if !is_said {
+                let read = shown(self.protocol, signal, reading);
                 let text = format!("`{}` is {} here, but the frames say {read}", signal.name, meaning.text);
                 return Err(wrong(meaning.path.at_value(), text));
             }

@@ -56,7 +56,7 @@ fn flaw(protocol: &Protocol, long: &LongMessage, layout: &FrameLayout) -> Option
 /// Tests whether a signal has bits of the header.
 fn is_covered(signal: &Signal, layout: &FrameLayout) -> bool {
     let header = layout.covered.to_be_bytes();
-    let own = header.into_iter().skip(signal.window.into()).zip(signal.place.mask());
+    let own = header.into_iter().skip(signal.window.into()).zip(signal.masks());
     own.into_iter().any(|(header, mask)| header & mask != 0)
 }
 

@@ -60,7 +60,9 @@ local function define_signal(signal, prefix)
     signal.field = define(ProtoField.string(name, text))
   end
   if signal.specials then signal.name_field = define(ProtoField.string(name .. ".name", text)) end
-  if signal.specials or signal.numeral or (signal.shown ~= "integer" and signal.shown ~= "bits") then
+  if signal.most then
+    signal.raw_field = define(ProtoField.string(name .. ".raw", "raw"))
+  elseif signal.specials or signal.numeral or (signal.shown ~= "integer" and signal.shown ~= "bits") then
     signal.raw_field = number_field(name .. ".raw", "raw", width, signal.signed, base.DEC_HEX)
   end
   for _, own in pairs(signal.on or {}) do share_fields(own, signal) end
@@ -160,11 +162,18 @@ local function add_bits(item, range, reading)
   return #set > 0 and table.concat(set, " ") or "none"
 end
 
+-- Returns the bytes that a signal stands in.
+local function range_of(tvb, reading)
+  local signal = reading.signal
+  if signal.most then return tvb(signal.window, math.floor(#reading.raw / 2)) end
+  return tvb((signal.window or 0) + signal.place.first, signal.place.count)
+end
+
 -- Adds a signal, and returns its value as a text. Without a physical value, only the raw value is
 -- added.
 local function add_reading(tree, tvb, reading)
   local signal = reading.signal
-  local range = tvb((signal.window or 0) + signal.place.first, signal.place.count)
+  local range = range_of(tvb, reading)
   if reading.value == nil and not reading.name then
     tree:add(signal.raw_field, range, reading.raw):prepend_text(title(signal) .. ", ")
     return "?"

@@ -2,9 +2,11 @@
 --
 -- Joined data are hexadecimal digits, with two points for each byte that did not come.
 
--- Returns how many bytes a long message has at least if it has a signal.
-local function reach(signal)
-  return signal.window + signal.place.first + signal.place.count
+-- Returns how many bytes a long message has at least if it has a signal. `count` is the length of a text that varies.
+local function reach(signal, count)
+  if not signal.most then return signal.window + signal.place.first + signal.place.count end
+  local is_open = count and signal.least < signal.most
+  return signal.window + (is_open and math.min(count, signal.most) or signal.most)
 end
 
 -- Tests whether a signal is there if arrays of varying length have `count` elements.
@@ -16,7 +18,7 @@ end
 local function bytes_with(long, count)
   local bytes = 0
   for _, signal in ipairs(long.signals) do
-    if is_among(signal, count) then bytes = math.max(bytes, reach(signal)) end
+    if is_among(signal, count) then bytes = math.max(bytes, reach(signal, count)) end
   end
   return bytes
 end
@@ -63,18 +65,33 @@ local function came(data, signal)
   return #digits == 2 * place.count and not digits:find("%.")
 end
 
+-- Returns the digits of a text that no place holds, if all its bytes came.
+local function digits_of_text(whole, signal)
+  local first, last = 2 * signal.window, 2 * reach(signal, whole.count)
+  local digits = whole.data:sub(first + 1, last)
+  local is_there = #whole.data >= first and #digits >= 2 * signal.least
+  if is_there and not digits:find("%.") then return digits end
+end
+
+-- Returns what joined data say of a signal, if all its bytes came.
+local function reading_of(whole, signal, model)
+  if not signal.most then
+    return came(whole.data, signal) and reading(window(whole.data, signal, model), signal)
+  end
+  local found = digits_of_text(whole, signal)
+  return found and text_reading(signal, found, model)
+end
+
 -- Returns what joined data say: the signals whose bytes all came, and notes.
 local function readings_of(whole, model)
   local found, notes = {}, {}
   for _, signal in ipairs(whole.long.signals) do
-    if is_among(signal, whole.count) and came(whole.data, signal) then
-      local known = reading(window(whole.data, signal, model), signal)
-      table.insert(found, known)
-      if known.rule then table.insert(notes, known) end
-    end
+    local known = is_among(signal, whole.count) and reading_of(whole, signal, model)
+    if known then table.insert(found, known) end
+    if known and known.rule then table.insert(notes, known) end
   end
   if not whole.is_counted then
-    local text = "nothing says how many of the elements of `" .. whole.long.array .. "` are real"
+    local text = "nothing says how many of the " .. whole.long.varying .. " are real"
     table.insert(notes, { rule = "count", text = text })
   end
   return found, notes

@@ -5,15 +5,15 @@ use super::signal::{signal, wide};
 use super::table::Value;
 use crate::model::{
     Carrier, Continuation, FrameLayout, Groups, LongMessage, Parts, Protocol, SelectorPlace, Signal, Standard,
-    Transport, TransportId,
+    Transport, TransportId, Varying,
 };
 
 pub fn long(protocol: &Protocol, long: &LongMessage) -> Value {
     let lengths = (!long.lengths.is_empty()).then(|| Value::list(&long.lengths, |length| Value::number(*length)));
-    let elements = long.varying().and_then(|array| Some([array.least?, array.elements.len()]));
+    let elements = long.varying().map(|field| [field.least, field.most]);
     let record = Value::record()
         .maybe("lengths", lengths)
-        .maybe("array", long.varying().map(|array| Value::text(&array.name)))
+        .maybe("varying", long.varying().map(varying))
         .maybe("elements", elements.map(|ends| Value::list(ends, |end| Value::Plain(end.to_string()))))
         .with("signals", Value::list(&long.content.signals, |known| long_signal(protocol, long, known)));
     match &long.carrier {
@@ -22,10 +22,18 @@ pub fn long(protocol: &Protocol, long: &LongMessage) -> Value {
     }
 }
 
+/// Names what varies in length.
+fn varying(field: Varying) -> Value {
+    let what = if field.is_text { "bytes" } else { "elements" };
+    Value::text(&format!("{what} of `{}`", field.name))
+}
+
 /// Returns a signal with the first of the eight bytes in which it has its place.
 fn long_signal(protocol: &Protocol, long: &LongMessage, known: &Signal) -> Value {
     signal(protocol, &long.content, known)
         .with("window", Value::number(known.window))
+        .maybe("least", known.run.map(|run| Value::number(run.least)))
+        .maybe("most", known.run.map(|run| Value::number(run.most)))
         .maybe("index", long.counted(known).map(|index| Value::Plain(index.to_string())))
 }
 

@@ -173,14 +173,24 @@ local function not_of_form(signal)
   return nil, "unknown_value", signal.name .. " is not a text of the documented form"
 end
 
-function values.text(signal, raw)
-  local text = ascii(digits(raw, math.floor(signal.place.width / 4)), signal.fill)
+-- Texts of hexadecimal digits: those of characters, and the digits themselves.
+
+local texts = {}
+
+function texts.text(signal, hex)
+  local text = ascii(hex, signal.fill)
   if text then return escaped(text) end
   return not_of_form(signal)
 end
 
-function values.bytes(signal, raw)
-  return digits(raw, math.floor(signal.place.width / 4))
+function texts.bytes(_, hex)
+  return hex
+end
+
+for kind, text in pairs(texts) do
+  values[kind] = function(signal, raw)
+    return text(signal, digits(raw, math.floor(signal.place.width / 4)))
+  end
 end
 
 -- Returns the text of a part of a packed value, if that text gives the same bits again.
@@ -271,4 +281,15 @@ local function reading(frame, known)
   -- Values of all device models stand in one field.
   if signal ~= known and is_number then value = double(value) end
   return { signal = signal, raw = raw, value = value, rule = rule, text = text }
+end
+
+-- Returns what digits say about a text that no place holds. A device model that lacks it has only blank bytes there.
+local function text_reading(signal, hex, model)
+  local value, rule, text = texts[signal.kind](signal, hex)
+  for pair in hex:gmatch("..") do
+    local lacked, is_whole = lack(signal, model, tonumber(pair, 16))
+    if lacked then return { signal = signal, raw = hex, value = value, rule = "model_dependent", text = lacked } end
+    if is_whole then rule, text = nil, nil end
+  end
+  return { signal = signal, raw = hex, value = value, rule = rule, text = text }
 end

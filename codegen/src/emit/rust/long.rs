@@ -61,9 +61,16 @@ fn member(Field { signal, row, .. }: &Field, derives: Derives) -> TokenStream {
     quote!(#comment #attribute pub #name: #kind)
 }
 
-fn signal(Field { signal, start, row }: &Field) -> TokenStream {
+fn signal(Field { signal, start, row, run }: &Field) -> TokenStream {
     let (constant, comment, start) = (&signal.constant, &signal.comment, Literal::u16_unsuffixed(*start));
     let (kinds, value) = (kinds(signal), value(signal));
+    if let Some(run) = run {
+        let least = run.varies().then(|| Literal::u16_unsuffixed(run.least)).into_iter();
+        return quote! {
+            #comment
+            pub const #constant: LongText<#kinds> = LongText::new(#start, #value) #(.at_least(#least))*;
+        };
+    }
     let step = row.as_ref().map(|row| match row.step {
         Step::Bytes(bytes) => {
             let bytes = decimal(bytes);
@@ -126,26 +133,34 @@ struct Varying {
 }
 
 fn varying(Long { fields, shortest, .. }: &Long, [least, most]: [usize; 2]) -> Varying {
-    let arrays = || fields.iter().filter(|field| field.row.as_ref().is_some_and(|row| row.varies));
+    let arrays = || fields.iter().filter(|field| field.varies());
     let constants: Vec<_> = arrays().map(|field| &field.signal.constant).collect();
     let Some((first, others)) = constants.split_first() else { return Varying::default() };
     let least_bytes = (*shortest > 0).then(|| Literal::usize_unsuffixed(*shortest)).into_iter();
     let [least, most] = [least, most].map(Literal::usize_unsuffixed);
+    let is_array = |field: &Field| field.row.is_some();
+    let count = arrays().all(is_array).then(|| {
+        quote! {
+            let count = Self::#first.fitting(data.len()) #(.min(Self::#others.fitting(data.len())))*;
+        }
+    });
     Varying {
         constants: quote! {
             const ELEMENTS: Option<(usize, usize)> = Some((#least, #most));
             const BYTES: fn(usize) -> usize = |elements|
                 Self::#first.reach(elements) #(.max(Self::#others.reach(elements)))* #(.max(#least_bytes))*;
         },
-        count: quote! {
-            let count = Self::#first.fitting(data.len()) #(.min(Self::#others.fitting(data.len())))*;
-        },
+        count: count.unwrap_or_default(),
     }
 }
 
 /// Emits how a field is read.
-fn read(Field { signal, row, .. }: &Field) -> TokenStream {
+fn read(Field { signal, row, run, .. }: &Field) -> TokenStream {
     let (constant, Member { name, get, is_optional, is_at_end, .. }) = (&signal.constant, &signal.member);
+    if run.is_some() {
+        let method = if *is_at_end { quote!(read_optional) } else { quote!(read) };
+        return quote!(#name: Self::#constant.#method(data));
+    }
     if *is_at_end {
         let method = if row.is_some() { quote!(read_optional_array) } else { quote!(read_optional) };
         return quote!(#name: Self::#constant.#method(data, Signal::#get));
@@ -161,8 +176,12 @@ fn read(Field { signal, row, .. }: &Field) -> TokenStream {
 }
 
 /// Emits how a field is written.
-fn write(Field { signal, row, .. }: &Field) -> TokenStream {
-    let (constant, Member { name, put, .. }) = (&signal.constant, &signal.member);
+fn write(Field { signal, row, run, .. }: &Field) -> TokenStream {
+    let (constant, Member { name, put, is_at_end, .. }) = (&signal.constant, &signal.member);
+    if run.is_some() {
+        let method = if *is_at_end { quote!(write_optional) } else { quote!(write) };
+        return quote!(Self::#constant.#method(&message.#name, payload));
+    }
     match row {
         None => quote!(Self::#constant.write(message.#name, payload, Signal::#put)),
         Some(Row { varies: true, .. }) => quote!(Self::#constant.write_some(&message.#name, payload, Signal::#put)),

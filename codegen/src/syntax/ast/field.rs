@@ -122,7 +122,8 @@ macro_rules! keys {
 
 keys! {
     /// Bytes of the frame, 0 to 7, from the most to the least significant: `0..3` is big-endian, `7..4` little-endian,
-    /// `2` a single byte. A field has either `bytes` or `bits`.
+    /// `2` a single byte. A field has either `bytes` or `bits`. A text of a message in several frames can have more than
+    /// eight bytes, and `12..` is one that ends where the message ends.
     Bytes "bytes": bytes: Option<String>, inherited;
     /// Bits of the identifier, or of the word around the field: `31..16`, or `7` for a single bit.
     /// The most significant bit comes first, and bit 0 is the least significant.

@@ -23,7 +23,8 @@ pub struct Message {
     pub answers: Map<String>,
     /// Number of data bytes of its frames, 0 to 8, or a list of several: `4` or `[7, 8]`; the
     /// protocol's `length` if absent. It never chooses the message. Fields beyond the shortest length
-    /// are optional.
+    /// are optional. If the last text of several frames is open, it is the least and the greatest number of data
+    /// bytes in all of them: `0..400`.
     #[serde(default)]
     pub length: Names,
     /// Raw values that fields of the identifier have in frames that are built, in place of their own
@@ -86,8 +87,8 @@ pub struct Parts {
     pub first: ByModel,
     /// Bytes of the frame with the data of the part, the first one first: `1..6`.
     pub data: String,
-    /// Signal of the same device with the number of elements that an array really has:
-    /// `status.cells`. If absent, the number is not known.
+    /// Signal of the same device with the number of elements that an array really has, or of bytes that an open text
+    /// has: `status.cells`. If absent, the number is not known.
     pub count: Option<String>,
 }
 
@@ -117,7 +118,8 @@ pub struct Example {
     /// or `500 V` if there is only one signal. `~51.4 V` is a rounded number. Absent if there are no
     /// signals or no data.
     pub means: Option<Means>,
-    /// How many elements the array of a message in `parts` really has: `13`; not known if absent.
+    /// How many elements the array of a message in `parts` really has, or how many bytes its open text: `13`; not known
+    /// if absent.
     pub count: Option<String>,
     /// Device model that the frame comes from or goes to: `SM_750`. If absent, it is the first
     /// model that has the message, or none if every model has it.

@@ -6,7 +6,9 @@ use quote::{format_ident, quote};
 use super::limits::Limits;
 use super::literal::{Precision, decimal, hexadecimal};
 use crate::emit::Scaled;
-use crate::model::{Doc, Encoding, EnumerationId, Linear, Numeral, Protocol, Signal, StatusWordId, Table, TextForm};
+use crate::model::{
+    ByteRun, Doc, Encoding, EnumerationId, Linear, Numeral, Protocol, Signal, StatusWordId, Table, TextForm,
+};
 use crate::number::Rational;
 use crate::syntax::tree::Path;
 
@@ -57,7 +59,10 @@ impl Coding {
             Encoding::Float => Self { is_float: true, limits, ..Self::raw(raw_type(signal)) },
             Encoding::Named(known) => Self::named(&words.enumerations[*known], &protocol[*known].doc),
             Encoding::Status(known) => Self::named(&words.statuses[*known], &protocol[*known].doc),
-            Encoding::Text(form) => Self::raw(text(signal.place.width(), *form)),
+            Encoding::Text(form) => Self::raw(match signal.run {
+                Some(run) => long_text(run, *form),
+                None => text((signal.place.width() / 8).into(), *form),
+            }),
             Encoding::Packed { .. } => {
                 let packed = words.packed;
                 Self::raw(quote!(#packed))
@@ -176,9 +181,20 @@ impl Integer {
     }
 }
 
-/// Returns the type of a text that takes `width` bits.
-fn text(width: u8, form: TextForm) -> TokenStream {
-    let bytes = Literal::u8_unsuffixed(width / 8);
+/// Returns the type of a text that no place holds.
+fn long_text(run: ByteRun, form: TextForm) -> TokenStream {
+    match form {
+        TextForm::Hexadecimal if run.varies() => {
+            let most = Literal::u16_unsuffixed(run.most);
+            quote!(Elements<u8, #most>)
+        }
+        TextForm::Ascii { .. } | TextForm::Hexadecimal => text(run.most, form),
+    }
+}
+
+/// Returns the type of a text of some number of bytes.
+fn text(bytes: u16, form: TextForm) -> TokenStream {
+    let bytes = Literal::u16_unsuffixed(bytes);
     match form {
         TextForm::Ascii { fill: 0 } => quote!(Text<#bytes>),
         TextForm::Ascii { fill } => {
@@ -202,7 +218,7 @@ impl Part {
     pub fn new(part: &Signal) -> Self {
         let width = part.place.width();
         match part.encoding.text_form() {
-            Some(form) => Self::Text(text(width, form)),
+            Some(form) => Self::Text(text((width / 8).into(), form)),
             None => Self::Number(integer(width, part.encoding.numeral())),
         }
     }

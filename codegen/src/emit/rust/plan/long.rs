@@ -6,7 +6,7 @@ use super::doc::Comment;
 use super::message::Request;
 use super::place::Written;
 use super::signal::Signal;
-use crate::model::{self, LongMessage, LongMessageId, SignalId};
+use crate::model::{self, ByteRun, LongMessage, LongMessageId, SignalId};
 
 /// What several frames carry together.
 pub struct Long {
@@ -64,6 +64,8 @@ pub struct Field {
     pub start: u16,
     /// Where the other elements are, if it is an array.
     pub row: Option<Row>,
+    /// How many bytes it takes, if it is a text that no place holds.
+    pub run: Option<ByteRun>,
 }
 
 /// The elements of an array.
@@ -102,9 +104,9 @@ impl Long {
             message: long.content.name.clone(),
             is_exact: fields.iter().all(|field| field.signal.coding.is_exact()),
             fields,
-            shortest: long.lengths.first().map_or_else(|| long.bytes_with(Some(0)), |length| usize::from(*length)),
+            shortest: long.least(),
             longest: long.longest(),
-            elements: long.varying().and_then(|array| Some([array.least?, array.elements.len()])),
+            elements: long.varying().map(|field| [field.least, field.most]),
             lengths,
             are_ones: long.content.reserved.are_ones,
             requests,
@@ -131,6 +133,11 @@ fn lengths(long: &LongMessage, fields: &[(Signal, SignalId)]) -> Vec<Length> {
 }
 
 impl Field {
+    /// Tests whether its length varies.
+    pub fn varies(&self) -> bool {
+        self.row.as_ref().is_some_and(|row| row.varies) || self.run.is_some_and(ByteRun::varies)
+    }
+
     fn new(content: &model::Message, signal: Signal, id: SignalId) -> Self {
         let known = &content[id];
         let row = Row::new(content, known);
@@ -142,9 +149,10 @@ impl Field {
             Some(_) => {
                 format!("The elements of `{}`, to read or write one alone, or to ask for their limits.", signal.name)
             }
-            None => return Self { signal, start: known.window, row },
+            None => return Self { signal, start: known.window, row, run: known.run },
         };
-        Self { signal: Signal { place, comment: Comment::line(comment), ..signal }, start: known.window, row }
+        let signal = Signal { place, comment: Comment::line(comment), ..signal };
+        Self { signal, start: known.window, row, run: None }
     }
 }
 

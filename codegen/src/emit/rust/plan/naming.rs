@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 91] = [
+const TAKEN: [&str; 92] = [
     "Address",
     "AddressType",
     "Addressed",
@@ -55,6 +55,7 @@ const TAKEN: [&str; 91] = [
     "LongLayout",
     "LongPayload",
     "LongSignal",
+    "LongText",
     "Message",
     "Meaning",
     "Mode",

@@ -323,6 +323,14 @@ fn named_values(signal: &model::Signal) -> &[NamedValue] {
 
 /// Writes the place of a signal, or those of the first and the last element of its array.
 fn places(message: &Message, signal: &model::Signal) -> String {
+    let start = signal.window;
+    match signal.run {
+        Some(run) if run.varies() => {
+            return format!("{} to {} bytes from byte {start} on", run.least, run.most);
+        }
+        Some(run) => return format!("bytes {start}..{}", start + run.most - 1),
+        None => {}
+    }
     let mut all = elements(message, signal).map(|element| Written::new(element.place).after(element.window).text());
     let first = all.next().unwrap_or_default();
     all.last().map_or_else(|| first.clone(), |last| format!("{first} to {last}"))

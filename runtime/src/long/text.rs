@@ -1,0 +1,116 @@
+//! Texts of long messages: whole bytes that no place can hold.
+
+use core::marker::PhantomData;
+
+use super::LongPayload;
+use crate::{Elements, Error, Signal};
+
+/// Whole bytes as the value of a field.
+pub trait ByteRun: Copy {
+    /// The greatest number of bytes.
+    const MOST: usize;
+    /// The byte that fills a text up; `None` if each byte is one of the value.
+    const FILL: Option<u8>;
+
+    /// Takes bytes, at most [`MOST`](Self::MOST) of them. Those that are missing fill it up.
+    fn from_slice(bytes: &[u8]) -> Self;
+
+    /// Returns the bytes, with those that fill it up.
+    fn as_slice(&self) -> &[u8];
+}
+
+impl<const N: usize> ByteRun for Elements<u8, N> {
+    const MOST: usize = N;
+    const FILL: Option<u8> = None;
+
+    fn from_slice(bytes: &[u8]) -> Self {
+        Self::from_fn(bytes.len(), |index| bytes.get(index).copied().unwrap_or_default())
+    }
+
+    fn as_slice(&self) -> &[u8] {
+        self
+    }
+}
+
+/// A text of a long message that has more than eight bytes, or any number of them. The same are raw
+/// bytes.
+///
+/// The value is a [`Text`](crate::Text), [`Bytes`](crate::Bytes), or [`Elements`] if their number
+/// varies.
+#[derive(Clone, Copy, Debug)]
+pub struct LongText<T: 'static> {
+    byte: Signal<u8>,
+    start: u16,
+    least: Option<u16>,
+    value: PhantomData<fn() -> T>,
+}
+
+impl<T: ByteRun> LongText<T> {
+    /// Returns a text from byte `start` of the data on. `byte` is what each of its bytes is.
+    pub const fn new(start: u16, byte: Signal<u8>) -> Self {
+        Self { byte, start, least: None, value: PhantomData }
+    }
+
+    /// Lets it end where the data end, with at least this number of bytes.
+    #[must_use]
+    pub const fn at_least(self, least: u16) -> Self {
+        Self { least: Some(least), ..self }
+    }
+
+    /// Returns what is known of each byte.
+    pub const fn byte(&self) -> &Signal<u8> {
+        &self.byte
+    }
+
+    /// Returns how many bytes the data have at least with some number of bytes of the text.
+    pub fn reach(&self, bytes: usize) -> usize {
+        usize::from(self.start).saturating_add(bytes)
+    }
+
+    /// Reads the text.
+    pub fn read(&self, data: &[u8]) -> T {
+        T::from_slice(data.get(self.start.into()..).unwrap_or_default())
+    }
+
+    /// Reads a text that short data lack.
+    pub fn read_optional(&self, data: &[u8]) -> Option<T> {
+        (self.reach(T::MOST) <= data.len()).then(|| self.read(data))
+    }
+
+    /// Writes the text. If it ends where the data end, only as many filling bytes are written as the
+    /// document wants.
+    ///
+    /// # Errors
+    ///
+    /// Refuses bytes that the device model does not have.
+    pub fn write(&self, text: &T, payload: &mut LongPayload<'_>) -> Result<(), Error> {
+        let bytes = text.as_slice();
+        if let Some(least) = self.least {
+            let end = bytes.iter().rposition(|byte| Some(*byte) != T::FILL);
+            let length = end.map_or(0, |last| last.saturating_add(1));
+            payload.count(self.byte.own_name(), length.max(least.into()))?;
+        }
+        let LongPayload { rules, data, .. } = payload;
+        let mut places = data.iter_mut().skip(self.start.into());
+        for byte in bytes {
+            let mut alone = *rules;
+            self.byte.put(*byte, &mut alone)?;
+            places.by_ref().take(1).for_each(|place| *place = *byte);
+        }
+        Ok(())
+    }
+
+    /// Writes a text, if the message is long enough for it.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`write`](Self::write). It also refuses to leave out what the message is long
+    /// enough for.
+    pub fn write_optional(&self, text: &Option<T>, payload: &mut LongPayload<'_>) -> Result<(), Error> {
+        match (text, payload.length()) {
+            (Some(text), _) => self.write(text, payload),
+            (None, Some(length)) if self.reach(T::MOST) > length => Ok(()),
+            (None, _) => Err(Error::Missing { message: payload.rules.message(), signal: self.byte.own_name() }),
+        }
+    }
+}
