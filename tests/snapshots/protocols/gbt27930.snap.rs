@@ -1879,7 +1879,7 @@ pub struct Brm {
     ///
     /// SPN 2573.
     pub ownership: Ownership,
-    /// Vehicle identification number (VIN), first part: bytes 24..31.
+    /// Vehicle identification number (VIN): bytes 24..40.
     ///
     /// SPN 2575.
     ///
@@ -1890,31 +1890,7 @@ pub struct Brm {
     /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
     /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
     /// ones.
-    pub vin_1: Text<8, 0xFF>,
-    /// VIN, second part: bytes 32..39.
-    ///
-    /// SPN 2575.
-    ///
-    /// Erratum X7: printed is "the VIN as optional or mandatory, 10 ms beside the cycle of 250 ms, FF FF FF
-    /// or FF FF 00 at the end", used is "an empty text as no VIN, both times, any last bytes", because
-    /// nothing decides; a receiver bears all of them.
-    ///
-    /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
-    /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
-    /// ones.
-    pub vin_2: Text<8, 0xFF>,
-    /// VIN, last character: byte 40.
-    ///
-    /// SPN 2575.
-    ///
-    /// Erratum X7: printed is "the VIN as optional or mandatory, 10 ms beside the cycle of 250 ms, FF FF FF
-    /// or FF FF 00 at the end", used is "an empty text as no VIN, both times, any last bytes", because
-    /// nothing decides; a receiver bears all of them.
-    ///
-    /// Erratum N3: printed is "text fields without a rule for characters that are missing", used is
-    /// "`0xFF`, so a field that is not sent is an empty text", because fields that are not sent are all
-    /// ones.
-    pub vin_3: Text<1, 0xFF>,
+    pub vin: Text<17, 0xFF>,
     /// Serial number of the software of the BMS: byte 41, only in messages of 49 bytes, raw 255 is
     /// `not_available`.
     ///
@@ -1990,12 +1966,8 @@ impl Brm {
     );
     /// The signal `ownership`, to read or write it alone, or to ask for its limits.
     pub const OWNERSHIP: LongSignal<Ownership> = LongSignal::new(22, Signal::new("ownership", Place::byte(0)));
-    /// The signal `vin_1`, to read or write it alone, or to ask for its limits.
-    pub const VIN_1: LongSignal<Text<8, 0xFF>> = LongSignal::new(24, Signal::new("vin_1", Place::bytes(0, 7)));
-    /// The signal `vin_2`, to read or write it alone, or to ask for its limits.
-    pub const VIN_2: LongSignal<Text<8, 0xFF>> = LongSignal::new(32, Signal::new("vin_2", Place::bytes(0, 7)));
-    /// The signal `vin_3`, to read or write it alone, or to ask for its limits.
-    pub const VIN_3: LongSignal<Text<1, 0xFF>> = LongSignal::new(40, Signal::new("vin_3", Place::byte(0)));
+    /// The signal `vin`, to read or write it alone, or to ask for its limits.
+    pub const VIN: LongText<Text<17, 0xFF>> = LongText::new(24, Signal::new("vin", Place::byte(0)));
     /// The signal `software_number`, to read or write it alone, or to ask for its limits.
     pub const SOFTWARE_NUMBER: LongSignal<u8> = LongSignal::new(
         41,
@@ -2039,9 +2011,7 @@ impl LongLayout for Brm {
         production_day: Self::PRODUCTION_DAY.read(data, |signal, data| signal.get_some(data, 8)),
         charge_count: Self::CHARGE_COUNT.read(data, |signal, data| signal.get_some(data, 8)),
         ownership: Self::OWNERSHIP.read(data, Signal::get),
-        vin_1: Self::VIN_1.read(data, Signal::get),
-        vin_2: Self::VIN_2.read(data, Signal::get),
-        vin_3: Self::VIN_3.read(data, Signal::get),
+        vin: Self::VIN.read(data),
         software_number: Self::SOFTWARE_NUMBER.read_optional(data, Signal::get_some),
         software_day: Self::SOFTWARE_DAY.read_optional(data, Signal::get_some),
         software_month: Self::SOFTWARE_MONTH.read_optional(data, Signal::get_some),
@@ -2068,9 +2038,7 @@ impl LongLayout for Brm {
         Self::PRODUCTION_DAY.write(message.production_day, payload, Signal::put_some)?;
         Self::CHARGE_COUNT.write(message.charge_count, payload, Signal::put_some)?;
         Self::OWNERSHIP.write(message.ownership, payload, Signal::put)?;
-        Self::VIN_1.write(message.vin_1, payload, Signal::put)?;
-        Self::VIN_2.write(message.vin_2, payload, Signal::put)?;
-        Self::VIN_3.write(message.vin_3, payload, Signal::put)?;
+        Self::VIN.write(&message.vin, payload)?;
         Self::SOFTWARE_NUMBER.write(message.software_number, payload, Signal::put_some)?;
         Self::SOFTWARE_DAY.write(message.software_day, payload, Signal::put_some)?;
         Self::SOFTWARE_MONTH.write(message.software_month, payload, Signal::put_some)?;
