@@ -3,6 +3,7 @@
 use std::string::ToString;
 
 use super::*;
+use crate::plumbing::Lack;
 use crate::{Bytes, Payload, Place, Signal, Text};
 
 /// Eleven bytes at most: a count of cycles, four valves of two bits each, and one to four cells of two bytes.
@@ -125,7 +126,7 @@ impl Plate {
     const CODE: LongSignal<u16> = LongSignal::new(0, Signal::new("code", Place::bytes(0, 1)));
     const NAME: LongText<Text<9, b' '>> = LongText::new(2, Signal::new("name", Place::byte(0)));
     const SERIAL: LongText<Bytes<12>> =
-        LongText::new(11, Signal::new("serial", Place::byte(0)).lacking(&[(7, 0xFF, 0)]));
+        LongText::new(11, Signal::new("serial", Place::byte(0)).lacking(&[(7, Lack::Bits(0xFF, 0))]));
 }
 
 impl LongLayout for Plate {
