@@ -234,10 +234,10 @@ fn value(signal: &Value) -> String {
     unit.map_or(text.clone(), |unit| format!("{text} {unit}"))
 }
 
-/// Shows a value without its unit, an array as `[1,2]`, or the raw value of one that has no name.
+/// Shows a value without its unit, an array as `[1,2]`, a line end as `\r\n`, or the raw value of one that has no name.
 fn plain(value: &Value, raw: &Value) -> String {
     match (value, raw) {
-        (Value::String(text), _) => text.clone(),
+        (Value::String(text), _) => text.replace('\r', "\\r").replace('\n', "\\n"),
         (Value::Number(number), _) => number.to_string().trim_end_matches(".0").to_owned(),
         (Value::Array(values), Value::Array(raws)) => {
             let shown: Vec<_> = values.iter().zip(raws).map(|(value, raw)| plain(value, raw)).collect();

@@ -8,7 +8,7 @@ fn an_unknown_key_is_reported_with_the_nearest_and_all_others() {
     let found: Vec<_> = diagnostics.located().collect();
     assert_eq!(diagnostics.concise(), "mini.yaml:9:18: error[unknown_key]: unknown key `tilte`");
     assert_eq!(found[0].place.map(|place| (place.end_line, place.end_column)), Some((9, 23)));
-    let help = "did you mean `title`? allowed here: `time`, `minimum`, `title`, `note`, `section`, `erratum`";
+    let help = "did you mean `title`? allowed here: `time`, `minimum`, `role`, `tries`, `messages`, `title`, `note`, `section`, `erratum`";
     assert_eq!(found[0].help, Some(help));
 }
 
