@@ -295,6 +295,7 @@ impl Protocol for Message {
         }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::MakerPart(message) => task.run(message),

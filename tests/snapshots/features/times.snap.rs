@@ -57,8 +57,8 @@ impl IdentifierFields for Identifier {
     }
 
     #[inline]
-    fn documented_modes(id: u32) -> impl Iterator<Item = bool> {
-        [Self::DIRECTION.of(id) == 0x0 && (0x1..=0x9).contains(&Self::NODE.of(id))].into_iter()
+    fn documented_modes(id: u32) -> u8 {
+        u8::from(Self::DIRECTION.of(id) == 0x0 && (0x1..=0x9).contains(&Self::NODE.of(id)))
     }
 }
 
@@ -290,6 +290,7 @@ impl Protocol for Message {
         if frame.id(Identifier::COMMAND) == 0x01 { &[4] } else { &[] }
     }
 
+    #[inline(always)]
     fn run<T: Task>(&self, task: T) -> T::Output {
         match self {
             Self::Temperature(message) => task.run(message),

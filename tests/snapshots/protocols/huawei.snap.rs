@@ -2187,52 +2187,87 @@ impl Layout for HardwareAddress {
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
 
-/// E-label, six characters in each frame. Section 6.
+/// E-label. Section 6.
 /// - [`read_text`](READ_TEXT_ACCESS): the psu answers (`point_to_point`).
 /// - Request `1081D2FE#0000000000000000`.
-/// - Reply `1081D27F#00012F245B417263`: `part` 1, `characters` 2F245B417263.
+/// - Reply `1081D27F#00012F245B417263`: `part` 1, `data` 2F245B417263.
 ///
-/// The frames together are one text; its lines end with 0D 0A, and 00 ends it and fills up the last
+/// Six characters in each frame; lines end with 0D 0A, and 00 ends the text and fills up the last
 /// frame.
 ///
-/// Erratum N9: printed is "lines that end with 0D 0A anywhere in a frame, and not whether a frame of 00
-/// follows a text that fills the last one", used is "bytes, and any number of frames", because line
-/// ends are no printable characters, and a line end may be cut between two frames.
+/// Erratum N9: printed is "no greatest length, and not whether a frame of 00 follows a text that fills
+/// the last one", used is "up to 1200 characters, and any number of 00 behind them", because the last
+/// printed frame has the number 54, and ends a text of 322 characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ELabel {
-    /// Number of the frame: bytes 0..1.
-    ///
-    /// The first one has 1.
-    pub part: u16,
-    /// Six ASCII characters: bytes 2..7.
-    pub characters: Bytes<6>,
+    /// Text of the label: 0 to 1200 bytes from byte 0 on.
+    pub text: Text<1200>,
 }
 
 impl ELabel {
-    /// The signal `part`, to read or write it alone, or to ask for its limits.
-    pub const PART: Signal<u16> = Signal::new("part", Place::bytes(0, 1));
-    /// The signal `characters`, to read or write it alone, or to ask for its limits.
-    pub const CHARACTERS: Signal<Bytes<6>> = Signal::new("characters", Place::bytes(2, 7));
-    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
-    pub const RESERVED: Data = [0x00; 8];
-    /// The access `read_text`, for filters and blank frames of it.
-    pub const READ_TEXT: Exchange = READ_TEXT_ACCESS.of("e_label", FRAME);
+    /// The signal `text`, to read or write it alone, or to ask for its limits.
+    pub const TEXT: LongText<Text<1200>> = LongText::new(0, Signal::new("text", Place::byte(0))).at_least(0);
 
     /// Builds the request [`read_text`](READ_TEXT_ACCESS).
     ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
-    pub fn read_text(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
-        Self::READ_TEXT.request_to(route, &())
+    pub fn read_text(route: impl Into<Route<Target>>) -> Result<Request<ELabelPart>, Error> {
+        ELabelPart::READ_TEXT.request_to(route, &())
     }
 }
 
-impl Layout for ELabel {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::CHARACTERS];
-    const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), characters: Self::CHARACTERS.get(data) };
+impl LongLayout for ELabel {
+    const MESSAGE: &'static str = "e_label";
+    const SHORTEST: usize = 0;
+    const LONGEST: usize = 1200;
+    const ELEMENTS: Option<(usize, usize)> = Some((0, 1200));
+    const BYTES: fn(usize) -> usize = |elements| Self::TEXT.reach(elements);
+    const DECODE: fn(&[u8]) -> Self = |data| Self { text: Self::TEXT.read(data) };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |message, payload| Self::TEXT.write(&message.text, payload);
+}
+
+/// A part of [`ELabel`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ELabelPart {
+    /// Number of the frame: bytes 0..1, `1..=200`.
+    pub part: u16,
+    /// Data: bytes 2..7.
+    pub data: Bytes<6>,
+}
+
+impl ELabelPart {
+    /// The signal `part`, to read or write it alone, or to ask for its limits.
+    pub const PART: Signal<u16> = Signal::new("part", Place::bytes(0, 1)).limits(1, 200);
+    /// The signal `data`, to read or write it alone, or to ask for its limits.
+    pub const DATA: Signal<Bytes<6>> = Signal::new("data", Place::bytes(2, 7));
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
+    pub const RESERVED: Data = [0x00; 8];
+    /// The access `read_text`, for filters and blank frames of it.
+    pub const READ_TEXT: Exchange = READ_TEXT_ACCESS.of("e_label", FRAME);
+}
+
+impl Layout for ELabelPart {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
+    const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
-        Self::CHARACTERS.put(message.characters, payload)
+        Self::DATA.put(message.data, payload)
+    };
+}
+
+impl Parted for ELabel {
+    type Protocol = Message;
+    type Part = ELabelPart;
+    type Memory = [u8; 1225];
+    const NUMBER: Place = ELabelPart::PART.place();
+    const DATA: Place = ELabelPart::DATA.place();
+    const FIRST: Option<u16> = Some(1);
+    const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::ELabelPart(_) => Said::Part,
+        _ => Said::Nothing,
     };
 }
 
@@ -3093,8 +3128,8 @@ pub enum Message {
     HardwareAddress(HardwareAddress),
     /// The request of `e_label` by `read_text`.
     ReadTextELabel,
-    /// E-label, six characters in each frame.
-    ELabel(ELabel),
+    /// E-label.
+    ELabelPart(ELabelPart),
     /// Output voltage set.
     OutputVoltageSetting(OutputVoltageSetting),
     /// Output voltage off-line.
@@ -3262,7 +3297,7 @@ impl Protocol for Message {
             (0x82, 0x134) => frame.request(&FanMode::GET, Self::GetFanMode),
             (0x40, _) => frame.request(&MeasuredData::READ_ALL, Self::ReadAllMeasuredData),
             (0x50, _) => frame.request(&Information::READ_ALL, Self::ReadAllInformation),
-            (0xD2, _) => frame.request(&ELabel::READ_TEXT, Self::ReadTextELabel),
+            (0xD2, _) => frame.request(&ELabelPart::READ_TEXT, Self::ReadTextELabel),
             _ => frame.unknown(),
         }
     }
@@ -3326,7 +3361,7 @@ impl Protocol for Message {
             (0x11, 0x001) => frame.report(&ReadyState::ANNOUNCE, Self::ReadyState(frame.values())),
             (0x11, 0x002) => frame.report(&CommonLoad::ANNOUNCE, Self::CommonLoad(frame.values())),
             (0x11, 0x003) => frame.report(&ActiveState::ANNOUNCE, Self::ActiveState(frame.values())),
-            (0xD2, _) => frame.reply(&ELabel::READ_TEXT, Self::ELabel(frame.values())),
+            (0xD2, _) => frame.reply(&ELabelPart::READ_TEXT, Self::ELabelPart(frame.values())),
             (0x10, _) => frame.report(&StartUp10::START_UP, Self::StartUp10(frame.values())),
             (0x81, _) => frame.report(&StartUp81::START_UP, Self::StartUp81(frame.values())),
             _ => frame.unknown(),
@@ -3364,7 +3399,7 @@ impl Protocol for Message {
             (0x11, 0x003) => frame.report(&ActiveState::ANNOUNCE, Self::ActiveState(frame.values())),
             (0x40, _) => frame.request(&MeasuredData::READ_ALL, Self::ReadAllMeasuredData),
             (0x50, _) => frame.request(&Information::READ_ALL, Self::ReadAllInformation),
-            (0xD2, _) => frame.request(&ELabel::READ_TEXT, Self::ReadTextELabel),
+            (0xD2, _) => frame.request(&ELabelPart::READ_TEXT, Self::ReadTextELabel),
             (0x81, _) => frame.report(&StartUp81::START_UP, Self::StartUp81(frame.values())),
             _ => frame.unknown(),
         }
@@ -3415,7 +3450,7 @@ impl Protocol for Message {
             Self::Barcode2(message) => task.run(message),
             Self::Versions(message) => task.run(message),
             Self::HardwareAddress(message) => task.run(message),
-            Self::ELabel(message) => task.run(message),
+            Self::ELabelPart(message) => task.run(message),
             Self::OutputVoltageSetting(message) => task.run(message),
             Self::DefaultOutputVoltage(message) => task.run(message),
             Self::OvervoltageProtection(message) => task.run(message),
@@ -3520,7 +3555,7 @@ pub const MESSAGES: &[Entry<Message>] = &[
         &[&Versions::READ_ALL_INFORMATION],
     ),
     Entry::of::<HardwareAddress>("Hardware address", &[("register", 0x006)], &[&HardwareAddress::READ_ALL_INFORMATION]),
-    Entry::of::<ELabel>("E-label, six characters in each frame", &[], &[&ELabel::READ_TEXT]),
+    Entry::of::<ELabelPart>("E-label", &[], &[&ELabelPart::READ_TEXT]),
     Entry::of::<OutputVoltageSetting>("Output voltage set", &[("register", 0x100)], &[&OutputVoltageSetting::SET]),
     Entry::of::<DefaultOutputVoltage>("Output voltage off-line", &[("register", 0x101)], &[&DefaultOutputVoltage::SET]),
     Entry::of::<OvervoltageProtection>(
