@@ -82,7 +82,7 @@ pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// if 64 bits cannot hold it.
     fn raw(self, scale: Scale) -> Option<i64>;
 
-    /// Returns the same raw value as [`raw`](Self::raw), or `None` if so many bits cannot hold it.
+    /// Returns the same raw value as [`raw`](Self::raw), or `None` if `width` bits cannot hold it.
     fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64>;
 
     /// Tests whether a raw value has exactly this physical value.

@@ -120,8 +120,8 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
     /// Tests whether an identifier goes to the controller.
     fn is_to_controller(id: u32) -> bool;
 
-    /// Returns of which of [`Protocol::MODES`] an identifier is a request, as bits from the lowest on. The document names
-    /// all addresses in it.
+    /// Returns the [`Protocol::MODES`] in which an identifier is a request, as bits from the lowest on. The document
+    /// names all addresses in it.
     ///
     /// Bits can lack. A mode without one is then found by its [`Pattern`](crate::plumbing::Pattern), which takes longer.
     #[inline]

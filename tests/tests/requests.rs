@@ -154,6 +154,7 @@ fn an_identifier_keeps_every_field() {
     assert_eq!(identifier.to_raw(), 0x0E9C_F03F);
     assert!(Message::decode(&frame(0x0E9C_F03F, 0)).expect("a reply").frame().is_extended());
 }
+
 #[test]
 fn faults_and_alarms_are_the_set_bits_of_all_status_words_by_severity() {
     let names = |id, length| {

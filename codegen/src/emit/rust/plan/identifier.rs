@@ -193,7 +193,7 @@ fn field_test(protocol: &Protocol, test: &FieldTest) -> Comparison {
     Comparison { place: Some(place), inside: test.inside, ranges }
 }
 
-/// Plans a range of values of so many bits.
+/// Plans a range of values of a field that is `width` bits wide.
 pub fn range((first, last): (u32, u32), width: u8) -> Range {
     let (start, end) = (hexadecimal(first, width), hexadecimal(last, width));
     if first == last { Range::One(start) } else { Range::Span(start, end) }
