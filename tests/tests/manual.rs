@@ -163,9 +163,10 @@ fn a_module_opens_with_the_document_and_its_bus_and_states_its_times() {
     assert!(manual.starts_with(head), "{manual}");
     let one_line = manual.replace("\n//!  ", "");
     for time in [
-        "- Silence after which a module reports `communication_lost` and switches off: 10 s. Section 3.1. 10 s is the \
-        default; any command counts;",
-        "- From one request to the next: 50 to 200 ms, at least 20 ms. Section 3.6. Must be longer than the minimum.",
+        "- Silence after which a module reports `communication_lost` and switches off: 10 s (`watchdog`). Section 3.1. \
+        10 s is the default; any command counts;",
+        "- From one request to the next: 50 to 200 ms, at least 20 ms (`request_gap`). Section 3.6. Must be longer than \
+        the minimum.",
     ] {
         assert!(one_line.contains(time), "{one_line}");
     }

@@ -106,6 +106,9 @@ fn drawn(mistake: Mistake, lines: &[&str], right: &str, random: &mut Rng) -> (us
 fn mistaken(mistake: Mistake, lines: &[&str], random: &mut Rng) -> (usize, Option<String>) {
     loop {
         let index = random.usize(1..lines.len());
+        if is_of_times(&lines[..=index]) {
+            continue;
+        }
         let spans = spans(mistake, lines[index]);
         let Some(span) = random.choice(spans) else { continue };
         let wrong = wrong(mistake, &lines[index][span.clone()], random);
@@ -115,6 +118,12 @@ fn mistaken(mistake: Mistake, lines: &[&str], random: &mut Rng) -> (usize, Optio
             return (index, line);
         }
     }
+}
+
+/// Tests whether the last line is one of `timing`. No frame shows a time, so nothing can contradict one.
+fn is_of_times(lines: &[&str]) -> bool {
+    let mut before = lines.iter().rev();
+    before.find(|line| line.starts_with(|first: char| first.is_ascii_lowercase())) == Some(&"timing:")
 }
 
 /// Returns where a line can be mistaken.
