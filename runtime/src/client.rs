@@ -88,6 +88,8 @@ pub enum Heard<P: Protocol> {
         /// The frame.
         received: Received<P>,
     },
+    /// It refuses a request with another number of bytes than the message has, as an error reply may.
+    ShortRefusal(Ticket),
     /// It would answer a request if it had the right length. The request waits on.
     Broken(Ticket),
     /// It answers a request that was lost.
@@ -183,8 +185,8 @@ impl<P: Protocol, const N: usize> Client<P, N> {
         let received = match Received::decode(frame) {
             Ok(received) => received,
             Err(Problem::Length) => {
-                let broken = entries.find(awaiting).map(|entry| Heard::Broken(entry.ticket));
-                return broken.unwrap_or(Heard::Unrecognised(Problem::Length));
+                let short = entries.find(awaiting).map(|entry| entry.answered_short(frame));
+                return short.unwrap_or(Heard::Unrecognised(Problem::Length));
             }
             Err(problem) => return Heard::Unrecognised(problem),
         };

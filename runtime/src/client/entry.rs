@@ -108,12 +108,26 @@ impl<P: Protocol> Entry<P> {
 
     /// Takes a frame for the answer.
     pub fn answered(&mut self, received: Received<P>, is_refusal: bool) -> Heard<P> {
+        self.count();
+        let ticket = self.ticket;
+        if is_refusal { Heard::Refusal { ticket, received } } else { Heard::Answer { ticket, received } }
+    }
+
+    /// Takes a frame of a wrong length for the answer if it refuses the request.
+    pub fn answered_short(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
+        if self.request.refuses(frame) != Some(true) {
+            return Heard::Broken(self.ticket);
+        }
+        self.count();
+        Heard::ShortRefusal(self.ticket)
+    }
+
+    /// Counts an answer. The round ends if there is only one.
+    fn count(&mut self) {
         self.answers = self.answers.saturating_add(1);
         if has_one_answer(&self.request) {
             self.rest(self.until(), false);
         }
-        let ticket = self.ticket;
-        if is_refusal { Heard::Refusal { ticket, received } } else { Heard::Answer { ticket, received } }
     }
 
     /// Says of a frame that answers a request which has ended.

@@ -115,6 +115,14 @@ fn a_refusal_ends_a_request_and_a_broken_answer_does_not() {
 }
 
 #[test]
+fn a_refusal_of_any_length_ends_a_request() {
+    let (mut client, ticket) = asked(3, 0);
+    let short = Frame::new_raw(0x0107_F003, true, [2, 0xF2, 0, 0, 0, 0, 0, 0], 2);
+    assert!(matches!(client.handle(&short), Heard::ShortRefusal(of) if of == ticket));
+    assert_eq!([client.poll(100), client.poll(200)], [Step::Wait(Some(200)), Step::Wait(None)]);
+}
+
+#[test]
 fn nobody_answers_all_and_each_module_answers_a_group() {
     let mut client = Asking::new(PACE);
     let all = client.ask(HEAT.set(To::All).expect("a legal request"), 0).expect("room");

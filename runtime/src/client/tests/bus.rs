@@ -58,6 +58,7 @@ pub fn run(seed: u64, pace: Pace) -> Outcome {
             let (ticket, end, content) = match client.handle(&frame) {
                 Heard::Answer { ticket, received } => (ticket, 0, Some(*received.content())),
                 Heard::Refusal { ticket, received } => (ticket, 1, Some(*received.content())),
+                Heard::ShortRefusal(ticket) => (ticket, 1, None),
                 Heard::Broken(_)
                 | Heard::Late { .. }
                 | Heard::Twice { .. }
