@@ -122,11 +122,13 @@ impl<P: Protocol> Entry<P> {
         Heard::ShortRefusal(self.ticket)
     }
 
-    /// Counts an answer. The round ends if there is only one.
+    /// Counts an answer. The round ends if there is only one, and is not sent again otherwise.
     fn count(&mut self) {
         self.answers = self.answers.saturating_add(1);
         if has_one_answer(&self.request) {
             self.rest(self.until(), false);
+        } else if let State::Due { from } = self.state {
+            self.state = State::Waiting { until: from };
         }
     }
 

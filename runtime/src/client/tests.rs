@@ -146,6 +146,18 @@ fn a_group_that_does_not_answer_is_asked_again() {
 }
 
 #[test]
+fn a_group_that_answers_before_it_is_asked_again_is_not() {
+    let mut client = Asking::new(PACE);
+    let group = client.ask(HEAT.set(To::Group(2)).expect("a legal request"), 0).expect("room");
+    let other = client.ask(HEAT.set(To::All).expect("a legal request"), 90).expect("room");
+    assert!(matches!(client.poll(0), Step::Send(_)));
+    assert!(matches!(client.poll(90), Step::Send(_)));
+    assert_eq!([client.poll(90), client.poll(100)], [Step::Done(other), Step::Wait(Some(110))]);
+    assert!(is_answer(&client.handle(&answer(1)), group));
+    assert_eq!([client.poll(110), client.poll(110)], [Step::Done(group), Step::Wait(Some(200))]);
+}
+
+#[test]
 fn a_request_is_asked_again_and_again_and_missed_rounds_are_left_out() {
     let mut client = Asking::new(PACE);
     let ticket = client.every(300, heat(3), 0).expect("room");
