@@ -41,8 +41,13 @@ mod tests;
 pub use entry::Ticket;
 pub use pace::Pace;
 
+use core::num::NonZeroU32;
+
 use crate::{Frame, Problem, Protocol, Received, Replies, Request};
 use entry::{Entry, State, earlier, has_come};
+
+/// The longest time in milliseconds after which a later time is still told from an earlier one.
+const LONGEST: u32 = (1 << 31) - 1;
 
 /// Asks devices, with room for `N` requests. One keeps its room until no answer to it can come any
 /// more, and for ever if it is asked again and again.
@@ -149,14 +154,15 @@ impl<P: Protocol, const N: usize> Client<P, N> {
     }
 
     /// Asks again and again, until it is [cancelled](Self::cancel). Each round ends like a request. A
-    /// round that comes too late is left out.
+    /// round that comes too late is left out. The period is at least 1 ms. One of more than 24 days
+    /// counts as 2^31 - 1 ms, which is somewhat more than that.
     ///
     /// # Errors
     ///
     /// Refuses a request if there is no room for it.
     pub fn every<R>(&mut self, period: u32, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
         let mut entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        entry.period = Some(period.max(1));
+        entry.period = NonZeroU32::new(period.clamp(1, LONGEST));
         self.add(entry)
     }
 

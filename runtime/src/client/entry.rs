@@ -1,5 +1,7 @@
 //! A request of a client, from the first time that it is sent until no answer can come any more.
 
+use core::num::NonZeroU32;
+
 use super::{Heard, Pace, Step, has_one_answer};
 use crate::{Protocol, Received, Replies, Request};
 
@@ -14,7 +16,7 @@ pub struct Entry<P> {
     pub request: Request<P, ()>,
     pub pace: Pace,
     /// The time from one round to the next, if it is asked again and again.
-    pub period: Option<u32>,
+    pub period: Option<NonZeroU32>,
     pub state: State,
     /// When this round was due.
     round: u32,
@@ -155,7 +157,7 @@ impl<P: Protocol> Entry<P> {
             State::Resting { until, .. } if has_come(until, now) => {
                 let period = self.period?;
                 let rounds = now.wrapping_sub(self.round) / period;
-                self.round = self.round.wrapping_add(period.wrapping_mul(rounds.max(1)));
+                self.round = self.round.wrapping_add(period.get().wrapping_mul(rounds.max(1)));
                 (self.state, self.sent, self.answers) = (State::Due { from: self.round }, 0, 0);
                 Some(self)
             }

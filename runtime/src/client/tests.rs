@@ -175,6 +175,19 @@ fn a_request_is_asked_again_and_again_and_missed_rounds_are_left_out() {
 }
 
 #[test]
+fn a_period_is_neither_nothing_nor_longer_than_time_can_be_told() {
+    let rounds = |period, now: [u32; 3]| {
+        let mut client = Client::<Message, 1>::new(Pace { gap: 0, wait: 0, tries: 1, late: 0 });
+        let ticket = client.every(period, HEAT.set(To::All).expect("a legal request"), 0).expect("room");
+        now.map(|now| matches!(client.poll(now), Step::Send(_)) && client.poll(now) == Step::Done(ticket))
+    };
+    assert_eq!(rounds(0, [0, 1, 2]), [true; 3]);
+    let days = (1 << 31) - 1;
+    assert_eq!(rounds(u32::MAX, [0, days - 1, days]), [true, false, true]);
+    assert_eq!(rounds(1 << 31, [0, 1, days]), [true, false, true]);
+}
+
+#[test]
 fn a_cancelled_request_that_was_not_sent_is_forgotten() {
     let mut client = Asking::new(PACE);
     let ticket = client.ask(heat(3), 0).expect("room");

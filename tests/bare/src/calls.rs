@@ -4,6 +4,7 @@ use core::fmt::{self, Display, Write};
 use core::hint::black_box;
 
 use canspec_runtime::assembler::{Assembler, Partial};
+use canspec_runtime::client::{self, Client, Heard, Pace, Step};
 use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::transfers::{self, Transferred, Transport};
@@ -97,6 +98,38 @@ pub fn questions<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
     }
     for entry in T::Protocol::MESSAGES {
         entry.request(unknown(), unknown::<Route<T>>()).into_iter().for_each(request);
+    }
+}
+
+/// Asks modules by a client, with every message that carries nothing.
+pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
+    let pace = Pace { gap: unknown(), wait: unknown(), tries: unknown(), late: unknown() };
+    let mut client = Client::<T::Protocol, 3>::new(pace);
+    for request in T::Protocol::MESSAGES.iter().filter_map(|entry| entry.request(unknown(), unknown::<Route<T>>())) {
+        let Ok(request) = request else { continue };
+        ticket(client.ask(request, unknown()));
+        ticket(client.ask_at(pace, request, unknown()));
+        if let Ok(asked) = client.every(unknown(), request, unknown()) {
+            client.cancel(asked);
+        }
+    }
+    for _ in 0..unknown::<u8>() {
+        match client.poll(unknown()) {
+            Step::Send(frame) => sink(frame),
+            step => sink(step),
+        }
+        match client.handle(&unknown_frame()) {
+            Heard::Answer { ticket, received } | Heard::Refusal { ticket, received } => sink((ticket, received)),
+            heard => sink(heard),
+        }
+    }
+    sink(client);
+}
+
+fn ticket(asked: Result<client::Ticket, client::Full>) {
+    match asked {
+        Ok(ticket) => sink(ticket),
+        Err(full) => text(&full),
     }
 }
 

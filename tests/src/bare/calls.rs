@@ -175,7 +175,7 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("Parted") => quote!(calls::parted::<#owner>();),
         Some("Transport") => quote!(calls::transfers::<#owner>();),
         Some("Transferred") => quote!(calls::transferred::<#owner>();),
-        Some("Destination") => quote!(calls::questions::<#owner>();),
+        Some("Destination") => quote!(calls::questions::<#owner>(); calls::client::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
         Some("FrameSet") => quote!(calls::assembler::<#owner>();),
         Some("Display") => quote!(calls::text(&unknown::<#owner>());),
