@@ -2,9 +2,12 @@
 
 use core::time::Duration;
 
+use super::LONGEST;
 use crate::{Time, Timing};
 
 /// How fast a client asks, and how long it waits, in milliseconds.
+///
+/// Each time must be below 24 days, and so must `wait` and `late` together. A longer one ends at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
     /// The time from one request to the next.
@@ -20,7 +23,8 @@ pub struct Pace {
 
 impl Pace {
     /// Returns the pace that a document states, or `None` if it does not say the gap, the wait or how
-    /// often to try. No document says how late an answer can come.
+    /// often to try. It is also `None` if a time is too long for a client. No document says how late an
+    /// answer can come.
     ///
     /// ```
     /// use core::time::Duration;
@@ -36,12 +40,13 @@ impl Pace {
     /// ```
     pub fn of(timing: &Timing, late: u32) -> Option<Self> {
         let gap = timing.request_gap.map(|Time { shortest, minimum, .. }| minimum.unwrap_or(shortest).max(shortest))?;
-        let wait = timing.reply_timeout?.longest;
-        Some(Self { gap: milliseconds(gap)?, wait: milliseconds(wait)?, tries: timing.tries?, late })
+        let wait = milliseconds(timing.reply_timeout?.longest)?;
+        wait.checked_add(late).filter(|time| *time <= LONGEST)?;
+        Some(Self { gap: milliseconds(gap)?, wait, tries: timing.tries?, late })
     }
 }
 
 /// Counts whole milliseconds, none too few.
 fn milliseconds(time: Duration) -> Option<u32> {
-    u32::try_from(time.as_nanos().div_ceil(1_000_000)).ok().filter(|time| *time < 1 << 31)
+    u32::try_from(time.as_nanos().div_ceil(1_000_000)).ok().filter(|time| *time <= LONGEST)
 }

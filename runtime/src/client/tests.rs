@@ -2,11 +2,12 @@
 
 mod bus;
 
+use core::time::Duration;
 use std::vec::Vec;
 
 use super::{Client, Full, Heard, Pace, Step, Ticket};
 use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
-use crate::{Frame, Problem, Request};
+use crate::{Frame, Problem, Request, Time, Timing};
 
 const PACE: Pace = Pace { gap: 20, wait: 100, tries: 2, late: 100 };
 
@@ -185,6 +186,20 @@ fn a_period_is_neither_nothing_nor_longer_than_time_can_be_told() {
     let days = (1 << 31) - 1;
     assert_eq!(rounds(u32::MAX, [0, days - 1, days]), [true, false, true]);
     assert_eq!(rounds(1 << 31, [0, 1, days]), [true, false, true]);
+}
+
+#[test]
+fn a_pace_whose_times_are_too_long_is_none() {
+    let time = |milliseconds| Time::of(Duration::from_millis(milliseconds));
+    let pace = |gap, wait, late| {
+        let timing = Timing::NONE.with_request_gap(time(gap)).with_reply_timeout(time(wait)).with_tries(1);
+        Pace::of(&timing, late).is_some()
+    };
+    assert!(pace((1 << 31) - 1, 100, (1 << 31) - 101));
+    assert!(!pace(1 << 31, 100, 0));
+    assert!(!pace(0, 1 << 31, 0));
+    assert!(!pace(0, 100, (1 << 31) - 100));
+    assert!(!pace(0, 100, u32::MAX));
 }
 
 #[test]
