@@ -242,11 +242,7 @@ impl<S: FrameSet, const N: usize> Assembler<S, N> {
 
     /// Returns what a frame says if it belongs to this set.
     fn said(&self, frame: &Frame) -> Option<Said<S::Protocol>> {
-        let received = match self.model {
-            Some(model) => Received::<S::Protocol>::decode_for(model, frame),
-            None => Received::decode(frame),
-        };
-        match received {
+        match Received::<S::Protocol>::decode_by(self.model, frame) {
             Ok(received) if is_of::<S>(&received) => {
                 let position = S::position(received.content())?;
                 let values = || Said::Values(position, *received.content());

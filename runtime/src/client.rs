@@ -54,6 +54,7 @@ const LONGEST: u32 = (1 << 31) - 1;
 #[derive(Clone, Copy, Debug)]
 pub struct Client<P, const N: usize> {
     pace: Pace,
+    model: Option<u8>,
     entries: [Option<Entry<P>>; N],
     /// When the next frame may be sent, unless it may be sent at once.
     free: Option<u32>,
@@ -132,7 +133,13 @@ impl core::error::Error for Full {}
 impl<P: Protocol, const N: usize> Client<P, N> {
     /// Returns a client that has asked nothing yet.
     pub const fn new(pace: Pace) -> Self {
-        Self { pace, entries: [None; N], free: None, next: 0 }
+        Self { pace, model: None, entries: [None; N], free: None, next: 0 }
+    }
+
+    /// Reads frames as those of a device model if messages look the same.
+    #[must_use]
+    pub fn for_model(self, model: impl Into<u8>) -> Self {
+        Self { model: Some(model.into()), ..self }
     }
 
     /// Asks once.
@@ -188,7 +195,7 @@ impl<P: Protocol, const N: usize> Client<P, N> {
     pub fn handle(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
         let mut entries = self.entries.iter_mut().flatten();
         let awaiting = |entry: &&mut Entry<P>| entry.awaits() && entry.request.refuses(frame).is_some();
-        let received = match Received::decode(frame) {
+        let received = match Received::decode_by(self.model, frame) {
             Ok(received) => received,
             Err(Problem::Length) => {
                 let short = entries.find(awaiting).map(|entry| entry.answered_short(frame));

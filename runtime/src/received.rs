@@ -50,7 +50,7 @@ impl<P: Protocol> Received<P> {
     }
 
     #[inline]
-    fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
+    pub(crate) fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
         let Some((direction, incoming)) = Self::incoming(model, frame) else { return refused(frame) };
         match direction {
             Direction::Module => P::request(&incoming),

@@ -203,6 +203,17 @@ fn a_pace_whose_times_are_too_long_is_none() {
 }
 
 #[test]
+fn a_client_for_a_model_reads_frames_as_those_of_the_model() {
+    let report = frame(0x010A_F003, [0; 4]);
+    let access = |mut client: Asking| {
+        if let Heard::Other(received) = client.handle(&report) { Some(received.exchange().access()) } else { None }
+    };
+    assert_eq!(access(Asking::new(PACE)), Some("report"));
+    assert_eq!(access(Asking::new(PACE).for_model(1)), Some("report"));
+    assert_eq!(access(Asking::new(PACE).for_model(2)), Some("report of model 2"));
+}
+
+#[test]
 fn a_cancelled_request_that_was_not_sent_is_forgotten() {
     let mut client = Asking::new(PACE);
     let ticket = client.ask(heat(3), 0).expect("room");

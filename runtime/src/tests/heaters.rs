@@ -150,6 +150,9 @@ impl Heat {
         .length(4);
     pub const REPORT: Exchange =
         Exchange::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
+    pub const REPORT_1: Exchange = Self::REPORT.models(&[1]);
+    pub const REPORT_2: Exchange =
+        Exchange::new("report of model 2", &[None; 3]).report(FRAME).of("heat", FRAME).length(4).models(&[2]);
     pub const PROBE: Exchange = Exchange::new("probe", &[None; 3]).of("heat", FRAME).length(2);
 
     pub fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
@@ -194,6 +197,10 @@ impl Protocol for Message {
         match (frame.id(COMMAND), frame.data(FUNCTION.place)) {
             (0x07, 0x02) => frame.reply(&Heat::SET, Self::Heat(frame.values())),
             (0x08, _) => frame.reply(&Heat::READ, Self::Heat(frame.values())),
+            (0x0A, _) => frame.best([
+                frame.report(&Heat::REPORT_1, Self::Heat(frame.values())),
+                frame.report(&Heat::REPORT_2, Self::Heat(frame.values())),
+            ]),
             (0x0B, _) => frame.report(&Heat::REPORT, Self::Heat(frame.values())),
             _ => frame.unknown(),
         }

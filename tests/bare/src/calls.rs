@@ -105,6 +105,9 @@ pub fn questions<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
 pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
     let pace = Pace { gap: unknown(), wait: unknown(), tries: unknown(), late: unknown() };
     let mut client = Client::<T::Protocol, 3>::new(pace);
+    if unknown() {
+        client = client.for_model(unknown::<u8>());
+    }
     for request in T::Protocol::MESSAGES.iter().filter_map(|entry| entry.request(unknown(), unknown::<Route<T>>())) {
         let Ok(request) = request else { continue };
         ticket(client.ask(request, unknown()));

@@ -100,11 +100,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
     /// Takes a frame, and returns what became of messages by it. A frame that is none of the
     /// protocol, or says nothing about the message, changes nothing.
     pub fn receive(&mut self, frame: &impl embedded_can::Frame, now: u32) -> Outcomes<L> {
-        let received = match self.model {
-            Some(model) => Received::decode_for(model, frame),
-            None => Received::decode(frame),
-        };
-        received.map_or(Outcomes::NONE, |received| self.take(&received, now))
+        Received::decode_by(self.model, frame).map_or(Outcomes::NONE, |received| self.take(&received, now))
     }
 
     /// The same as [`receive`](Self::receive), for a frame that is recognised already, as one of the
