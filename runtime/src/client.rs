@@ -1,17 +1,24 @@
 //! A client without input and output: it says what to send and when, and what a frame answers.
 //!
-//! The program owns the bus and the clock. It calls [`poll`](Client::poll) until there is nothing
-//! left to do, and gives every frame that it receives to [`handle`](Client::handle):
+//! The program owns the bus and the clock. It gives every frame that it receives to
+//! [`handle`](Client::handle), and then calls [`poll`](Client::poll) until there is nothing left to do:
 //!
 //! ```
 //! use canspec_runtime::client::{Client, Heard, Step};
 //! use canspec_runtime::{Frame, Protocol};
 //!
-//! fn turn<P: Protocol>(client: &mut Client<P, 16>, now: u32, send: impl Fn(Frame), received: Option<Frame>) {
-//!     match received.map(|frame| client.handle(&frame)) {
-//!         Some(Heard::Answer { ticket, received }) => println!("{ticket:?}: {received:?}"),
-//!         // Refusals, late and repeated answers, reports, and frames of others.
-//!         _ => {}
+//! fn turn<P: Protocol>(
+//!     client: &mut Client<P, 16>,
+//!     now: u32,
+//!     send: impl Fn(Frame),
+//!     received: impl IntoIterator<Item = Frame>,
+//! ) {
+//!     for frame in received {
+//!         match client.handle(&frame) {
+//!             Heard::Answer { ticket, received } => println!("{ticket:?}: {received:?}"),
+//!             // Refusals, late and repeated answers, reports, and frames of others.
+//!             _ => {}
+//!         }
 //!     }
 //!     loop {
 //!         match client.poll(now) {
@@ -28,7 +35,12 @@
 //! several answers it.
 //!
 //! Two requests that one frame could answer are never under way at once. The second one waits until
-//! no answer to the first can come. So an answer that comes late is never taken for another one.
+//! no answer to the first can come. So an answer that comes late is never taken for another one, if
+//! the client knows of it in time.
+//!
+//! Give it every frame that has come before you call `poll`. To the client a frame comes when it is
+//! given. While an answer lies unread, `poll` sends its request again or ends it. It can also end the
+//! wait for late answers. Then the client takes that answer for one to the next request like it.
 //!
 //! Time is a number of milliseconds from any start, and may wrap around. Call `poll` at least once
 //! in 24 days.
