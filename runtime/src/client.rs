@@ -117,7 +117,9 @@ pub enum Heard<P: Protocol> {
         /// The frame.
         received: Received<P>,
     },
-    /// It answers a request that has its answer already.
+    /// It answers a request that has an answer already, as the further parts of a message in `parts`
+    /// do. Give them to the assembler, too. A module of a group that answers after [`Step::Done`] is
+    /// also here.
     Twice {
         /// The request.
         ticket: Ticket,
