@@ -5,13 +5,14 @@ use crate::{Addressed, Destination, Error, Filter, Frame, Kind, Protocol, Receiv
 
 impl<P: Addressed> Received<P> {
     /// Builds the reply of a module to this request. `content` is what the reply carries, and reports
-    /// no error. The frame goes to the controller that asked.
+    /// no error. The frame goes to the controller that asked. If one module answers
+    /// for all, the number does not count.
     ///
     /// # Errors
     ///
     /// Refuses
     /// - a frame that is no request, or that nobody answers in its addressing mode,
-    /// - a module that was not asked, and one whose address the document does not name,
+    /// - a module that was not asked, and one of a group whose address the document does not name,
     /// - content of another message or of another kind of frame,
     /// - values that the signals cannot hold.
     pub fn answer(&self, node: impl Into<i32>, content: P) -> Result<Frame, Error> {
@@ -20,13 +21,14 @@ impl<P: Addressed> Received<P> {
     }
 
     /// Builds the frame by which a module refuses this request: a reply with an error code, in the
-    /// identifier or in a selector. Its signals are 0.
+    /// identifier or in a selector. Its signals are 0. If one module answers for all, the number
+    /// does not count.
     ///
     /// # Errors
     ///
     /// Refuses
     /// - a frame that is no request, or that nobody answers in its addressing mode,
-    /// - a module that was not asked, and one whose address the document does not name,
+    /// - a module that was not asked, and one of a group whose address the document does not name,
     /// - a code that the field cannot hold, and the one that reports no error,
     /// - any code if the replies have no field for it.
     pub fn refuse(&self, node: impl Into<i32>, code: u64) -> Result<Frame, Error> {

@@ -35,6 +35,7 @@ fn a_reply_goes_to_the_controller_that_asked_from_the_module_that_answers() {
     let answer = |id, node| request(id, 0x0003_0D40_0000_1388).answer(node, output(200.0, 5.0));
     assert_eq!(answer(0x029C_05F8, 5).map(|reply| reply.raw_id()), Ok(0x029C_F805));
     assert_eq!(answer(0x02DC_02F1, 5).map(|reply| reply.raw_id()), Ok(0x02DC_F105), "one of a group");
+    assert_eq!(answer(0x029C_3CF0, 0x3C).map(|reply| reply.raw_id()), Ok(0x029C_F03C), "as it was asked");
     assert_eq!(answer(0x029C_05F0, 6), Err(Error::Node { message: "set_module_output", node: 6, asked: 5 }));
     assert_eq!(answer(0x029C_3FF0, 5), Err(Error::Unanswered { message: "set_module_output", access: "set" }));
     assert_eq!(answer(0x029C_F005, 5), Err(Error::Unanswered { message: "set_module_output", access: "set" }));
