@@ -1,7 +1,7 @@
 //! The frames by which a module answers a request.
 
 use crate::plumbing::{Address, IdFilter};
-use crate::{Addressed, Destination, Error, Filter, Frame, Kind, Protocol, Received, Selector};
+use crate::{Addressed, Destination, Error, Filter, Frame, Kind, Protocol, Received};
 
 impl<P: Addressed> Received<P> {
     /// Builds the reply of a module to this request. `content` is what the reply carries, and reports
@@ -74,8 +74,7 @@ fn from(known: IdFilter, addresses: &[Address], node: i32) -> Result<IdFilter, E
 fn with_code<P: Protocol>(reply: &Filter, blank: &Frame, code: u64) -> Option<Frame> {
     let in_id = P::NORMAL.id_mask() & !P::FRAME.id_mask();
     if in_id == 0 {
-        let selector = reply.data_selectors().iter().find(|selector| selector.has_normal())?;
-        return in_data(selector, blank, code);
+        return in_data(reply, blank, code);
     }
     let (shift, greatest) = (in_id.trailing_zeros(), in_id.checked_shr(in_id.trailing_zeros())?);
     let code = u32::try_from(code).ok().filter(|code| *code <= greatest)?;
@@ -83,8 +82,28 @@ fn with_code<P: Protocol>(reply: &Filter, blank: &Frame, code: u64) -> Option<Fr
     Some(blank.with_id(id.into()))
 }
 
-fn in_data(selector: &Selector, blank: &Frame, code: u64) -> Option<Frame> {
+/// Puts an error code into the first selector whose value may vary.
+fn in_data(reply: &Filter, blank: &Frame, code: u64) -> Option<Frame> {
+    let mut selectors = reply.data_selectors().iter();
+    let selector = selectors.find(|selector| selector.has_normal() && !reply.requires(selector.place))?;
     let mut data = blank.bytes();
     selector.place.put(&mut data, code);
     (selector.place.get(&data) == code).then(|| blank.with_data(data))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Place, Selector};
+
+    #[test]
+    fn a_code_is_written_where_the_reply_may_vary() {
+        const KIND: Selector = Selector::new("kind", Place::byte(0)).normal(1);
+        const RESULT: Selector = Selector::new("result", Place::byte(1)).normal(0xF0);
+        let reply = Filter::EXTENDED.selectors(&[KIND, RESULT]).data(KIND.place, 1).accepting();
+        let refused = in_data(&reply, &reply.frame(8), 0xF2).map(|frame| frame.bytes());
+        assert_eq!(refused, Some([1, 0xF2, 0, 0, 0, 0, 0, 0]));
+        let fixed = reply.data(RESULT.place, 0xF0);
+        assert_eq!(in_data(&fixed, &fixed.frame(8), 0xF2), None);
+    }
 }

@@ -140,13 +140,17 @@ impl Filter {
     pub(crate) const fn accepting(mut self) -> Self {
         let mut selectors = self.selectors;
         while let [selector, others @ ..] = selectors {
-            let is_required = word(selector.place.mask()) & word(self.data_mask) != 0;
-            if let (Some(normal), false) = (selector.normal, is_required) {
+            if let (Some(normal), false) = (selector.normal, self.requires(selector.place)) {
                 selector.place.put(&mut self.data_value, normal);
             }
             selectors = others;
         }
         self
+    }
+
+    /// Tests whether it requires a value at a place of the data.
+    pub(crate) const fn requires(&self, place: Place) -> bool {
+        word(place.mask()) & word(self.data_mask) != 0
     }
 
     /// Sets the selectors that such frames have in their data.
