@@ -72,14 +72,18 @@ fn from(known: IdFilter, addresses: &[Address], node: i32) -> Result<IdFilter, E
 
 /// Puts an error code where replies have one: in the identifier or in a selector.
 fn with_code<P: Protocol>(reply: &Filter, blank: &Frame, code: u64) -> Option<Frame> {
-    let in_id = P::NORMAL.id_mask() & !P::FRAME.id_mask();
-    if in_id == 0 {
-        return in_data(reply, blank, code);
+    match P::NORMAL.id_mask() & !P::FRAME.id_mask() {
+        0 => in_data(reply, blank, code),
+        fields => in_id(fields, blank, code),
     }
-    let (shift, greatest) = (in_id.trailing_zeros(), in_id.checked_shr(in_id.trailing_zeros())?);
+}
+
+/// Puts an error code into fields of the identifier, and nothing into bits between them.
+fn in_id(fields: u32, blank: &Frame, code: u64) -> Option<Frame> {
+    let (shift, greatest) = (fields.trailing_zeros(), fields.checked_shr(fields.trailing_zeros())?);
     let code = u32::try_from(code).ok().filter(|code| *code <= greatest)?;
-    let id = blank.raw_id() & !in_id | code.checked_shl(shift)?;
-    Some(blank.with_id(id.into()))
+    let bits = code.checked_shl(shift).filter(|bits| bits & !fields == 0)?;
+    Some(blank.with_id((blank.raw_id() & !fields | bits).into()))
 }
 
 /// Puts an error code into the first selector whose value may vary.
@@ -95,6 +99,14 @@ fn in_data(reply: &Filter, blank: &Frame, code: u64) -> Option<Frame> {
 mod tests {
     use super::*;
     use crate::{Place, Selector};
+
+    #[test]
+    fn a_code_leaves_the_bits_between_two_fields_as_they_are() {
+        let blank = Frame::new_raw(0x1F03_0000, true, [0; 8], 8);
+        let id = |code| in_id(0x00F0_000F << 4, &blank, code).map(|frame| frame.raw_id());
+        assert_eq!([id(5), id(0x30_0005)], [Some(0x1003_0050), Some(0x1303_0050)]);
+        assert_eq!([id(0x10), id(0x0F_0000), id(0x100_0000), id(1 << 32)], [None; 4]);
+    }
 
     #[test]
     fn a_code_is_written_where_the_reply_may_vary() {
