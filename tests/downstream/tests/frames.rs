@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::collections::VecDeque;
 
+use canspec_runtime::client::{Client, Heard, Pace, Step};
 use winch_driver::winch::embedded_can::nb::Can;
 use winch_driver::winch::embedded_can::{self, ExtendedId, Frame as _};
 use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, Target};
@@ -65,6 +66,17 @@ fn the_frame_that_answers_is_taken_out_of_others() {
     assert_eq!(reply.values.map(|status| status.rope_m), Ok(12.34));
     assert_eq!(can.sent, [*request.frame()]);
     assert!(ask(&mut bus(), &request, patience(1)).is_none());
+}
+
+#[test]
+fn a_client_asks_and_knows_the_answer() {
+    let request = Status::read(Target::Winch(0x12)).expect("the winch is in range");
+    let mut client = Client::<Message, 8>::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
+    let asked = client.ask(request, 0).expect("there is room for eight requests");
+    assert_eq!(client.poll(0), Step::Send(*request.frame()));
+    assert_eq!(client.poll(0), Step::Wait(Some(100)));
+    let heard = client.handle(&frame(0x0B21_0112, [0x04, 0xD2, 0x41, 0x81]));
+    assert!(matches!(heard, Heard::Answer { ticket, .. } if ticket == asked));
 }
 
 #[test]
