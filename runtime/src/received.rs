@@ -199,7 +199,7 @@ impl<P: Protocol> Received<P> {
         let (data, length) = (self.frame.bytes(), self.frame.length());
         let signals = self.signals().iter().filter(move |signal| signal.place().is_within(length));
         let is_of_error_reply = self.is_error_reply();
-        let words = signals.filter(move |_| !is_of_error_reply).filter_map(move |signal| status_word(*signal, &data));
+        let words = signals.filter(move |_| !is_of_error_reply).filter_map(move |signal| status_word(*signal, data));
         words.flat_map(|(bits, known)| set_bits(bits, known))
     }
 
@@ -325,9 +325,9 @@ fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Result<Received<P>,
 }
 
 /// Returns the bits of a status word, and those that have a name.
-fn status_word(signal: &dyn AnySignal, data: &Data) -> Option<(u64, &'static [StatusBit])> {
+fn status_word(signal: &dyn AnySignal, data: Data) -> Option<(u64, &'static [StatusBit])> {
     let mut word = None;
-    signal.read(data, &mut |reading| {
+    signal.read(&data, &mut |reading| {
         if let Meaning::Status(bits, known) = reading.meaning {
             word = Some((bits, known));
         }

@@ -41,7 +41,7 @@ pub fn is_same(value: &Value, json: &Json) -> bool {
         Value::Name(name) if json.is_null() => *name == "not_available",
         Value::Text(text) if json.is_array() => {
             let bytes = json.as_array().into_iter().flatten().filter_map(Json::as_u64);
-            bytes.map(|byte| format!("{byte:02X}")).collect::<String>() == *text
+            bytes.map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().concat() == *text
         }
         Value::Name(text) | Value::Text(text) => json.as_str() == Some(text),
         Value::None | Value::Status { .. } => true,
