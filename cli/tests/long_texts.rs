@@ -38,7 +38,7 @@ fn wholes(log: &str) -> Vec<Value> {
 }
 
 fn encoded(objects: &[Value]) -> [String; 2] {
-    let lines: String = objects.iter().map(|object| format!("{object}\n")).collect();
+    let lines = objects.iter().map(|object| format!("{object}\n")).collect::<Vec<_>>().concat();
     canspec(&["encode", "--from", "jsonl"], &lines)
 }
 
