@@ -237,5 +237,6 @@ fn all_bytes_of_open_raw_bytes_belong_to_them() {
     assert_eq!(*open.text, [1, 0, 0]);
     assert_eq!(open.encode(&mut [0xEE; 7]), Ok(&data[..]));
     let one = Open { count: 5, text: Elements::<u8, 6>::from_fn(1, |_| 9) };
-    assert_eq!(one.encode(&mut [0xEE; 7]), Ok(&[5, 9, 0][..]));
+    let too_few = Error::Elements { message: "open", signal: "text", count: 1, minimum: 2, maximum: 6 };
+    assert_eq!(one.encode(&mut [0xEE; 7]), Err(too_few));
 }

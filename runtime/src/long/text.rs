@@ -82,13 +82,14 @@ impl<T: ByteRun> LongText<T> {
     ///
     /// # Errors
     ///
-    /// Refuses bytes that the device model does not have.
+    /// Refuses bytes that the device model does not have, and too few bytes if none fills them up.
     pub fn write(&self, text: &T, payload: &mut LongPayload<'_>) -> Result<(), Error> {
         let bytes = text.as_slice();
         if let Some(least) = self.least {
             let end = bytes.iter().rposition(|byte| Some(*byte) != T::FILL);
             let length = end.map_or(0, |last| last.saturating_add(1));
-            payload.count(self.byte.own_name(), length.max(least.into()))?;
+            let length = if T::FILL.is_some() { length.max(least.into()) } else { length };
+            payload.count(self.byte.own_name(), length)?;
         }
         let LongPayload { rules, data, .. } = payload;
         let mut places = data.iter_mut().skip(self.start.into());
