@@ -240,3 +240,21 @@ fn all_bytes_of_open_raw_bytes_belong_to_them() {
     let too_few = Error::Elements { message: "open", signal: "text", count: 1, minimum: 2, maximum: 6 };
     assert_eq!(one.encode(&mut [0xEE; 7]), Err(too_few));
 }
+
+#[test]
+fn a_device_model_that_lacks_an_open_text_is_sent_none_of_its_bytes() {
+    let text = |least: u16| {
+        let byte = Signal::new("text", Place::byte(0)).lacking(&[(7, Lack::Bits(0xFF, 0))]);
+        LongText::<Text<6, b'_'>>::new(1, byte).at_least(least)
+    };
+    let written = |least: u16, letters: &str| {
+        let mut data = [0xEE; 7];
+        let rules = Payload::within_limits("open", [0; 8]).for_model(Some(7));
+        let mut payload = LongPayload::new(rules, Some((least.into(), 6)), &mut data);
+        let letters = Text::new(letters).expect("at most six letters");
+        text(least).write(&letters, &mut payload).map(|()| data)
+    };
+    let refused = Err(Error::Meaning { message: "open", signal: "text" });
+    assert_eq!(written(0, ""), Ok(*b"\xEE______"));
+    assert_eq!((written(0, "A"), written(1, "")), (refused, refused));
+}

@@ -84,21 +84,25 @@ impl<T: ByteRun> LongText<T> {
     ///
     /// Refuses bytes that the device model does not have, and too few bytes if none fills them up.
     pub fn write(&self, text: &T, payload: &mut LongPayload<'_>) -> Result<(), Error> {
-        let bytes = text.as_slice();
-        if let Some(least) = self.least {
-            let end = bytes.iter().rposition(|byte| Some(*byte) != T::FILL);
-            let length = end.map_or(0, |last| last.saturating_add(1));
-            let length = if T::FILL.is_some() { length.max(least.into()) } else { length };
-            payload.count(self.byte.own_name(), length)?;
+        let (bytes, sent) = (text.as_slice(), self.sent(text));
+        if self.least.is_some() {
+            payload.count(self.byte.own_name(), sent)?;
         }
         let LongPayload { rules, data, .. } = payload;
-        let mut places = data.iter_mut().skip(self.start.into());
-        for byte in bytes {
+        for byte in bytes.iter().take(sent) {
             let mut alone = *rules;
             self.byte.put(*byte, &mut alone)?;
-            places.by_ref().take(1).for_each(|place| *place = *byte);
         }
+        data.iter_mut().skip(self.start.into()).zip(bytes).for_each(|(place, byte)| *place = *byte);
         Ok(())
+    }
+
+    /// Returns how many of its bytes must be sent.
+    fn sent(&self, text: &T) -> usize {
+        let bytes = text.as_slice();
+        let Some(least) = self.least.filter(|_| T::FILL.is_some()) else { return bytes.len() };
+        let last = bytes.iter().rposition(|byte| Some(*byte) != T::FILL);
+        last.map_or(0, |last| last.saturating_add(1)).max(least.into())
     }
 
     /// Writes a text, if the message is long enough for it.
