@@ -254,7 +254,7 @@ impl SignalObject {
 
     fn input(self) -> Result<Input, String> {
         match (self.value, self.set, self.unknown) {
-            (Some(Value::String(text)), None, None) => Ok(with_bytes(text, self.raw.as_ref())),
+            (Some(Value::String(text)), None, None) => with_bytes(text, self.raw.as_ref()),
             (Some(value), None, None) => physical(value),
             (None, Some(set), Some(unknown)) => status(set, unknown),
             (None, None, None) => raw(&self.raw.ok_or("`value` is missing, and so is `raw`")?),
@@ -284,16 +284,22 @@ fn physical(value: Value) -> Result<Input, String> {
 }
 
 /// Returns a name or a text. Digits beside a text say which bytes fill it up.
-fn with_bytes(text: String, raw: Option<&Value>) -> Input {
-    match raw.and_then(Value::as_str).and_then(|digits| hexadecimal(digits, MOST_LONG_DIGITS)) {
-        Some(bytes) => Input::Bytes { bytes, text: Some(text) },
-        None => Input::Text(text),
+fn with_bytes(text: String, raw: Option<&Value>) -> Result<Input, String> {
+    match raw.and_then(Value::as_str) {
+        Some(digits) => Ok(Input::Bytes { bytes: long_bytes(digits)?, text: Some(text) }),
+        None => Ok(Input::Text(text)),
     }
 }
 
+fn long_bytes(digits: &str) -> Result<Vec<u8>, String> {
+    hexadecimal(digits, MOST_LONG_DIGITS).ok_or_else(|| {
+        format!("`raw` of a longer text is an even number of hexadecimal digits, at most {MOST_LONG_DIGITS}")
+    })
+}
+
 fn raw(value: &Value) -> Result<Input, String> {
-    if let Some(bytes) = value.as_str().and_then(|digits| hexadecimal(digits, MOST_LONG_DIGITS)) {
-        return Ok(Input::Bytes { bytes, text: None });
+    if let Some(digits) = value.as_str() {
+        return Ok(Input::Bytes { bytes: long_bytes(digits)?, text: None });
     }
     let number = value.as_number().and_then(whole);
     number.map(Input::Raw).ok_or_else(|| format!("`raw` is an integer of up to 64 bits, not {value}"))

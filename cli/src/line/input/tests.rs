@@ -108,11 +108,14 @@ fn raw_counts_only_without_a_value() {
 
 #[test]
 fn a_signal_without_a_usable_value_says_why() {
+    let digits = "`raw` of a longer text is an even number of hexadecimal digits, at most 8190";
     let reasons = [
         ("{}", "`value` is missing, and so is `raw`"),
         (r#"{"value":null}"#, "`value` is missing, and so is `raw`"),
         (r#"{"value":null,"raw":1.5}"#, "`raw` is an integer of up to 64 bits, not 1.5"),
-        (r#"{"raw":"7"}"#, r#"`raw` is an integer of up to 64 bits, not "7""#),
+        (r#"{"raw":"7"}"#, digits),
+        (r#"{"value":"Pump 7","raw":"5075zz"}"#, digits),
+        (&format!(r#"{{"value":"Pump 7","raw":"{}"}}"#, "0".repeat(8192)), digits),
         (r#"{"value":true}"#, "`value` is a number, a text or null, not true"),
         (r#"{"value":[[1]]}"#, "`value` is a number, a text or null, not [1]"),
         (r#"{"set":[]}"#, "missing field `unknown`"),
