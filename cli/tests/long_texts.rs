@@ -17,8 +17,23 @@ const LABELS: &str = "\
 (3.0) can0 221#0001203720202020
 ";
 
+/// Motor 1 says that its note has 20 letters, and sends it.
+const NOTE: &str = "\
+(1.0) can0 211#1400000000000000
+(1.1) can0 221#0100010203040506
+(1.2) can0 221#020708536C6F7720
+(1.3) can0 221#0370756D70206174
+(1.4) can0 221#0420646F636B2037
+(1.5) can0 221#0520202020202020
+";
+
 fn canspec(arguments: &[&str], input: &str) -> [String; 2] {
-    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features/long_texts.yaml");
+    canspec_by("long_texts", arguments, input)
+}
+
+fn canspec_by(spec: &str, arguments: &[&str], input: &str) -> [String; 2] {
+    let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/features");
+    let spec = specs.join(spec).with_extension("yaml");
     let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
     let command = command.args(arguments).arg("--spec").arg(spec).stdin(Stdio::piped());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");
@@ -32,7 +47,11 @@ fn canspec(arguments: &[&str], input: &str) -> [String; 2] {
 
 /// Returns the objects of whole messages.
 fn wholes(log: &str) -> Vec<Value> {
-    let [out, _] = canspec(&["decode", "--assemble", "--format", "jsonl", "-"], log);
+    wholes_by("long_texts", log)
+}
+
+fn wholes_by(spec: &str, log: &str) -> Vec<Value> {
+    let [out, _] = canspec_by(spec, &["decode", "--assemble", "--format", "jsonl", "-"], log);
     let objects = out.lines().map(|line| serde_json::from_str::<Value>(line).expect("a line is an object"));
     objects.filter(|object| object.get("lines").is_some()).collect()
 }
@@ -87,6 +106,15 @@ fn a_text_that_lacks_a_part_is_absent() {
     let whole = &wholes(&lost)[1];
     assert_eq!(whole["incomplete"], "part 1 is missing");
     assert_eq!(whole["signals"], json!({"language": {"raw": 25966, "value": "en"}}));
+}
+
+#[test]
+fn a_text_has_its_least_length_also_if_a_device_counts_less() {
+    let log = NOTE.replace("#14", "#01");
+    let (first_parts, _) = log.split_once("(1.4)").expect("there is a fourth part");
+    let whole = &wholes_by("counted_text", first_parts)[0];
+    assert_eq!(whole["lines"], json!([2, 3, 4]));
+    assert_eq!(whole["signals"]["text"]["value"], "Slow pump");
 }
 
 #[test]

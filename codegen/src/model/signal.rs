@@ -288,11 +288,11 @@ impl Signal {
         self.reach_with(None)
     }
 
-    /// Returns the same for a text of some number of bytes, if that varies.
+    /// Returns the same for a text of some number of bytes, if that varies. It has at least its least number.
     pub fn reach_with(&self, bytes: Option<usize>) -> usize {
-        let size = self.run.map_or_else(|| self.end().into(), |run| run.most.into());
+        let [least, most] = self.run.map_or([0, self.end().into()], |run| [run.least, run.most]).map(usize::from);
         let own = bytes.filter(|_| self.run.is_some_and(ByteRun::varies));
-        usize::from(self.window) + own.map_or(size, |bytes| bytes.min(size))
+        usize::from(self.window) + own.map_or(most, |bytes| bytes.clamp(least, most))
     }
 
     /// Returns its bits in each data byte from its window on.

@@ -6,7 +6,7 @@
 local function reach(signal, count)
   if not signal.most then return signal.window + signal.place.first + signal.place.count end
   local is_open = count and signal.least < signal.most
-  return signal.window + (is_open and math.min(count, signal.most) or signal.most)
+  return signal.window + (is_open and math.max(signal.least, math.min(count, signal.most)) or signal.most)
 end
 
 -- Tests whether a signal is there if arrays of varying length have `count` elements.
