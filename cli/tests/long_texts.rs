@@ -109,6 +109,16 @@ fn a_text_that_lacks_a_part_is_absent() {
 }
 
 #[test]
+fn a_text_that_lacks_its_last_parts_is_absent_if_its_length_is_known() {
+    let note = |log: &str| wholes_by("counted_text", log).swap_remove(0);
+    assert_eq!(note(NOTE)["signals"]["text"]["value"], "Slow pump at dock 7");
+    let (first_parts, _) = NOTE.split_once("(1.4)").expect("there is a fourth part");
+    let cut = note(first_parts);
+    assert_eq!(cut["incomplete"], "the parts 4, 5 are missing");
+    assert_eq!(cut["signals"], json!({"writer": {"raw": "000102030405060708", "value": "000102030405060708"}}));
+}
+
+#[test]
 fn a_text_has_its_least_length_also_if_a_device_counts_less() {
     let log = NOTE.replace("#14", "#01");
     let (first_parts, _) = log.split_once("(1.4)").expect("there is a fourth part");

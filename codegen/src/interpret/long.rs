@@ -62,7 +62,11 @@ impl Joined {
     fn bytes(&self, long: &LongMessage, signal: &Signal) -> Option<Range<usize>> {
         let mut bytes = signal.bytes();
         if let Some(run) = signal.run.filter(|run| run.varies()) {
-            bytes.end = signal.reach_with(self.count).min(self.data.len()).max(bytes.start + usize::from(run.least));
+            let end = signal.reach_with(self.count);
+            // Only what says that it has ended may be shorter than it was announced.
+            let is_announced = self.count.is_some() && !self.is_ended;
+            let end = if is_announced { end } else { end.min(self.data.len()) };
+            bytes.end = end.max(bytes.start + usize::from(run.least));
         }
         let came = self.came.get(bytes.clone()).filter(|_| long.is_among(self.count, signal))?;
         came.iter().all(|came| *came).then_some(bytes)

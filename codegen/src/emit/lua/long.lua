@@ -69,7 +69,9 @@ end
 local function digits_of_text(whole, signal)
   local first, last = 2 * signal.window, 2 * reach(signal, whole.count)
   local digits = whole.data:sub(first + 1, last)
-  local is_there = #whole.data >= first and #digits >= 2 * signal.least
+  local is_announced = whole.count and not whole.is_ended
+  local least = is_announced and last - first or 2 * signal.least
+  local is_there = #whole.data >= first and #digits >= least
   if is_there and not digits:find("%.") then return digits end
 end
 

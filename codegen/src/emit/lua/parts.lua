@@ -71,6 +71,7 @@ local function end_parts(open, expected, ended)
   end
   local whole = { long = long, data = table.concat(data), count = counts[open.counted] }
   whole.incomplete, whole.is_counted = missing(numbers, "part", "parts"), is_counted
+  whole.is_ended = open.is_ended
   table.insert(ended, whole)
 end
 

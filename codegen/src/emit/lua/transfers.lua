@@ -87,8 +87,8 @@ local function end_transfer(open, why, ended)
       what = open.size .. " bytes came, which the message never has"
     end
   end
-  local whole = { long = open.long, data = table.concat(data):sub(1, 2 * open.size), is_counted = true }
-  whole.count = elements_in(open.long, open.size)
+  local whole = { long = open.long, data = table.concat(data):sub(1, 2 * open.size) }
+  whole.is_counted, whole.is_ended, whole.count = true, true, elements_in(open.long, open.size)
   whole.incomplete = what and why and what .. "; " .. why or what or why
   table.insert(ended, whole)
 end
