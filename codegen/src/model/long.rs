@@ -133,17 +133,18 @@ impl LongMessage {
         self.all_varying().next()
     }
 
-    /// Returns the fields whose length varies.
+    /// Returns the fields whose length varies, the arrays first.
     pub fn all_varying(&self) -> impl Iterator<Item = Varying<'_>> {
         let arrays = self.content.arrays.iter().filter_map(|array| {
             let (name, most) = (array.name.as_str(), array.elements.len());
             Some(Varying { name, doc: &array.doc, is_text: false, least: array.least?, most })
         });
-        let text = self.open_text().map(|(text, run)| {
+        let texts = self.content.signals.iter().filter_map(|text| {
+            let run = text.run.filter(|run| run.varies())?;
             let [least, most] = [run.least, run.most].map(usize::from);
-            Varying { name: &text.name, doc: &text.doc, is_text: true, least, most }
+            Some(Varying { name: &text.name, doc: &text.doc, is_text: true, least, most })
         });
-        arrays.chain(text)
+        arrays.chain(texts)
     }
 
     /// Returns the text whose length varies, if there is one.

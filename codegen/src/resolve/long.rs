@@ -322,8 +322,8 @@ impl Resolver<'_> {
         let mut varying = long.all_varying();
         let Some(field) = varying.next() else { return Some(()) };
         let at = field.doc.path.key(if field.is_text { "bytes" } else { "repeat" });
-        let is_alike =
-            |other: &Varying| (other.is_text, other.least, other.most) == (field.is_text, field.least, field.most);
+        // A text ends where the message ends, so it is the only one.
+        let is_alike = |other: &Varying| !other.is_text && (other.least, other.most) == (field.least, field.most);
         if let Some(other) = varying.find(|other| !is_alike(other)) {
             let text = format!("`{}` and `{}` vary in length, each in its own way", field.name, other.name);
             return refuse(&at, text, "only one field has a range in `repeat` or ends open, and it stands last");
