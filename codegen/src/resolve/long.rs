@@ -375,8 +375,9 @@ impl Resolver<'_> {
                     parts.count = count;
                 }
             } else {
-                let text = "`count` means nothing here: no array of the message varies".to_owned();
-                let help = "take it out, or write the least and the greatest number: `repeat: 1..48`";
+                let text = "`count` means nothing here: no field of the message varies".to_owned();
+                let help = "take it out; or write the least and the greatest number, as in `repeat: 1..48`, or end a text \
+                            open: `bytes: 9..`";
                 self.error_with_help(&rules::PARTS, path.at_key(), text, help);
             }
         }
