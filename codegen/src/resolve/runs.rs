@@ -42,10 +42,14 @@ impl Resolver<'_> {
         let path = merged.path(self.diagnostics, Key::Bytes);
         if !is_long {
             let text = match last {
-                Some(_) => "a frame has 8 bytes, and the text has more".to_owned(),
+                Some(_) => "a frame has 8 bytes, and the field has more".to_owned(),
                 None => format!("the text from byte {first} on has no end"),
             };
-            let help = "write its last byte, up to 7; or let several frames carry the message, by `parts` or `via`";
+            let help = if path.to_string().ends_with("parts.data") {
+                "write its last byte, up to 7"
+            } else {
+                "write its last byte, up to 7; or let several frames carry the message, by `parts` or `via`"
+            };
             self.error_with_help(&rules::PLACE, path.at_value(), text, help);
             return None;
         }
