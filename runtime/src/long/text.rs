@@ -101,8 +101,8 @@ impl<T: ByteRun> LongText<T> {
     fn sent(&self, text: &T) -> usize {
         let bytes = text.as_slice();
         let Some(least) = self.least.filter(|_| T::FILL.is_some()) else { return bytes.len() };
-        let last = bytes.iter().rposition(|byte| Some(*byte) != T::FILL);
-        last.map_or(0, |last| last.saturating_add(1)).max(least.into())
+        let end = bytes.iter().rposition(|byte| Some(*byte) != T::FILL);
+        end.map_or(0, |end| end.saturating_add(1)).max(least.into())
     }
 
     /// Writes a text, if the message is long enough for it.
