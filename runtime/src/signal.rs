@@ -226,7 +226,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests bits against what the device model has. It returns whether limits apply to them.
     #[inline(always)]
     fn check_model(&self, bits: u64, payload: &Payload) -> Result<bool, Error> {
-        if self.lacks(payload, |lack| lack.is_shown_by(bits)) {
+        if !self.lacking.is_empty() && shows_lack(self.lacking, payload.model(), bits) {
             return Err(self.meaningless(payload.message()));
         }
         Ok(!self.lacks_bits(payload))
@@ -235,13 +235,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests whether the device model does not have bits of the signal.
     #[inline(always)]
     fn lacks_bits(&self, payload: &Payload) -> bool {
-        self.lacks(payload, |lack| matches!(lack, Lack::Bits(..)))
-    }
-
-    /// Tests what the device model does not have.
-    #[inline(always)]
-    fn lacks(&self, payload: &Payload, is_meant: impl Fn(&Lack) -> bool) -> bool {
-        self.lacking.iter().any(|(model, lack)| Some(*model) == payload.model() && is_meant(lack))
+        !self.lacking.is_empty() && has_lacking_bits(self.lacking, payload.model())
     }
 
     /// Returns the value that limits apply to.
@@ -381,6 +375,18 @@ impl Lack {
             Self::Value(raw) => raw as u64 == bits,
         }
     }
+}
+
+/// Tests whether bits show what a device model does not have. All types of signals share the code.
+#[cold]
+fn shows_lack(lacking: &[(u8, Lack)], model: Option<u8>, bits: u64) -> bool {
+    lacking.iter().any(|(known, lack)| Some(*known) == model && lack.is_shown_by(bits))
+}
+
+/// Tests whether a device model does not have bits of a signal. All types of signals share the code.
+#[cold]
+fn has_lacking_bits(lacking: &[(u8, Lack)], model: Option<u8>) -> bool {
+    lacking.iter().any(|(known, lack)| Some(*known) == model && matches!(lack, Lack::Bits(..)))
 }
 
 /// Returns the name of a raw value. All types of signals share the code.
