@@ -1,7 +1,9 @@
 //! Frames while they are recognised.
 
+use core::marker::PhantomData;
+
 use crate::address::Rank;
-use crate::protocol::{Direction, direction, own_id};
+use crate::protocol::{Headed, Heading, heading, own_id};
 use crate::{Bits, Data, Exchange, Frame, IdentifierFields, Kind, Layout, Place, Problem, Protocol, Received};
 
 /// A frame of a protocol while it is recognised, and the number of the device model that it should be of.
@@ -20,6 +22,18 @@ impl Incoming {
     #[inline(always)]
     pub const fn new(frame: Frame, model: Option<u8>) -> Self {
         Self { frame, model, lengths: &[] }
+    }
+
+    /// Returns the identifier as a number.
+    #[inline(always)]
+    pub(crate) const fn raw_id(&self) -> u32 {
+        self.frame.raw_id()
+    }
+
+    /// Returns the frame as one of a protocol, to be recognised by where it goes.
+    #[inline(always)]
+    pub(crate) const fn of<P>(self) -> IncomingOf<P> {
+        IncomingOf { frame: self, protocol: PhantomData }
     }
 
     /// Returns the value of a field of the identifier.
@@ -120,6 +134,36 @@ impl Incoming {
     }
 }
 
+/// A frame of a protocol, to be recognised by where it goes.
+pub struct IncomingOf<P> {
+    frame: Incoming,
+    protocol: PhantomData<P>,
+}
+
+impl<P: Protocol> Headed for IncomingOf<P> {
+    type Output = Result<Received<P>, Problem>;
+
+    #[inline(always)]
+    fn to_module(self) -> Self::Output {
+        P::request(&self.frame)
+    }
+
+    #[inline(always)]
+    fn to_controller(self) -> Self::Output {
+        P::reply(&self.frame)
+    }
+
+    #[inline(always)]
+    fn to_either(self) -> Self::Output {
+        P::either(&self.frame)
+    }
+
+    #[inline(always)]
+    fn to_neither(self) -> Self::Output {
+        self.frame.unknown()
+    }
+}
+
 /// Says why a frame is not recognised, by the same tests.
 #[cold]
 pub fn problem<P: Protocol>(classic: Option<Frame>) -> Problem {
@@ -140,11 +184,11 @@ fn unrecognised<P: Protocol>(id: u32, length: u8, data: Data) -> Problem {
         return Problem::Foreign;
     }
     let incoming = Incoming::new(Frame::new_raw(id, P::FRAME.is_extended(), data, length), None);
-    let lengths = match direction::<P>(id) {
+    let lengths = match heading::<P>(id) {
         None => return Problem::Identifier,
-        Some(Direction::Module) => P::request_lengths(&incoming),
-        Some(Direction::Controller) => P::reply_lengths(&incoming),
-        Some(Direction::Either) => P::either_lengths(&incoming),
+        Some(Heading::Module) => P::request_lengths(&incoming),
+        Some(Heading::Controller) => P::reply_lengths(&incoming),
+        Some(Heading::Either) => P::either_lengths(&incoming),
     };
     if lengths.is_empty() || lengths.contains(&length) { Problem::UnknownMessage } else { Problem::Length }
 }

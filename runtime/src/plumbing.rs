@@ -17,6 +17,7 @@ pub use crate::long::{ByteRun, LongPayload};
 pub use crate::packed::{Piece, left_aligned, right_aligned};
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
+pub use crate::protocol::Headed;
 pub use crate::raw::{Integer, Raw};
 pub use crate::scale::{Scale, nearest};
 pub use crate::set::Continuation;
@@ -28,8 +29,8 @@ pub use crate::word::{Legend, Word};
 /// Items that a generated module imports, beside those that it re-exports to its users.
 pub mod prelude {
     pub use super::{
-        Address, Continuation, Decode, Encode, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern, Piece, Said,
-        Shown, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
+        Address, Continuation, Decode, Encode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern, Piece,
+        Said, Shown, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};
 }

@@ -114,11 +114,8 @@ pub trait IdentifierFields: Copy + Debug + PartialEq {
         false
     }
 
-    /// Tests whether an identifier goes to a module.
-    fn is_to_module(id: u32) -> bool;
-
-    /// Tests whether an identifier goes to the controller.
-    fn is_to_controller(id: u32) -> bool;
+    /// Goes on with a frame by where its identifier shows that it goes.
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output;
 
     /// Returns the [`Protocol::MODES`] in which an identifier is a request, as bits from the lowest on. The document
     /// names all addresses in it.
@@ -168,36 +165,73 @@ pub fn own_id<P: Protocol>(frame: &impl embedded_can::Frame) -> Option<u32> {
     (extended == P::FRAME.is_extended()).then_some(id)
 }
 
+/// What is done with a frame, by where it goes.
+pub trait Headed: Sized {
+    /// What comes of it.
+    type Output;
+
+    /// The frame goes to a module.
+    fn to_module(self) -> Self::Output;
+
+    /// The frame goes to the controller.
+    fn to_controller(self) -> Self::Output;
+
+    /// The identifier does not show to which of both. The data do.
+    fn to_either(self) -> Self::Output;
+
+    /// The identifier shows that the frame goes to neither.
+    fn to_neither(self) -> Self::Output;
+}
+
 /// Where a frame goes, as far as its identifier shows.
-#[derive(Clone, Copy)]
-pub enum Direction {
+#[derive(Clone, Copy, PartialEq)]
+pub enum Heading {
     Module,
     Controller,
     Either,
 }
 
+/// Only asks where a frame goes.
+struct Asked;
+
+impl Headed for Asked {
+    type Output = Option<Heading>;
+
+    #[inline(always)]
+    fn to_module(self) -> Option<Heading> {
+        Some(Heading::Module)
+    }
+
+    #[inline(always)]
+    fn to_controller(self) -> Option<Heading> {
+        Some(Heading::Controller)
+    }
+
+    #[inline(always)]
+    fn to_either(self) -> Option<Heading> {
+        Some(Heading::Either)
+    }
+
+    #[inline(always)]
+    fn to_neither(self) -> Option<Heading> {
+        None
+    }
+}
+
 /// Tells where a frame with an identifier goes. `None` means that it does not belong to the protocol.
 #[inline(always)]
-pub fn direction<P: Protocol>(id: u32) -> Option<Direction> {
-    if !is_own::<P>(id) {
-        return None;
-    }
-    // Most frames on a bus go to the controller.
-    if P::Identifier::is_to_controller(id) {
-        let is_open = P::Identifier::is_to_module(id);
-        Some(if is_open { Direction::Either } else { Direction::Controller })
-    } else {
-        P::Identifier::is_to_module(id).then_some(Direction::Module)
-    }
+pub fn heading<P: Protocol>(id: u32) -> Option<Heading> {
+    if is_own::<P>(id) { P::Identifier::head(id, Asked) } else { None }
 }
 
 /// Tests whether a frame with an identifier can go to the controller.
 #[inline(always)]
 pub fn is_to_controller<P: Protocol>(id: u32) -> bool {
-    is_own::<P>(id) && P::Identifier::is_to_controller(id)
+    matches!(heading::<P>(id), Some(Heading::Controller | Heading::Either))
 }
 
+/// Tests whether an identifier has the fixed bits of the protocol and is not foreign.
 #[inline(always)]
-fn is_own<P: Protocol>(id: u32) -> bool {
+pub fn is_own<P: Protocol>(id: u32) -> bool {
     P::FRAME.matches_id(id) && !(P::FOREIGN_LIKE_OWN && P::Identifier::is_foreign(id))
 }

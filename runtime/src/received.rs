@@ -6,7 +6,7 @@ use crate::frame::{classic, without_data};
 use crate::incoming::{Incoming, problem};
 use crate::layout::Signals;
 use crate::plumbing::Way;
-use crate::protocol::{Direction, direction, own_id};
+use crate::protocol::{is_own, own_id};
 use crate::reply::{has_error, selected};
 use crate::status::set_bits;
 use crate::{
@@ -51,20 +51,17 @@ impl<P: Protocol> Received<P> {
 
     #[inline]
     pub(crate) fn decode_by(model: Option<u8>, frame: &impl embedded_can::Frame) -> Result<Self, Problem> {
-        let Some((direction, incoming)) = Self::incoming(model, frame) else { return refused(frame) };
-        match direction {
-            Direction::Module => P::request(&incoming),
-            Direction::Controller => P::reply(&incoming),
-            Direction::Either => P::either(&incoming),
+        match Self::incoming(model, frame) {
+            Some(incoming) => P::Identifier::head(incoming.raw_id(), incoming.of::<P>()),
+            None => Err(refused::<P>(frame)),
         }
     }
 
     #[inline(always)]
-    fn incoming(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<(Direction, Incoming)> {
-        let id = own_id::<P>(frame)?;
-        let direction = direction::<P>(id)?;
+    fn incoming(model: Option<u8>, frame: &impl embedded_can::Frame) -> Option<Incoming> {
+        let id = own_id::<P>(frame).filter(|id| is_own::<P>(*id))?;
         let frame = Frame::copied(id, P::FRAME.is_extended(), P::LENGTH, frame)?;
-        Some((direction, Incoming::new(frame, model)))
+        Some(Incoming::new(frame, model))
     }
 
     #[inline(always)]
@@ -320,8 +317,8 @@ impl<P: Addressed> Received<P> {
 
 /// Says why a frame is none of the protocol.
 #[cold]
-fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Result<Received<P>, Problem> {
-    Err(problem::<P>(if P::DATA_SELECTORS { classic(frame) } else { without_data(frame) }))
+fn refused<P: Protocol>(frame: &impl embedded_can::Frame) -> Problem {
+    problem::<P>(if P::DATA_SELECTORS { classic(frame) } else { without_data(frame) })
 }
 
 /// Returns the bits of a status word, and those that have a name.

@@ -203,7 +203,7 @@ pub struct Direction {
 }
 
 /// A test of one identifier field.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct FieldTest {
     /// The field.

@@ -1,6 +1,6 @@
 //! A made-up protocol: heaters 1 to 9, alone, in groups or all together, and a controller 0xF0 or 0xF1.
 
-use crate::plumbing::{Address, Decode, Encode, IdFilter, Incoming, Pattern, Shown, Task, Way, Who};
+use crate::plumbing::{Address, Decode, Encode, Headed, IdFilter, Incoming, Pattern, Shown, Task, Way, Who};
 use crate::{
     AddressType, Addressed, AnySignal, Bits, Destination, Error, Exchange, Filter, Frame, IdentifierFields, Layout,
     Mode, Place, Problem, Protocol, Received, Request, Route, Selector, Signal,
@@ -116,12 +116,12 @@ impl IdentifierFields for Identifier {
         id == 0x0100_0000
     }
 
-    fn is_to_module(id: u32) -> bool {
-        SOURCE.of(id) >= 0xF0 && TARGET.of(id) < 0xF0
-    }
-
-    fn is_to_controller(id: u32) -> bool {
-        TARGET.of(id) >= 0xF0 && SOURCE.of(id) < 0xF0
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match (TARGET.of(id) >= 0xF0, SOURCE.of(id) >= 0xF0) {
+            (false, true) => frame.to_module(),
+            (true, false) => frame.to_controller(),
+            (true, true) | (false, false) => frame.to_neither(),
+        }
     }
 }
 

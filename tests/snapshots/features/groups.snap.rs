@@ -34,18 +34,14 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(_: u32) -> bool {
-        false
-    }
-
-    #[inline]
-    fn is_to_controller(_: u32) -> bool {
-        true
+    #[inline(always)]
+    fn head<H: Headed>(_: u32, frame: H) -> H::Output {
+        frame.to_controller()
     }
 }
 
@@ -212,6 +208,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }

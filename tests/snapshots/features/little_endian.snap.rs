@@ -38,6 +38,7 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -47,14 +48,12 @@ impl IdentifierFields for Identifier {
         Self::FUNCTION.of(id) == 0x0
     }
 
-    #[inline]
-    fn is_to_module(_: u32) -> bool {
-        false
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::FUNCTION.of(id) == 0x1
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::FUNCTION.of(id) {
+            0x1 => frame.to_controller(),
+            _ => frame.to_neither(),
+        }
     }
 }
 
@@ -171,6 +170,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }

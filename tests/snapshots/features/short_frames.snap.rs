@@ -41,18 +41,18 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        (Self::FUNCTION.of(id) == 0xF) || (Self::FUNCTION.of(id) == 0x6)
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::FUNCTION.of(id) == 0x5
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::FUNCTION.of(id) {
+            0x5 => frame.to_controller(),
+            0x6 | 0xF => frame.to_module(),
+            _ => frame.to_neither(),
+        }
     }
 
     #[inline]
@@ -258,6 +258,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }

@@ -106,20 +106,24 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        Self::DIRECTION.of(id) == 0x1 && Self::PROTOCOL.of(id) == 0x21
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        (Self::DIRECTION.of(id) == 0x0)
-            || (Self::PROTOCOL.of(id) == 0x20)
-            || (Self::PROTOCOL.of(id) == 0x21 && Self::DIRECTION.of(id) == 0x1)
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match (
+            Self::DIRECTION.of(id) == 0x1 && Self::PROTOCOL.of(id) == 0x21,
+            (Self::DIRECTION.of(id) == 0x0)
+                || (Self::PROTOCOL.of(id) == 0x20)
+                || (Self::PROTOCOL.of(id) == 0x21 && Self::DIRECTION.of(id) == 0x1),
+        ) {
+            (true, true) => frame.to_either(),
+            (true, false) => frame.to_module(),
+            (false, true) => frame.to_controller(),
+            (false, false) => frame.to_neither(),
+        }
     }
 
     #[inline]
@@ -3176,6 +3180,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
@@ -3184,6 +3189,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }

@@ -62,6 +62,7 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -71,14 +72,18 @@ impl IdentifierFields for Identifier {
         (0x0757_F800..=0x0757_F8FF).contains(&id)
     }
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        !(0xF0..=0xF8).contains(&Self::TARGET.of(id)) && (0xF0..=0xF8).contains(&Self::SOURCE.of(id))
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        (0xF0..=0xF8).contains(&Self::TARGET.of(id)) && !(0xF0..=0xF8).contains(&Self::SOURCE.of(id))
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::TARGET.of(id) {
+            0xF0..=0xF8 => match Self::SOURCE.of(id) {
+                0xF0..=0xF8 => frame.to_neither(),
+                _ => frame.to_controller(),
+            }
+            _ => match Self::SOURCE.of(id) {
+                0xF0..=0xF8 => frame.to_module(),
+                _ => frame.to_neither(),
+            }
+        }
     }
 
     #[inline]
@@ -2052,6 +2057,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
@@ -2060,6 +2066,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }

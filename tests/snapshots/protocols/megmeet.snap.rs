@@ -89,6 +89,7 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
@@ -98,14 +99,12 @@ impl IdentifierFields for Identifier {
         Self::PROTOCOL.of(id) == 0x22
     }
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        Self::SENDER.of(id) == 0x1
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::SENDER.of(id) == 0x0
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::SENDER.of(id) {
+            0x0 => frame.to_controller(),
+            _ => frame.to_module(),
+        }
     }
 
     #[inline]
@@ -5303,6 +5302,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
@@ -5311,6 +5311,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }

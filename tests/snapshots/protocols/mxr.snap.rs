@@ -96,21 +96,27 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        (!(0xC1..=0xFD).contains(&Self::TARGET.of(id)) && Self::TARGET.of(id) != 0xF0 && Self::SOURCE.of(id) == 0xF0)
-            || (Self::POINT_TO_POINT.of(id) == 0x0
-                && (0xC1..=0xFD).contains(&Self::TARGET.of(id))
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match (
+            (!(0xC1..=0xFD).contains(&Self::TARGET.of(id))
+                && Self::TARGET.of(id) != 0xF0
                 && Self::SOURCE.of(id) == 0xF0)
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0
+                || (Self::POINT_TO_POINT.of(id) == 0x0
+                    && (0xC1..=0xFD).contains(&Self::TARGET.of(id))
+                    && Self::SOURCE.of(id) == 0xF0),
+            Self::TARGET.of(id) == 0xF0 && Self::SOURCE.of(id) != 0xF0,
+        ) {
+            (true, true) => frame.to_either(),
+            (true, false) => frame.to_module(),
+            (false, true) => frame.to_controller(),
+            (false, false) => frame.to_neither(),
+        }
     }
 
     #[inline]
@@ -2409,6 +2415,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }

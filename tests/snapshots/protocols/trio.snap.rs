@@ -76,18 +76,23 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        Self::TARGET.of(id) != 0xF3 && Self::SOURCE.of(id) == 0xF3
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::TARGET.of(id) == 0xF3 && Self::SOURCE.of(id) != 0xF3
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::TARGET.of(id) {
+            0xF3 => match Self::SOURCE.of(id) {
+                0xF3 => frame.to_neither(),
+                _ => frame.to_controller(),
+            }
+            _ => match Self::SOURCE.of(id) {
+                0xF3 => frame.to_module(),
+                _ => frame.to_neither(),
+            }
+        }
     }
 
     #[inline]
@@ -969,6 +974,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
@@ -977,6 +983,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode_for(model, frame)
     }

@@ -1,11 +1,12 @@
 //! The identifier: its fields, and how they show the direction.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use super::choice::tuple;
 use super::derives::Derives;
 use super::plan::documented::{Documented, Shown};
+use super::plan::heading::Heading;
 use super::plan::identifier::{Comparison, Field, Identifier, Range, Test};
 
 /// Emits the struct of the identifier and its fields' places.
@@ -49,18 +50,18 @@ fn splitting(Identifier { fields, ones, .. }: &Identifier) -> TokenStream {
 }
 
 /// Emits the tests of an identifier that every protocol needs.
-fn directions(Identifier { foreign, to_module, to_controller, documented, .. }: &Identifier) -> TokenStream {
-    let foreign = foreign.as_ref().map(|known| test("is_foreign", known));
-    let (to_module, to_controller) = (test("is_to_module", to_module), test("is_to_controller", to_controller));
+fn directions(Identifier { foreign, heading, documented, .. }: &Identifier) -> TokenStream {
+    let foreign = foreign.as_ref().map(is_foreign);
+    let head = head(heading);
     let documented = documented_modes(documented);
     quote! {
+        #[expect(clippy::inline_always, reason = "only decoding calls it")]
         impl IdentifierFields for Identifier {
             const FROM_RAW: fn(u32) -> Self = Self::from_raw;
             const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
             #foreign
-            #to_module
-            #to_controller
+            #head
             #documented
         }
     }
@@ -105,12 +106,45 @@ fn pattern(ranges: &[Range]) -> TokenStream {
     if ranges.len() == 0 { quote!(_) } else { quote!(#(#ranges)|*) }
 }
 
-/// Emits a test of an identifier. It takes none if the result is always the same.
-fn test(name: &str, test: &Test) -> TokenStream {
-    let name = format_ident!("{name}");
-    let id = if test.reads() { quote!(id) } else { quote!(_) };
-    let condition = condition(test);
-    quote!(#[inline] fn #name(#id: u32) -> bool { #condition })
+/// Emits where a frame goes.
+fn head(heading: &Heading) -> TokenStream {
+    let outcome = outcome(heading);
+    let id = if matches!(heading, Heading::Known { .. }) { quote!(_) } else { quote!(id) };
+    quote!(#[inline(always)] fn head<H: Headed>(#id: u32, frame: H) -> H::Output { #outcome })
+}
+
+fn outcome(heading: &Heading) -> TokenStream {
+    match heading {
+        Heading::Known { to_module, to_controller } => known(*to_module, *to_controller),
+        Heading::By { place, cases, otherwise } => {
+            let arms = cases.iter().map(|(ranges, next)| (pattern(ranges), outcome(next)));
+            let arms = arms.map(|(pattern, next)| quote!(#pattern => #next,));
+            let otherwise = outcome(otherwise);
+            quote!(match Self::#place.of(id) { #(#arms)* _ => #otherwise })
+        }
+        Heading::Tests { to_module, to_controller } => {
+            let tests = tuple([to_module, to_controller].map(condition).into());
+            let arms = [(true, true), (true, false), (false, true), (false, false)].map(|(module, controller)| {
+                let outcome = known(module, controller);
+                quote!((#module, #controller) => #outcome,)
+            });
+            quote!(match #tests { #(#arms)* })
+        }
+    }
+}
+
+fn known(to_module: bool, to_controller: bool) -> TokenStream {
+    match (to_module, to_controller) {
+        (true, true) => quote!(frame.to_either()),
+        (true, false) => quote!(frame.to_module()),
+        (false, true) => quote!(frame.to_controller()),
+        (false, false) => quote!(frame.to_neither()),
+    }
+}
+
+fn is_foreign(foreign: &Test) -> TokenStream {
+    let condition = condition(foreign);
+    quote!(#[inline] fn is_foreign(id: u32) -> bool { #condition })
 }
 
 fn condition(test: &Test) -> TokenStream {

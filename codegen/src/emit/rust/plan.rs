@@ -6,6 +6,7 @@ pub mod doc;
 pub mod documented;
 mod encoding;
 pub mod exchange;
+pub mod heading;
 pub mod identifier;
 mod limits;
 pub mod literal;

@@ -37,6 +37,7 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
             ///
             /// # Errors
             /// Says why the frame is not recognised.
+            #[inline]
             pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
                 Received::decode(frame)
             }
@@ -56,6 +57,7 @@ fn decode_for() -> TokenStream {
         ///
         /// # Errors
         /// Says why the frame is not recognised.
+        #[inline]
         pub fn decode_for(model: Model, frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
             Received::decode_for(model, frame)
         }

@@ -1,6 +1,6 @@
 //! A made-up protocol: ovens 1 to 15 answer with sets of six members, or of two.
 
-use crate::plumbing::{Address, Continuation, Decode, Encode, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Continuation, Decode, Encode, Headed, Incoming, Pattern, Task, Who};
 use crate::{
     AddressType, AnySignal, Bits, Exchange, Filter, Frame, FrameSet, IdentifierFields, Layout, Mode, Place, Problem,
     Protocol, Received, Selector, Signal,
@@ -83,12 +83,8 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self;
     const TO_RAW: fn(Self) -> u32 = |identifier| identifier.0;
 
-    fn is_to_module(id: u32) -> bool {
-        DIRECTION.of(id) == 0
-    }
-
-    fn is_to_controller(id: u32) -> bool {
-        DIRECTION.of(id) == 1
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        if DIRECTION.of(id) == 0 { frame.to_module() } else { frame.to_controller() }
     }
 }
 

@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::long::{Elements, LongPayload, LongSignal};
-use crate::plumbing::{Address, Decode, Encode, Incoming, Pattern, Task, Who};
+use crate::plumbing::{Address, Decode, Encode, Headed, Incoming, Pattern, Task, Who};
 use crate::{
     AddressType, AnySignal, Bits, Bytes, Data, Error, Exchange, Filter, Kind, Mode, Problem, Received, Signal,
 };
@@ -42,12 +42,8 @@ impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self;
     const TO_RAW: fn(Self) -> u32 = |Self(id)| id;
 
-    fn is_to_module(id: u32) -> bool {
-        TO_HOST.of(id) == 0
-    }
-
-    fn is_to_controller(id: u32) -> bool {
-        TO_HOST.of(id) == 1
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        if TO_HOST.of(id) == 0 { frame.to_module() } else { frame.to_controller() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbers of groups, and the frames that show them.
 
 use super::Transport;
-use crate::protocol::{Direction, direction};
+use crate::protocol::{Heading, heading};
 use crate::tp::{ALL, Link};
 use crate::{Bits, Data, Exchange, Filter, Frame, Kind, Protocol};
 
@@ -10,7 +10,7 @@ const RECEIVER: u32 = 0xFF;
 
 /// Tests whether an identifier goes to a module.
 pub fn is_to_module<T: Transport>(id: u32) -> bool {
-    matches!(direction::<T::Protocol>(id), Some(Direction::Module))
+    matches!(heading::<T::Protocol>(id), Some(Heading::Module))
 }
 
 /// Tests whether the last byte of a group's number is the place of a receiver.

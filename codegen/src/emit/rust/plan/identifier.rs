@@ -5,10 +5,11 @@ use proc_macro2::{Ident, TokenStream};
 use super::doc::{self, Comment};
 use super::documented::Documented;
 use super::encoding::integer;
+use super::heading::Heading;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{ident, screaming};
 use super::types::Types;
-use crate::model::{self, Direction, FieldId, FieldTest, Foreign, FrameLayout, Numeral, Protocol};
+use crate::model::{self, FieldId, FieldTest, Foreign, FrameLayout, Numeral, Protocol};
 
 /// The identifier.
 pub struct Identifier {
@@ -20,10 +21,8 @@ pub struct Identifier {
     pub ones: Option<TokenStream>,
     /// How it shows that it belongs to another device, if it can.
     pub foreign: Option<Test>,
-    /// How it shows that a frame goes to a module.
-    pub to_module: Test,
-    /// How it shows that a frame goes to the controller.
-    pub to_controller: Test,
+    /// How it shows where a frame goes.
+    pub heading: Heading,
     /// How the requests of each addressing mode show documented addresses only.
     pub documented: Documented,
 }
@@ -65,13 +64,6 @@ pub struct Test {
     pub any: Vec<Vec<Comparison>>,
 }
 
-impl Test {
-    /// Says whether the outcome depends on the identifier.
-    pub fn reads(&self) -> bool {
-        self.any.iter().any(|tests| !tests.is_empty())
-    }
-}
-
 /// A test of one value.
 pub struct Comparison {
     /// Place of the field; `None` for the identifier as a whole.
@@ -101,8 +93,7 @@ impl Identifier {
             fields: fields.iter().map(|field| Field::new(protocol, types, field)).collect(),
             ones: (ones != 0).then(|| hexadecimal(ones, 32)),
             foreign: (!foreign.is_empty()).then_some(Test { any: foreign }),
-            to_module: direction(protocol, &protocol.recognition.to_module),
-            to_controller: direction(protocol, &protocol.recognition.to_controller),
+            heading: Heading::new(protocol),
             documented: Documented::new(protocol),
         }
     }
@@ -182,12 +173,8 @@ fn can_show(protocol: &Protocol, foreign: &Foreign, field: FieldId, value: u32) 
     })
 }
 
-fn direction(protocol: &Protocol, direction: &Direction) -> Test {
-    let lists = direction.any.iter().map(|tests| tests.iter().map(|test| field_test(protocol, test)).collect());
-    Test { any: lists.collect() }
-}
-
-fn field_test(protocol: &Protocol, test: &FieldTest) -> Comparison {
+/// Plans the test of a field.
+pub fn field_test(protocol: &Protocol, test: &FieldTest) -> Comparison {
     let (place, width) = field_place(protocol, test.field);
     let ranges = test.ranges.iter().map(|ends| range(*ends, width)).collect();
     Comparison { place: Some(place), inside: test.inside, ranges }

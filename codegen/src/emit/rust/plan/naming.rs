@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 92] = [
+const TAKEN: [&str; 93] = [
     "Address",
     "AddressType",
     "Addressed",
@@ -42,6 +42,7 @@ const TAKEN: [&str; 92] = [
     "FrameSet",
     "From",
     "Hash",
+    "Headed",
     "IdFilter",
     "Identifier",
     "IdentifierFields",
