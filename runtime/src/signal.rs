@@ -2,12 +2,13 @@
 
 mod any;
 mod optional;
+mod scaled;
 #[cfg(test)]
 mod tests;
 
 use core::marker::PhantomData;
 
-use crate::physical::{Physical, Scaled};
+use crate::physical::Physical;
 use crate::plumbing::Scale;
 use crate::raw::Raw;
 use crate::{Data, Error, Number, Payload, Place};
@@ -393,126 +394,4 @@ fn has_lacking_bits(lacking: &[(u8, Lack)], model: Option<u8>) -> bool {
 #[inline]
 fn named(specials: &[(i64, &'static str)], bits: u64) -> Option<&'static str> {
     specials.iter().find(|(raw, _)| *raw as u64 == bits).map(|(_, name)| *name)
-}
-
-impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
-    /// Returns the physical value of a raw value; `None` if the raw value means something else.
-    ///
-    /// ```
-    /// use canspec_runtime::{Place, Signal};
-    ///
-    /// const LIMIT: Signal<u16> = Signal::new("limit", Place::bytes(0, 1)).specials(&[(0, "off")]).by_model();
-    /// const ON_SMALL: Signal<u16, f64> = LIMIT.on_model().unit("A").scale(1, 20).limits(1.0, 40.0);
-    ///
-    /// assert_eq!(ON_SMALL.physical_of(440), Some(22.0));
-    /// assert_eq!(ON_SMALL.physical_of(0), None);
-    /// assert_eq!(ON_SMALL.raw_of(22.0, "set_limit"), Ok(440));
-    /// let error = ON_SMALL.raw_of(41.0, "set_limit").unwrap_err();
-    /// assert_eq!(error.to_string(), "`limit` of `set_limit` is 41 A, but its limits are 1 and 40 A");
-    /// ```
-    pub fn physical_of(&self, raw: R) -> Option<F> {
-        let bits = raw.to_bits();
-        self.special(bits).is_none().then(|| F::scaled(bits as i64, self.exact_scale()))
-    }
-
-    /// Returns the raw value nearest to a physical value within the limits, with ties away from zero.
-    ///
-    /// # Errors
-    ///
-    /// The same as those of [`encode`](Self::encode) into a request of `message`.
-    pub fn raw_of(&self, physical: F, message: &'static str) -> Result<R, Error> {
-        let mut payload = Payload::within_limits(message, [0; 8]);
-        self.encode(physical, &mut payload)?;
-        Ok(self.get(payload.data()))
-    }
-
-    /// Returns the physical value: the number of type `F` nearest to the exact one.
-    #[inline(always)]
-    pub fn decode(&self, data: &Data) -> F {
-        F::decoded(self.bits(*data) as i64, self.exact_scale())
-    }
-
-    /// Writes the raw value nearest to a physical value, with ties away from zero.
-    ///
-    /// # Errors
-    ///
-    /// Refuses values that the signal's bits cannot hold. If `payload` keeps to limits, it also
-    /// refuses values outside them, before or after rounding. It then refuses values, too, that
-    /// would be rounded to a special raw value.
-    #[inline(always)]
-    pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
-        let raw = physical.raw_of(self.exact_scale(), self.place.width(), R::SIGNED);
-        let Some((raw, bits)) = raw.and_then(|raw| Some((raw, R::bits_of(raw)?))) else {
-            return Err(self.unheld(physical, self.bits_on_models(physical), payload));
-        };
-        if payload.keeps_limits() && self.check_model(bits, payload)? {
-            self.check_rounded(physical, raw, bits, payload)?;
-        }
-        if self.store(bits, payload) { Ok(()) } else { Err(self.unheld(physical, bits, payload)) }
-    }
-
-    /// Returns the bits that a physical value would need, if there are device models without some.
-    #[inline(always)]
-    fn bits_on_models(&self, physical: F) -> u64 {
-        if self.lacking.is_empty() {
-            return 0;
-        }
-        physical.raw(self.exact_scale()).and_then(R::bits_of).unwrap_or_default()
-    }
-
-    /// Says why a value is refused that the bits cannot hold.
-    #[inline(always)]
-    fn unheld(&self, physical: F, bits: u64, payload: &Payload) -> Error {
-        self.unheld_in(payload.keeps_limits(), physical, bits, payload.model(), payload.message())
-    }
-
-    /// Says the same. It takes the parts of the payload, or there would have to be one in memory.
-    #[cold]
-    fn unheld_in(&self, keeps_limits: bool, physical: F, bits: u64, model: Option<u8>, message: &'static str) -> Error {
-        let payload = Payload::within_limits(message, [0; 8]).for_model(model);
-        let has_limits = if keeps_limits { self.check_model(bits, &payload) } else { Ok(false) };
-        let checked =
-            has_limits.and_then(|has_limits| if has_limits { self.check(physical, &payload) } else { Ok(()) });
-        match checked {
-            Err(error) => error,
-            Ok(()) if physical.is_nan() => self.not_finite(message),
-            Ok(()) => self.too_wide(physical, message),
-        }
-    }
-
-    /// Tests a physical value, and the raw value that it is rounded to. A special raw value would
-    /// have another meaning.
-    #[inline(always)]
-    fn check_rounded(&self, physical: F, raw: i64, bits: u64, payload: &Payload) -> Result<(), Error> {
-        let sent = || F::scaled(raw, self.exact_scale());
-        match self.special(bits) {
-            Some(_) if sent() == physical => Ok(()),
-            Some(name) => {
-                self.check_finite(physical, payload)?;
-                Err(self.hidden(Scaled::number(physical), name, payload.message()))
-            }
-            None => {
-                self.check_finite(physical, payload)?;
-                if self.has_limits_on_steps(payload) || sent() == physical {
-                    Ok(())
-                } else {
-                    self.check_finite(sent(), payload)
-                }
-            }
-        }
-    }
-
-    /// Tests whether the limits are steps, and known when a program is compiled.
-    ///
-    /// What is rounded between them stays between them. The general limits are constants, so the
-    /// compiler answers.
-    #[inline(always)]
-    fn has_limits_on_steps(&self, payload: &Payload) -> bool {
-        let is_general = self.model_limits.is_empty() || payload.model().is_none();
-        is_general
-            && match self.limits {
-                Some((minimum, maximum)) => minimum.is_step(self.exact_scale()) && maximum.is_step(self.exact_scale()),
-                None => true,
-            }
-    }
 }
