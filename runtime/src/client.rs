@@ -46,11 +46,13 @@
 //! in 24 days.
 
 mod entry;
+mod hold;
 mod pace;
 #[cfg(test)]
 mod tests;
 
 pub use entry::Ticket;
+pub use hold::{Agrees, NotHeld};
 pub use pace::Pace;
 
 use core::num::NonZeroU32;
@@ -80,7 +82,8 @@ pub struct Client<P, const N: usize> {
 pub enum Step {
     /// It sends this frame now.
     Send(Frame),
-    /// A request is lost: it was sent as often as it may be, and no answer came.
+    /// A request is lost: it was sent as often as it may be, and no answer came. If it is held, none came
+    /// that agrees.
     Lost(Ticket),
     /// A request is done that nobody answers, or that each module of several could answer.
     Done(Ticket),
@@ -99,6 +102,13 @@ pub enum Heard<P: Protocol> {
         /// The frame.
         received: Received<P>,
     },
+    /// It answers a request that is [held](Client::hold), and says something else. The request waits on.
+    NotInEffect {
+        /// The request.
+        ticket: Ticket,
+        /// The frame.
+        received: Received<P>,
+    },
     /// It refuses a request: it shows an error code, or is the message that says why.
     Refusal {
         /// The request.
@@ -110,7 +120,7 @@ pub enum Heard<P: Protocol> {
     ShortRefusal(Ticket),
     /// It would answer a request if it had the right length. The request waits on.
     Broken(Ticket),
-    /// It answers a request that was lost.
+    /// It answers a request that was lost, or could answer what was held before.
     Late {
         /// The request.
         ticket: Ticket,
@@ -187,11 +197,20 @@ impl<P: Protocol, const N: usize> Client<P, N> {
         self.add(entry)
     }
 
+    /// Sends a request before all others that are due, if it is due: a stop, for instance. The gap between
+    /// requests stays.
+    pub fn hurry(&mut self, ticket: Ticket, now: u32) {
+        let due = self.entries.iter_mut().flatten().find(|entry| entry.ticket == ticket && entry.due(now).is_some());
+        if let Some(entry) = due {
+            entry.state = State::Due { from: now.wrapping_sub(LONGEST / 2) };
+        }
+    }
+
     /// Asks no more. An answer that still comes is late.
     pub fn cancel(&mut self, ticket: Ticket) {
         let entries = self.entries.iter_mut();
         for slot in entries.filter(|slot| slot.is_some_and(|entry| entry.ticket == ticket)) {
-            *slot = slot.filter(|entry| entry.sent > 0).map(Entry::cancelled);
+            *slot = slot.filter(Entry::is_under_way).map(Entry::cancelled);
         }
     }
 
@@ -218,7 +237,7 @@ impl<P: Protocol, const N: usize> Client<P, N> {
             Err(problem) => return Heard::Unrecognised(problem),
         };
         if let Some(entry) = entries.find(awaiting) {
-            return entry.answered(received, entry.request.refuses(frame) == Some(true));
+            return entry.answered(received, entry.request.refuses(frame) == Some(true), self.model);
         }
         let past = self.entries.iter().flatten().find_map(|entry| entry.too_late(frame, received));
         past.unwrap_or(Heard::Other(received))

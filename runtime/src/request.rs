@@ -150,6 +150,11 @@ impl<P, R> Request<P, R> {
         answers(self).into_iter().flatten().any(overlaps)
     }
 
+    /// Tests whether both carry the same message by the same access.
+    pub(crate) fn is_of_same_exchange(&self, other: &Self) -> bool {
+        self.exchange.is(other.exchange)
+    }
+
     /// Makes the frame say that more follow. Generated code calls it.
     #[doc(hidden)]
     pub fn followed(mut self, continuation: &Continuation) -> Self {

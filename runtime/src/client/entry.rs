@@ -2,6 +2,7 @@
 
 use core::num::NonZeroU32;
 
+use super::hold::Hold;
 use super::{Heard, Pace, Step, has_one_answer};
 use crate::{Protocol, Received, Replies, Request};
 
@@ -17,13 +18,15 @@ pub struct Entry<P> {
     pub pace: Pace,
     /// The time from one round to the next, if it is asked again and again.
     pub period: Option<NonZeroU32>,
+    /// How it is held, if it is.
+    pub hold: Option<Hold<P>>,
     pub state: State,
-    /// When this round was due.
-    round: u32,
+    /// When this round was due, or first sent if it is held.
+    pub round: u32,
     /// How often it was sent in this round.
     pub sent: u8,
     /// How many modules have answered in this round.
-    answers: u8,
+    pub answers: u8,
 }
 
 /// What an entry waits for.
@@ -59,10 +62,15 @@ pub fn earlier(time: u32, other: u32, now: u32) -> bool {
     since(time) > since(other)
 }
 
+/// Tests whether a time is after another one, both within 24 days of each other.
+pub fn is_later(time: u32, other: u32) -> bool {
+    !has_come(time, other)
+}
+
 impl<P: Protocol> Entry<P> {
     pub const fn new(ticket: Ticket, request: Request<P, ()>, pace: Pace, now: u32) -> Self {
         let state = State::Due { from: now };
-        Self { ticket, request, pace, period: None, state, round: now, sent: 0, answers: 0 }
+        Self { ticket, request, pace, period: None, hold: None, state, round: now, sent: 0, answers: 0 }
     }
 
     /// Returns since when the request is to be sent, if it is.
@@ -75,30 +83,44 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether the entry would take a frame for its answer, now or later.
     pub fn awaits(&self) -> bool {
-        self.sent > 0 && !matches!(self.state, State::Resting { .. })
+        self.is_under_way() && !matches!(self.state, State::Resting { .. })
+    }
+
+    /// Tests whether an answer to what was sent, or to what was held before, can come in this round.
+    pub const fn is_under_way(&self) -> bool {
+        self.sent > 0 || matches!(self.hold, Some(Hold { deaf: Some(_), .. }))
     }
 
     /// Tests whether an answer can come.
     pub fn is_open(&self, now: u32) -> bool {
         match self.state {
-            State::Due { .. } | State::Waiting { .. } => self.sent > 0,
+            State::Due { .. } | State::Waiting { .. } => self.is_under_way(),
             State::Resting { until, .. } => !has_come(until, now),
         }
     }
 
     /// Notes that the request is sent.
     pub fn start(&mut self, now: u32) {
+        let deaf = self.start_held(now);
         self.sent = self.sent.saturating_add(1);
         let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
-        self.state = State::Waiting { until: now.wrapping_add(wait) };
+        let until = now.wrapping_add(wait);
+        self.state = State::Waiting { until: deaf.filter(|deaf| is_later(*deaf, until)).unwrap_or(until) };
     }
 
     /// Ends a wait that has taken too long, and says how. Sends the request again if it may.
     pub fn ended(&mut self, now: u32) -> Option<Step> {
+        if self.is_unheard(now) {
+            self.sent = 0;
+            return Some(Step::Lost(self.ticket));
+        }
         let until = match self.state {
             State::Waiting { until } if has_come(until, now) => until,
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => return None,
         };
+        if self.listen(now) {
+            return None;
+        }
         let is_done = self.answers > 0 || self.request.replies() == Replies::Nobody;
         if !is_done && self.sent < self.pace.tries {
             self.state = State::Due { from: now };
@@ -108,16 +130,23 @@ impl<P: Protocol> Entry<P> {
         Some(if is_done { Step::Done(self.ticket) } else { Step::Lost(self.ticket) })
     }
 
-    /// Takes a frame for the answer.
-    pub fn answered(&mut self, received: Received<P>, is_refusal: bool) -> Heard<P> {
-        self.count();
+    /// Takes a frame for the answer, if it counts as one.
+    pub fn answered(&mut self, received: Received<P>, is_refusal: bool, model: Option<u8>) -> Heard<P> {
         let ticket = self.ticket;
+        if self.deaf().is_some() {
+            self.answers = 1;
+            return Heard::Late { ticket, received };
+        }
+        if !is_refusal && !self.agrees(&received, model) {
+            return Heard::NotInEffect { ticket, received };
+        }
+        self.count();
         if is_refusal { Heard::Refusal { ticket, received } } else { Heard::Answer { ticket, received } }
     }
 
     /// Takes a frame of a wrong length for the answer if it refuses the request.
     pub fn answered_short(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
-        if self.request.refuses(frame) != Some(true) {
+        if self.deaf().is_some() || self.request.refuses(frame) != Some(true) {
             return Heard::Broken(self.ticket);
         }
         self.count();
@@ -175,6 +204,8 @@ impl<P: Protocol> Entry<P> {
     /// Ends the round, whose last wait is over at `until`.
     fn rest(&mut self, until: u32, is_lost: bool) {
         let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
-        self.state = State::Resting { until: until.wrapping_add(late), is_lost };
+        let until = until.wrapping_add(late);
+        let until = self.deaf().filter(|deaf| is_later(*deaf, until)).unwrap_or(until);
+        self.state = State::Resting { until, is_lost };
     }
 }

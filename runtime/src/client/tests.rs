@@ -1,6 +1,7 @@
 //! A client on a bus with faults, and in single situations.
 
 mod bus;
+mod holds;
 
 use core::time::Duration;
 use std::vec::Vec;

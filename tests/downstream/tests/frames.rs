@@ -80,6 +80,21 @@ fn a_client_asks_and_knows_the_answer() {
 }
 
 #[test]
+fn a_client_holds_a_speed_until_the_winch_has_it() {
+    let mut client = Client::<Message, 8>::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
+    let pull = |speed_rpm| Run { speed_rpm, ramp_s: 2.5 }.set(Target::Winch(0x12)).expect("it is slow enough");
+    client.hold(pull(600), 1000, PartialEq::eq, 0).expect("there is room, and the winch answers");
+    assert_eq!(client.poll(0), Step::Send(*pull(600).frame()));
+    let stop = client.hold(pull(0), 1000, PartialEq::eq, 5).expect("it takes the room of the old speed");
+    assert_eq!(client.poll(20), Step::Send(*pull(0).frame()));
+    // This may be the answer to the old speed. So the client asks once more when none can come.
+    let echo = frame(0x0B20_0112, [0x00, 0x00, 0x19, 0x00]);
+    assert!(matches!(client.handle(&echo), Heard::Late { ticket, .. } if ticket == stop));
+    assert_eq!(client.poll(200), Step::Send(*pull(0).frame()));
+    assert!(matches!(client.handle(&echo), Heard::Answer { ticket, .. } if ticket == stop));
+}
+
+#[test]
 fn a_frame_of_the_bus_is_recognised() {
     let received = Message::decode(&frame(0x0B20_0112, [0xFD, 0xA8, 0x19, 0x00])).expect("it is printed");
     assert_eq!(received.reply(), Some(Ok(&Message::Run(Run { speed_rpm: -600, ramp_s: 2.5 }))));

@@ -59,7 +59,8 @@ pub fn run(seed: u64, pace: Pace) -> Outcome {
                 Heard::Answer { ticket, received } => (ticket, 0, Some(*received.content())),
                 Heard::Refusal { ticket, received } => (ticket, 1, Some(*received.content())),
                 Heard::ShortRefusal(ticket) => (ticket, 1, None),
-                Heard::Broken(_)
+                Heard::NotInEffect { .. }
+                | Heard::Broken(_)
                 | Heard::Late { .. }
                 | Heard::Twice { .. }
                 | Heard::Other(_)

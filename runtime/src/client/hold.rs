@@ -1,0 +1,170 @@
+//! What is held: sent until its echo agrees, and renewed.
+
+use core::num::NonZeroU32;
+
+use super::entry::{Entry, State, has_come, is_later};
+use super::{Client, Full, LONGEST, Ticket, has_one_answer};
+use crate::{Protocol, Received, Request};
+
+/// Says whether an echo agrees: whether the second message says what the first one asks for.
+pub type Agrees<P> = fn(&P, &P) -> bool;
+
+/// Why a request is not held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NotHeld {
+    /// There is no room for another request.
+    Full,
+    /// Nobody is known to answer it. So nothing would show whether it is in effect.
+    Unconfirmed,
+}
+
+impl core::fmt::Display for NotHeld {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Full => Full.fmt(formatter),
+            Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
+        }
+    }
+}
+
+impl core::error::Error for NotHeld {}
+
+/// How an entry is held.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold<P> {
+    agrees: Agrees<P>,
+    /// Until when an answer to what was held before can come, if it can.
+    pub deaf: Option<u32>,
+}
+
+impl<P: Protocol, const N: usize> Client<P, N> {
+    /// Sends a request until its echo agrees, and renews it every `refresh` milliseconds, until it is
+    /// [cancelled](Self::cancel) or replaced. `agrees(asked, said)` compares the request with its
+    /// reply. No document states how far an echo may differ, so the program says it. `PartialEq::eq`
+    /// allows no difference.
+    ///
+    /// Each round ends once. If the echo agrees, it is an [`Answer`](super::Heard::Answer). If it says
+    /// something else, it is [`NotInEffect`](super::Heard::NotInEffect), and the request is sent again
+    /// as if nobody had answered. After as many tries as the pace has, the round is
+    /// [lost](super::Step::Lost). A refusal ends the round, too. The next renewal tries again.
+    ///
+    /// To hold what is held already changes nothing, and returns the same ticket. So a program may call
+    /// this in a loop.
+    ///
+    /// What is held of the same message to the same target is replaced, and is never sent after that.
+    /// Its ticket ends without an event. The new request is sent at once. As long as an answer to the old
+    /// one can come, every answer is [`Late`](super::Heard::Late). After that the request is sent once
+    /// more, and its answer counts. A request that is replaced faster than that is never known to be in
+    /// effect. It is lost, however, if nobody answers.
+    ///
+    /// A device that restarts forgets what it was told. So hold all that it must do: the set-point, and
+    /// that it is on. Nothing says in which order two of them are renewed.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a request if there is no room for it, and one that not exactly one module answers. For a
+    /// stop of many modules, hold one for each.
+    pub fn hold<R>(
+        &mut self,
+        request: Request<P, R>,
+        refresh: u32,
+        agrees: Agrees<P>,
+        now: u32,
+    ) -> Result<Ticket, NotHeld> {
+        let mut entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
+        if !has_one_answer(&entry.request) {
+            return Err(NotHeld::Unconfirmed);
+        }
+        entry.period = NonZeroU32::new(refresh.clamp(1, LONGEST));
+        entry.hold = Some(Hold { agrees, deaf: None });
+        let Some(old) = self.entries.iter_mut().flatten().find(|old| old.holds_the_same(&entry)) else {
+            return self.add(entry).map_err(|Full| NotHeld::Full);
+        };
+        if old.is_held() && old.request.frame() == entry.request.frame() {
+            *old = Entry { period: entry.period, hold: old.hold.map(|hold| Hold { agrees, ..hold }), ..*old };
+            return Ok(old.ticket);
+        }
+        *old = entry.in_place_of(old, now);
+        self.next = self.next.wrapping_add(1);
+        Ok(entry.ticket)
+    }
+}
+
+impl<P: Protocol> Entry<P> {
+    /// Tests whether another held entry has another value for the same.
+    fn holds_the_same(&self, other: &Self) -> bool {
+        self.hold.is_some() && self.request.is_of_same_exchange(&other.request) && self.request.is_like(&other.request)
+    }
+
+    /// Tests whether it is held, and not cancelled.
+    fn is_held(&self) -> bool {
+        self.hold.is_some() && self.period.is_some()
+    }
+
+    /// Takes over from what was held before: its place among those that wait, and what can still answer it.
+    fn in_place_of(mut self, old: &Self, now: u32) -> Self {
+        if let Some(from) = old.due(now) {
+            self.state = State::Due { from };
+        }
+        let open = old.open_until().filter(|until| !has_come(*until, now));
+        if open.is_some() && old.awaits() && old.answers == 0 {
+            (self.round, self.sent) = (old.round, old.sent);
+        }
+        self.hold = self.hold.map(|hold| Hold { deaf: open, ..hold });
+        self
+    }
+
+    /// Returns until when an answer to what was held before can come, or counts as one to it.
+    pub fn deaf(&self) -> Option<u32> {
+        self.hold.as_ref()?.deaf
+    }
+
+    /// Says whether a reply shows that the request is in effect. If it is not held, any reply does.
+    pub fn agrees(&self, received: &Received<P>, model: Option<u8>) -> bool {
+        let asked = || Received::decode_by(model, self.request.frame());
+        self.hold.is_none_or(|hold| asked().is_ok_and(|asked| (hold.agrees)(asked.content(), received.content())))
+    }
+
+    /// Notes that a held request is sent, and returns until when no answer counts, if none does.
+    pub fn start_held(&mut self, now: u32) -> Option<u32> {
+        let hold = self.hold.as_mut()?;
+        if self.sent == 0 {
+            self.round = now;
+        }
+        hold.deaf = hold.deaf.filter(|until| !has_come(*until, now));
+        hold.deaf
+    }
+
+    /// Begins to listen when no answer to what was held before can come any more. The request is due again.
+    pub fn listen(&mut self, now: u32) -> bool {
+        let Some(hold) = self.hold.as_mut().filter(|hold| hold.deaf.is_some()) else { return false };
+        hold.deaf = None;
+        (self.state, self.sent, self.answers) = (State::Due { from: now }, 0, 0);
+        true
+    }
+
+    /// Tests whether nobody answers although the request was sent often enough, with other values each time.
+    pub fn is_unheard(&self, now: u32) -> bool {
+        self.awaits()
+            && self.deaf().is_some()
+            && self.answers == 0
+            && self.sent >= self.pace.tries.max(1)
+            && has_come(self.round.wrapping_add(self.pace.wait), now)
+    }
+
+    /// Returns until when an answer to what was sent can come.
+    fn open_until(&self) -> Option<u32> {
+        let until = match self.state {
+            State::Resting { until, .. } => Some(until),
+            State::Due { .. } | State::Waiting { .. } if self.sent > 0 => {
+                Some(self.until().wrapping_add(self.pace.late))
+            }
+            State::Due { .. } | State::Waiting { .. } => None,
+        };
+        match (until, self.deaf()) {
+            (Some(until), Some(deaf)) if is_later(deaf, until) => Some(deaf),
+            (until, deaf) => until.or(deaf),
+        }
+    }
+}
