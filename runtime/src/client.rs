@@ -24,7 +24,8 @@
 //!         match client.poll(now) {
 //!             Step::Send(frame) => send(frame),
 //!             Step::Lost(ticket) => println!("{ticket:?}: nobody answers"),
-//!             Step::Done(_) => {}
+//!             // Requests that nobody answers, or each of several, and how modules are.
+//!             Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
 //!             Step::Wait(_) => break,
 //!         }
 //!     }
@@ -46,30 +47,41 @@
 //! in 24 days.
 
 mod entry;
+mod group;
+mod health;
 mod hold;
+mod nodes;
 mod pace;
 #[cfg(test)]
 mod tests;
 
 pub use entry::Ticket;
+pub use group::NoMembers;
 pub use hold::{Agrees, NotHeld};
+pub use nodes::Nodes;
 pub use pace::Pace;
 
 use core::num::NonZeroU32;
 
 use crate::{Frame, Problem, Protocol, Received, Replies, Request};
 use entry::{Entry, State, earlier, has_come};
+use group::Groups;
+use health::Health;
 
 /// The longest time in milliseconds after which a later time is still told from an earlier one.
 const LONGEST: u32 = (1 << 31) - 1;
 
-/// Asks devices, with room for `N` requests. One keeps its room until no answer to it can come any
-/// more, and for ever if it is asked again and again.
+/// Asks devices, with room for `N` requests, and for `G` groups whose members it knows.
+///
+/// A request keeps its room until no answer to it can come any more, and for ever if it is asked again
+/// and again.
 #[derive(Clone, Copy, Debug)]
-pub struct Client<P, const N: usize> {
+pub struct Client<P, const N: usize, const G: usize = 0> {
     pace: Pace,
     model: Option<u8>,
     entries: [Option<Entry<P>>; N],
+    groups: Groups<G>,
+    health: Health,
     /// When the next frame may be sent, unless it may be sent at once.
     free: Option<u32>,
     /// Number of the next ticket.
@@ -78,6 +90,7 @@ pub struct Client<P, const N: usize> {
 
 /// What a program does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub enum Step {
     /// It sends this frame now.
@@ -85,8 +98,21 @@ pub enum Step {
     /// A request is lost: it was sent as often as it may be, and no answer came. If it is held, none came
     /// that agrees.
     Lost(Ticket),
-    /// A request is done that nobody answers, or that each module of several could answer.
+    /// A request is done that nobody answers, or that each module of several could answer. If the client
+    /// knows [who they are](Client::members), all of them have.
     Done(Ticket),
+    /// A request is lost: it was sent as often as it may be, and some of the modules that should answer did
+    /// not. If it is held, they have not agreed.
+    Missing {
+        /// The request.
+        ticket: Ticket,
+        /// The modules.
+        nodes: Nodes,
+    },
+    /// A module is silent: a request was lost, and nothing came from this module meanwhile.
+    Silent(u8),
+    /// A silent module has sent something.
+    Back(u8),
     /// It waits for a frame, and calls `poll` at this time at the latest, if there is one.
     Wait(Option<u32>),
 }
@@ -144,6 +170,7 @@ pub enum Heard<P: Protocol> {
 
 /// There is no room for another request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Full;
 
 impl core::fmt::Display for Full {
@@ -154,10 +181,11 @@ impl core::fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
-impl<P: Protocol, const N: usize> Client<P, N> {
+impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns a client that has asked nothing yet.
     pub const fn new(pace: Pace) -> Self {
-        Self { pace, model: None, entries: [None; N], free: None, next: 0 }
+        let (entries, groups) = ([None; N], Groups([None; G]));
+        Self { pace, model: None, entries, groups, health: Health::NEW, free: None, next: 0 }
     }
 
     /// Reads frames as those of a device model if messages look the same.
@@ -192,9 +220,33 @@ impl<P: Protocol, const N: usize> Client<P, N> {
     ///
     /// Refuses a request if there is no room for it.
     pub fn every<R>(&mut self, period: u32, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
-        let mut entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        entry.period = NonZeroU32::new(period.clamp(1, LONGEST));
-        self.add(entry)
+        self.repeat(period, false, request, now)
+    }
+
+    /// Asks a module if it has heard nothing for a period, until it is [cancelled](Self::cancel). So a
+    /// module whose watchdog runs out in silence is never left alone. A third of that time leaves room for
+    /// lost frames.
+    ///
+    /// An answer to another request is what shows that the module has heard something. The period then
+    /// starts anew when that request was sent. If the request goes to more than one module, it is sent in
+    /// each period.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a request if there is no room for it.
+    pub fn keep_alive<R>(&mut self, request: Request<P, R>, period: u32, now: u32) -> Result<Ticket, Full> {
+        self.repeat(period, true, request, now)
+    }
+
+    fn repeat<R>(&mut self, period: u32, is_spare: bool, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
+        let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
+        self.add(Entry { period: NonZeroU32::new(period.clamp(1, LONGEST)), is_spare, ..entry })
+    }
+
+    /// Returns the modules that are silent.
+    #[must_use]
+    pub const fn silent(&self) -> &Nodes {
+        &self.health.silent
     }
 
     /// Sends a request before all others that are due, if it is due: a stop, for instance. The gap between
@@ -220,27 +272,61 @@ impl<P: Protocol, const N: usize> Client<P, N> {
         for slot in &mut self.entries {
             *slot = slot.and_then(|entry| entry.rested(now));
         }
-        let ended = self.entries.iter_mut().flatten().find_map(|entry| entry.ended(now));
+        let ended = self.ended(now).or_else(|| self.health.news());
         ended.or_else(|| self.send(now)).unwrap_or_else(|| Step::Wait(self.deadline(now)))
+    }
+
+    /// Ends a request, and says how.
+    fn ended(&mut self, now: u32) -> Option<Step> {
+        let (entries, groups, health) = (&mut self.entries, &mut self.groups, &mut self.health);
+        entries.iter_mut().flatten().find_map(|entry| {
+            let group = groups.answering(&entry.request).map(|group| &*group);
+            let step = entry.ended(now, group)?;
+            if matches!(step, Step::Lost(_) | Step::Missing { .. }) {
+                health.lost(&entry.silent(group));
+            }
+            Some(step)
+        })
     }
 
     /// Says what a received frame is.
     pub fn handle(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
         let mut entries = self.entries.iter_mut().flatten();
+        let groups = &mut self.groups;
         let awaiting = |entry: &&mut Entry<P>| entry.awaits() && entry.request.refuses(frame).is_some();
         let received = match Received::decode_by(self.model, frame) {
             Ok(received) => received,
             Err(Problem::Length) => {
-                let short = entries.find(awaiting).map(|entry| entry.answered_short(frame));
-                return short.unwrap_or(Heard::Unrecognised(Problem::Length));
+                let short = |entry: &mut Entry<P>| {
+                    let is_group_known = groups.answering(&entry.request).is_some();
+                    entry.answered_short(frame, is_group_known)
+                };
+                return entries.find(awaiting).map_or(Heard::Unrecognised(Problem::Length), short);
             }
             Err(problem) => return Heard::Unrecognised(problem),
         };
+        let node = sender(&received);
+        if let Some(node) = node {
+            self.health.heard(node);
+            groups.heard(node);
+        }
         if let Some(entry) = entries.find(awaiting) {
-            return entry.answered(received, entry.request.refuses(frame) == Some(true), self.model);
+            let is_refusal = entry.request.refuses(frame) == Some(true);
+            let begun = entry.begun;
+            let heard = entry.answered(received, is_refusal, self.model, groups.answering(&entry.request));
+            if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
+                self.put_off(node, begun);
+            }
+            return heard;
         }
         let past = self.entries.iter().flatten().find_map(|entry| entry.too_late(frame, received));
         past.unwrap_or(Heard::Other(received))
+    }
+
+    /// Notes that a module has heard what was sent at a time.
+    fn put_off(&mut self, node: Option<u8>, sent: u32) {
+        let entries = self.entries.iter_mut().flatten();
+        entries.filter(|entry| node.is_some() && entry.node == node).for_each(|entry| entry.put_off(sent));
     }
 
     const fn ticket(&self) -> Ticket {
@@ -263,7 +349,7 @@ impl<P: Protocol, const N: usize> Client<P, N> {
         let ready = ready.filter(|(place, _)| !self.is_blocked(*place, now));
         let (place, _) = ready.reduce(|one, other| if earlier(other.1, one.1, now) { other } else { one })?;
         let entry = self.entries.get_mut(place)?.as_mut()?;
-        entry.start(now);
+        entry.start(now, self.groups.answering(&entry.request));
         self.free = Some(now.wrapping_add(entry.pace.gap)).filter(|free| !has_come(*free, now));
         Some(Step::Send(*entry.request.frame()))
     }
@@ -272,7 +358,12 @@ impl<P: Protocol, const N: usize> Client<P, N> {
     fn is_blocked(&self, place: usize, now: u32) -> bool {
         let Some(own) = self.entries.get(place).and_then(Option::as_ref) else { return true };
         let others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
-        others.filter(|other| other.is_open(now)).any(|other| own.request.is_like(&other.request))
+        let groups = &self.groups;
+        let is_like = |other: &Entry<P>| {
+            other.is_open(now) && own.request.is_like(&other.request)
+                || other.awaits() && groups.is_shared(&own.request, &other.request)
+        };
+        others.into_iter().any(is_like)
     }
 
     /// Returns the next time at which something is to do.
@@ -286,6 +377,12 @@ impl<P: Protocol, const N: usize> Client<P, N> {
         let times = times.filter(|time| !has_come(*time, now));
         times.reduce(|one, other| if earlier(other, one, now) { other } else { one })
     }
+}
+
+/// Returns the module that has sent a frame, if the identifier shows it.
+fn sender<P: Protocol>(received: &Received<P>) -> Option<u8> {
+    let node = received.node().filter(|_| !received.is_to_module())?;
+    u8::try_from(node).ok()
 }
 
 /// Tests whether one module, or one for all, answers a request.

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use crate::address::Who;
+use crate::address::{Kind, Who};
 use crate::filter::IdFilter;
 use crate::plumbing::Continuation;
 use crate::protocol::{is_to_controller, own_id};
@@ -190,6 +190,12 @@ impl<P: Protocol, R> Request<P, R> {
             (Answer::Refusal(_), _) => true,
             (Answer::Values(selectors), frame) => has_error::<P>(selectors, &frame),
         })
+    }
+
+    /// Returns the number of the one module that it goes to, if it is below 256.
+    pub(crate) fn node(&self) -> Option<u8> {
+        let way = self.exchange.way::<P>(Kind::Request, self.frame.raw_id())?;
+        u8::try_from(P::node(&way)?).ok()
     }
 
     /// Copies a frame that answers this request, and says how. Most frames on a bus fail at the identifier, which is

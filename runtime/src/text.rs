@@ -50,6 +50,11 @@ pub const fn is_character(byte: u8) -> bool {
     matches!(byte, 1..=0x7F)
 }
 
+/// Tests whether a text is shown with escapes.
+pub fn needs_escapes(text: &str) -> bool {
+    text.contains(|letter: char| letter.is_control() || letter == '\\')
+}
+
 /// Writes control characters and backslashes as escapes.
 pub struct Escaped<'w, W>(pub &'w mut W);
 
@@ -76,7 +81,7 @@ impl<const N: usize, const FILL: u8> fmt::Display for Text<N, FILL> {
     /// Writes the text with control characters and backslashes as escapes, and all bytes so if they are no text.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.as_str() {
-            Some(text) if !text.contains(|letter: char| letter.is_control() || letter == '\\') => formatter.pad(text),
+            Some(text) if !needs_escapes(text) => formatter.pad(text),
             Some(text) => Escaped(formatter).write_str(text),
             None => self.0.escape_ascii().fmt(formatter),
         }

@@ -1,9 +1,10 @@
-//! `defmt` for words, texts, elements and frames, behind the feature `defmt`. Generated code calls it.
+//! `defmt` for words, texts, elements, frames, times and sets of modules, behind the feature `defmt`. Generated code calls it.
 
 use defmt::{Display2Format, Format, Formatter, write};
 
+use crate::client::Nodes;
 use crate::plumbing::{Integer, Raw, Word};
-use crate::{Bcd, Bytes, Elements, Frame, Meaning, StatusBit, Text, status};
+use crate::{Bcd, Bytes, Elements, Frame, Meaning, StatusBit, Text, Timing, status, text};
 
 /// Writes a named value by its name, a status word by the names of its set bits, and a packed value
 /// by its text.
@@ -36,10 +37,10 @@ fn set_bits(raw: u64, bits: &'static [StatusBit], formatter: Formatter<'_>) {
 
 impl<const N: usize, const FILL: u8> Format for Text<N, FILL> {
     fn format(&self, formatter: Formatter<'_>) {
-        if let Some(text) = self.as_str() {
-            write!(formatter, "{=str}", text);
-        } else {
-            write!(formatter, "{=[u8]:#04X}", self.as_bytes().as_slice());
+        match self.as_str() {
+            Some(text) if !text::needs_escapes(text) => write!(formatter, "{=str}", text),
+            Some(_) => write!(formatter, "{}", Display2Format(self)),
+            None => write!(formatter, "{=[u8]:#04X}", self.as_bytes().as_slice()),
         }
     }
 }
@@ -65,6 +66,25 @@ impl<R: Integer> Format for Bcd<R> {
 impl<T: Format, const N: usize> Format for Elements<T, N> {
     fn format(&self, formatter: Formatter<'_>) {
         (**self).format(formatter);
+    }
+}
+
+impl Format for Nodes {
+    fn format(&self, formatter: Formatter<'_>) {
+        for (index, node) in self.iter().enumerate() {
+            write!(formatter, "{=str}{=u8}", if index == 0 { "" } else { ", " }, node);
+        }
+    }
+}
+
+impl Format for Timing {
+    fn format(&self, formatter: Formatter<'_>) {
+        let Self { request_gap, reply_timeout, tries, watchdog, boot, settling, of_messages } = self;
+        write!(formatter, "request_gap: {}, reply_timeout: {}, tries: {}", request_gap, reply_timeout, tries);
+        write!(formatter, ", watchdog: {}, boot: {}, settling: {}", watchdog, boot, settling);
+        for (message, own) in *of_messages {
+            write!(formatter, ", {=str}: ({})", message, own);
+        }
     }
 }
 

@@ -303,5 +303,6 @@ fn logs_of_defmt_have_the_names_of_the_spec() {
     assert_eq!(logged(State(0x8002)), "hot");
     assert_eq!(logged::<BarcodeValue>(Raw::from_bits(0x5613_0C15_A3FB_06A8)), "081807123451V1704");
     assert_eq!(logged(Text::<4>::new("AB").expect("two letters")), "AB");
+    assert_eq!(logged(Text::<4>::new("A\n\\").expect("three characters")), r"A\n\\");
     assert_eq!(logged(Frame::new_raw(0x83, false, [0x55, 1, 0, 0, 0, 0, 0, 0], 2)), "083#5501");
 }

@@ -2,12 +2,14 @@
 
 use core::num::NonZeroU32;
 
+use super::group::Group;
 use super::hold::Hold;
-use super::{Heard, Pace, Step, has_one_answer};
+use super::{Heard, Nodes, Pace, Step, has_one_answer, sender};
 use crate::{Protocol, Received, Replies, Request};
 
 /// Names a request of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ticket(pub(super) u32);
 
 /// A request in the table.
@@ -15,14 +17,20 @@ pub struct Ticket(pub(super) u32);
 pub struct Entry<P> {
     pub ticket: Ticket,
     pub request: Request<P, ()>,
+    /// The module that it goes to, if it is one.
+    pub node: Option<u8>,
     pub pace: Pace,
     /// The time from one round to the next, if it is asked again and again.
     pub period: Option<NonZeroU32>,
+    /// Whether a round is left out if the module has heard something else.
+    pub is_spare: bool,
     /// How it is held, if it is.
     pub hold: Option<Hold<P>>,
     pub state: State,
-    /// When this round was due, or first sent if it is held.
+    /// When this round was due.
     pub round: u32,
+    /// When it was sent first in this round.
+    pub begun: u32,
     /// How often it was sent in this round.
     pub sent: u8,
     /// How many modules have answered in this round.
@@ -68,9 +76,21 @@ pub fn is_later(time: u32, other: u32) -> bool {
 }
 
 impl<P: Protocol> Entry<P> {
-    pub const fn new(ticket: Ticket, request: Request<P, ()>, pace: Pace, now: u32) -> Self {
-        let state = State::Due { from: now };
-        Self { ticket, request, pace, period: None, hold: None, state, round: now, sent: 0, answers: 0 }
+    pub fn new(ticket: Ticket, request: Request<P, ()>, pace: Pace, now: u32) -> Self {
+        Self {
+            ticket,
+            request,
+            node: request.node(),
+            pace,
+            period: None,
+            is_spare: false,
+            hold: None,
+            state: State::Due { from: now },
+            round: now,
+            begun: now,
+            sent: 0,
+            answers: 0,
+        }
     }
 
     /// Returns since when the request is to be sent, if it is.
@@ -100,66 +120,124 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Notes that the request is sent.
-    pub fn start(&mut self, now: u32) {
-        let deaf = self.start_held(now);
+    pub fn start(&mut self, now: u32, group: Option<&mut Group>) {
+        if self.sent == 0 {
+            self.begun = now;
+            if let Some(group) = group {
+                group.begin();
+            }
+        }
+        let deaf = self.still_deaf(now);
         self.sent = self.sent.saturating_add(1);
         let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
         let until = now.wrapping_add(wait);
         self.state = State::Waiting { until: deaf.filter(|deaf| is_later(*deaf, until)).unwrap_or(until) };
     }
 
-    /// Ends a wait that has taken too long, and says how. Sends the request again if it may.
-    pub fn ended(&mut self, now: u32) -> Option<Step> {
+    /// Ends a wait that has taken too long, or for which nobody is missing. Says how it ends. Sends the
+    /// request again if it may.
+    pub fn ended(&mut self, now: u32, group: Option<&Group>) -> Option<Step> {
         if self.is_unheard(now) {
             self.sent = 0;
             return Some(Step::Lost(self.ticket));
         }
+        let is_complete = group.is_some_and(|group| group.missing.is_empty()) && self.awaits() && self.deaf().is_none();
         let until = match self.state {
-            State::Waiting { until } if has_come(until, now) => until,
+            State::Waiting { until } if is_complete || has_come(until, now) => until,
+            State::Due { from } if is_complete => from,
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => return None,
         };
         if self.listen(now) {
             return None;
         }
-        let is_done = self.answers > 0 || self.request.replies() == Replies::Nobody;
+        let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.has_answers();
         if !is_done && self.sent < self.pace.tries {
             self.state = State::Due { from: now };
             return None;
         }
         self.rest(until, !is_done);
-        Some(if is_done { Step::Done(self.ticket) } else { Step::Lost(self.ticket) })
+        let ticket = self.ticket;
+        Some(match group {
+            _ if is_done => Step::Done(ticket),
+            Some(group) => Step::Missing { ticket, nodes: group.missing },
+            None => Step::Lost(ticket),
+        })
+    }
+
+    /// Tests whether some of several modules have answered, and it is not known how many there are.
+    const fn has_answers(&self) -> bool {
+        self.answers > 0 && self.hold.is_none()
+    }
+
+    /// Returns the modules that did not answer at all, after the round was lost.
+    pub fn silent(&self, group: Option<&Group>) -> Nodes {
+        let own = || self.node.filter(|_| self.answers == 0).into_iter().collect();
+        group.map_or_else(own, Group::silent)
     }
 
     /// Takes a frame for the answer, if it counts as one.
-    pub fn answered(&mut self, received: Received<P>, is_refusal: bool, model: Option<u8>) -> Heard<P> {
+    pub fn answered(
+        &mut self,
+        received: Received<P>,
+        is_refusal: bool,
+        model: Option<u8>,
+        group: Option<&mut Group>,
+    ) -> Heard<P> {
         let ticket = self.ticket;
         if self.deaf().is_some() {
             self.answers = 1;
             return Heard::Late { ticket, received };
         }
-        if !is_refusal && !self.agrees(&received, model) {
+        let is_good = self.hold.is_none() || !is_refusal && self.agrees(&received, model);
+        let is_group_known = group.is_some();
+        if let (Some(group), Some(node)) = (group, sender(&received)) {
+            if !group.answered(node, is_good) {
+                return Heard::Twice { ticket, received };
+            }
+        }
+        if !is_good && !is_refusal {
+            self.answers = self.answers.saturating_add(1);
             return Heard::NotInEffect { ticket, received };
         }
-        self.count();
+        self.count(is_group_known);
         if is_refusal { Heard::Refusal { ticket, received } } else { Heard::Answer { ticket, received } }
     }
 
     /// Takes a frame of a wrong length for the answer if it refuses the request.
-    pub fn answered_short(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
+    pub fn answered_short(&mut self, frame: &impl embedded_can::Frame, is_group_known: bool) -> Heard<P> {
         if self.deaf().is_some() || self.request.refuses(frame) != Some(true) {
             return Heard::Broken(self.ticket);
         }
-        self.count();
+        self.count(is_group_known);
         Heard::ShortRefusal(self.ticket)
     }
 
-    /// Counts an answer. The round ends if there is only one, and is not sent again otherwise.
-    fn count(&mut self) {
+    /// Counts an answer. The round ends if there is only one. It is not sent again if one of nobody knows
+    /// how many is enough.
+    fn count(&mut self, is_group_known: bool) {
         self.answers = self.answers.saturating_add(1);
         if has_one_answer(&self.request) {
             self.rest(self.until(), false);
-        } else if let State::Due { from } = self.state {
+        } else if let (State::Due { from }, false) = (self.state, is_group_known) {
             self.state = State::Waiting { until: from };
+        }
+    }
+
+    /// Puts a spare round off, since the module has heard what was sent at a time.
+    pub fn put_off(&mut self, sent: u32) {
+        let Some(period) = self.period.filter(|_| self.is_spare) else { return };
+        let due = sent.wrapping_add(period.get());
+        match self.state {
+            State::Due { from } if self.sent == 0 => {
+                if is_later(due, from) {
+                    (self.state, self.round) = (State::Due { from: due }, due);
+                }
+            }
+            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => {
+                if is_later(sent, self.round) {
+                    self.round = sent;
+                }
+            }
         }
     }
 

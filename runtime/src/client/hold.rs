@@ -3,6 +3,7 @@
 use core::num::NonZeroU32;
 
 use super::entry::{Entry, State, has_come, is_later};
+use super::group::Groups;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
 use crate::{Protocol, Received, Request};
 
@@ -17,6 +18,8 @@ pub enum NotHeld {
     Full,
     /// Nobody is known to answer it. So nothing would show whether it is in effect.
     Unconfirmed,
+    /// Something else is held of a group that has some of the same modules, and others. Cancel that first.
+    Torn(Ticket),
 }
 
 impl core::fmt::Display for NotHeld {
@@ -24,6 +27,7 @@ impl core::fmt::Display for NotHeld {
         match self {
             Self::Full => Full.fmt(formatter),
             Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
+            Self::Torn(_) => formatter.write_str("something else is held of a group with some of the same modules"),
         }
     }
 }
@@ -38,7 +42,7 @@ pub struct Hold<P> {
     pub deaf: Option<u32>,
 }
 
-impl<P: Protocol, const N: usize> Client<P, N> {
+impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Sends a request until its echo agrees, and renews it every `refresh` milliseconds, until it is
     /// [cancelled](Self::cancel) or replaced. `agrees(asked, said)` compares the request with its
     /// reply. No document states how far an echo may differ, so the program says it. `PartialEq::eq`
@@ -61,10 +65,16 @@ impl<P: Protocol, const N: usize> Client<P, N> {
     /// A device that restarts forgets what it was told. So hold all that it must do: the set-point, and
     /// that it is on. Nothing says in which order two of them are renewed.
     ///
+    /// Of several modules, each must agree, so the client must know its [`members`](Self::members). What is
+    /// held of a group replaces what is held of its members. A round is
+    /// [`Done`](super::Step::Done), or [`Missing`](super::Step::Missing) some.
+    ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it, and one that not exactly one module answers. For a
-    /// stop of many modules, hold one for each.
+    /// Refuses a request
+    /// - if there is no room for it,
+    /// - if nobody is known to answer it,
+    /// - if something is held of a group that has some of the same modules and others.
     pub fn hold<R>(
         &mut self,
         request: Request<P, R>,
@@ -73,33 +83,63 @@ impl<P: Protocol, const N: usize> Client<P, N> {
         now: u32,
     ) -> Result<Ticket, NotHeld> {
         let mut entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        if !has_one_answer(&entry.request) {
+        if !has_one_answer(&entry.request) && self.groups.answering(&entry.request).is_none() {
             return Err(NotHeld::Unconfirmed);
         }
         entry.period = NonZeroU32::new(refresh.clamp(1, LONGEST));
         entry.hold = Some(Hold { agrees, deaf: None });
-        let Some(old) = self.entries.iter_mut().flatten().find(|old| old.holds_the_same(&entry)) else {
-            return self.add(entry).map_err(|Full| NotHeld::Full);
-        };
-        if old.is_held() && old.request.frame() == entry.request.frame() {
-            *old = Entry { period: entry.period, hold: old.hold.map(|hold| Hold { agrees, ..hold }), ..*old };
-            return Ok(old.ticket);
+        if let Some(same) = self.entries.iter_mut().flatten().find(|held| held.holds_the_same(&entry)) {
+            *same = Entry { period: entry.period, hold: same.hold.map(|hold| Hold { agrees, ..hold }), ..*same };
+            return Ok(same.ticket);
         }
-        *old = entry.in_place_of(old, now);
-        self.next = self.next.wrapping_add(1);
-        Ok(entry.ticket)
+        let groups = self.groups;
+        if let Some(held) = self.entries.iter().flatten().find(|held| held.is_torn_by(&entry, &groups)) {
+            return Err(NotHeld::Torn(held.ticket));
+        }
+        let replaced = |slot: &&mut Option<Entry<P>>| slot.is_some_and(|held| held.is_replaced_by(&entry, &groups));
+        let mut new = entry;
+        for slot in self.entries.iter_mut().filter(replaced) {
+            if let Some(old) = slot.take() {
+                new = new.in_place_of(&old, now);
+            }
+        }
+        self.add(new).map_err(|Full| NotHeld::Full)
     }
 }
 
 impl<P: Protocol> Entry<P> {
-    /// Tests whether another held entry has another value for the same.
-    fn holds_the_same(&self, other: &Self) -> bool {
-        self.hold.is_some() && self.request.is_of_same_exchange(&other.request) && self.request.is_like(&other.request)
+    /// Tests whether it is held, and not cancelled.
+    const fn is_held(&self) -> bool {
+        self.hold.is_some() && self.period.is_some()
     }
 
-    /// Tests whether it is held, and not cancelled.
-    fn is_held(&self) -> bool {
-        self.hold.is_some() && self.period.is_some()
+    /// Tests whether this is held, and another one would hold exactly the same.
+    fn holds_the_same(&self, other: &Self) -> bool {
+        self.is_held() && self.is_comparable(other) && self.request.frame() == other.request.frame()
+    }
+
+    /// Tests whether a reply could be an echo of both.
+    fn is_comparable(&self, other: &Self) -> bool {
+        self.request.is_of_same_exchange(&other.request) && self.request.is_like(&other.request)
+    }
+
+    /// Tests whether another one asks all modules of this one.
+    fn is_covered_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        let is_same_target = self.request.frame().raw_id() == other.request.frame().raw_id();
+        let [own, others] = [self, other].map(|entry| groups.reach(entry));
+        is_same_target || own.zip(others).is_some_and(|(own, others)| own.both(&others) == own)
+    }
+
+    /// Tests whether another one replaces this one, which is held or was.
+    fn is_replaced_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        self.hold.is_some() && self.is_comparable(other) && self.is_covered_by(other, groups)
+    }
+
+    /// Tests whether another one would contradict this one for some of its modules only.
+    fn is_torn_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        let [own, others] = [self, other].map(|entry| groups.reach(entry));
+        let is_apart = own.zip(others).is_some_and(|(own, others)| own.both(&others).is_empty());
+        self.is_held() && self.is_comparable(other) && !is_apart && !self.is_covered_by(other, groups)
     }
 
     /// Takes over from what was held before: its place among those that wait, and what can still answer it.
@@ -109,9 +149,10 @@ impl<P: Protocol> Entry<P> {
         }
         let open = old.open_until().filter(|until| !has_come(*until, now));
         if open.is_some() && old.awaits() && old.answers == 0 {
-            (self.round, self.sent) = (old.round, old.sent);
+            (self.begun, self.sent) = (old.begun, old.sent);
         }
-        self.hold = self.hold.map(|hold| Hold { deaf: open, ..hold });
+        let deaf = latest(self.deaf(), open);
+        self.hold = self.hold.map(|hold| Hold { deaf, ..hold });
         self
     }
 
@@ -126,12 +167,9 @@ impl<P: Protocol> Entry<P> {
         self.hold.is_none_or(|hold| asked().is_ok_and(|asked| (hold.agrees)(asked.content(), received.content())))
     }
 
-    /// Notes that a held request is sent, and returns until when no answer counts, if none does.
-    pub fn start_held(&mut self, now: u32) -> Option<u32> {
+    /// Returns until when no answer counts, if none does yet.
+    pub fn still_deaf(&mut self, now: u32) -> Option<u32> {
         let hold = self.hold.as_mut()?;
-        if self.sent == 0 {
-            self.round = now;
-        }
         hold.deaf = hold.deaf.filter(|until| !has_come(*until, now));
         hold.deaf
     }
@@ -150,7 +188,7 @@ impl<P: Protocol> Entry<P> {
             && self.deaf().is_some()
             && self.answers == 0
             && self.sent >= self.pace.tries.max(1)
-            && has_come(self.round.wrapping_add(self.pace.wait), now)
+            && has_come(self.begun.wrapping_add(self.pace.wait), now)
     }
 
     /// Returns until when an answer to what was sent can come.
@@ -162,9 +200,14 @@ impl<P: Protocol> Entry<P> {
             }
             State::Due { .. } | State::Waiting { .. } => None,
         };
-        match (until, self.deaf()) {
-            (Some(until), Some(deaf)) if is_later(deaf, until) => Some(deaf),
-            (until, deaf) => until.or(deaf),
-        }
+        latest(until, self.deaf())
+    }
+}
+
+/// Returns the later one of two times, or the only one.
+fn latest(one: Option<u32>, other: Option<u32>) -> Option<u32> {
+    match (one, other) {
+        (Some(one), Some(other)) if is_later(other, one) => Some(other),
+        (one, other) => one.or(other),
     }
 }

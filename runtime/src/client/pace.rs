@@ -9,6 +9,7 @@ use crate::{Time, Timing};
 ///
 /// Each time must be below 24 days, and so must `wait` and `late` together. A longer one ends at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
     /// The time from one request to the next.
     pub gap: u32,

@@ -1,6 +1,8 @@
 //! A client on a bus with faults, and in single situations.
 
 mod bus;
+mod groups;
+mod health;
 mod holds;
 
 use core::time::Duration;
@@ -49,7 +51,7 @@ fn a_request_is_sent_again_and_then_lost() {
     assert_eq!(client.poll(48), Step::Wait(Some(49)));
     assert_eq!(client.poll(49), Step::Send(*heat(3).frame()));
     assert_eq!(client.poll(148), Step::Wait(Some(149)));
-    assert_eq!(client.poll(149), Step::Lost(ticket));
+    assert_eq!([client.poll(149), client.poll(149)], [Step::Lost(ticket), Step::Silent(3)]);
     assert_eq!(client.poll(149), Step::Wait(Some(249)));
 }
 
@@ -179,7 +181,7 @@ fn a_request_is_asked_again_and_again_and_missed_rounds_are_left_out() {
 #[test]
 fn a_period_is_neither_nothing_nor_longer_than_time_can_be_told() {
     let rounds = |period, now: [u32; 3]| {
-        let mut client = Client::<Message, 1>::new(Pace { gap: 0, wait: 0, tries: 1, late: 0 });
+        let mut client: Client<Message, 1> = Client::new(Pace { gap: 0, wait: 0, tries: 1, late: 0 });
         let ticket = client.every(period, HEAT.set(To::All).expect("a legal request"), 0).expect("room");
         now.map(|now| matches!(client.poll(now), Step::Send(_)) && client.poll(now) == Step::Done(ticket))
     };
@@ -224,12 +226,15 @@ fn a_cancelled_request_that_was_not_sent_is_forgotten() {
 
 #[test]
 fn a_full_table_refuses_a_request_until_one_has_ended() {
-    let mut client = Client::<Message, 1>::new(PACE);
+    let mut client: Client<Message, 1> = Client::new(PACE);
     let slow = Pace { tries: 1, gap: 0, ..PACE };
     let ticket = client.ask_at(slow, heat(3), 0).expect("room");
     assert_eq!(client.ask(heat(4), 0), Err(Full));
     assert!(matches!(client.poll(0), Step::Send(_)));
-    assert_eq!([client.poll(100), client.poll(200)], [Step::Lost(ticket), Step::Wait(None)]);
+    assert_eq!(
+        [client.poll(100), client.poll(100), client.poll(200)],
+        [Step::Lost(ticket), Step::Silent(3), Step::Wait(None)]
+    );
     assert!(client.ask(heat(4), 200).is_ok_and(|other| other != ticket));
 }
 

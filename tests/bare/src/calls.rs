@@ -104,7 +104,7 @@ pub fn questions<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
 /// Asks modules by a client, with every message that carries nothing.
 pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
     let pace = Pace { gap: unknown(), wait: unknown(), tries: unknown(), late: unknown() };
-    let mut client = Client::<T::Protocol, 3>::new(pace);
+    let mut client = Client::<T::Protocol, 3, 2>::new(pace);
     if unknown() {
         client = client.for_model(unknown::<u8>());
     }
@@ -112,10 +112,16 @@ pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
         let Ok(request) = request else { continue };
         ticket(client.ask(request, unknown()));
         ticket(client.ask_at(pace, request, unknown()));
+        ticket(client.keep_alive(request, unknown(), unknown()));
+        match client.hold(request, unknown(), |_, _| unknown(), unknown()) {
+            Ok(held) => client.hurry(held, unknown()),
+            Err(error) => text(&error),
+        }
         if let Ok(asked) = client.every(unknown(), request, unknown()) {
             client.cancel(asked);
         }
     }
+    sink(client.members(unknown::<Route<T>>(), unknown::<[u8; 3]>()));
     for _ in 0..unknown::<u8>() {
         match client.poll(unknown()) {
             Step::Send(frame) => sink(frame),
@@ -125,6 +131,7 @@ pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
             Heard::Answer { ticket, received } | Heard::Refusal { ticket, received } => sink((ticket, received)),
             heard => sink(heard),
         }
+        client.silent().iter().for_each(sink);
     }
     sink(client);
 }

@@ -71,7 +71,7 @@ fn the_frame_that_answers_is_taken_out_of_others() {
 #[test]
 fn a_client_asks_and_knows_the_answer() {
     let request = Status::read(Target::Winch(0x12)).expect("the winch is in range");
-    let mut client = Client::<Message, 8>::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
+    let mut client: Client<Message, 8> = Client::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
     let asked = client.ask(request, 0).expect("there is room for eight requests");
     assert_eq!(client.poll(0), Step::Send(*request.frame()));
     assert_eq!(client.poll(0), Step::Wait(Some(100)));
@@ -81,7 +81,7 @@ fn a_client_asks_and_knows_the_answer() {
 
 #[test]
 fn a_client_holds_a_speed_until_the_winch_has_it() {
-    let mut client = Client::<Message, 8>::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
+    let mut client: Client<Message, 8> = Client::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
     let pull = |speed_rpm| Run { speed_rpm, ramp_s: 2.5 }.set(Target::Winch(0x12)).expect("it is slow enough");
     client.hold(pull(600), 1000, PartialEq::eq, 0).expect("there is room, and the winch answers");
     assert_eq!(client.poll(0), Step::Send(*pull(600).frame()));

@@ -41,7 +41,7 @@ pub fn run(seed: u64, pace: Pace) -> Outcome {
     let [lost, twice, broken] = [(); 3].map(|()| random.below(31));
     let slowest = 2 * u64::from(pace.wait);
     let mut bus = Bus { random, frames: Vec::new(), lost, twice, broken, refused: 5, slowest };
-    let mut client = Client::<Message, 8>::new(pace);
+    let mut client: Client<Message, 8> = Client::new(pace);
     let mut outcome = Outcome { ends: Vec::new(), counts: [0; 3], wrong: 0, shortest_gap: u32::MAX };
     let mut asked: Vec<(Ticket, Heat)> = Vec::new();
     let mut sent = None;
@@ -77,6 +77,7 @@ pub fn run(seed: u64, pace: Pace) -> Outcome {
                     bus.answer(&frame, now);
                 }
                 Step::Lost(ticket) | Step::Done(ticket) => outcome.end(&asked, ticket, 2, None),
+                Step::Silent(_) | Step::Back(_) | Step::Missing { .. } => {}
                 Step::Wait(_) => break,
             }
         }

@@ -165,8 +165,8 @@ fn what_is_replaced_faster_than_it_can_be_answered_is_lost_if_nobody_answers() {
                     assert!(matches!(heard, Heard::Late { .. } | Heard::NotInEffect { .. }));
                 }
                 Step::Lost(_) => lost.push(now),
-                Step::Send(_) | Step::Wait(_) => {}
-                Step::Done(_) => panic!("a held request is never done"),
+                Step::Send(_) | Step::Silent(_) | Step::Back(_) | Step::Wait(_) => {}
+                Step::Done(_) | Step::Missing { .. } => panic!("a held request is never done"),
             }
         }
         lost
@@ -234,7 +234,7 @@ fn a_request_that_nobody_is_known_to_answer_is_not_held() {
 
 #[test]
 fn to_replace_what_is_held_needs_no_room() {
-    let mut client = Client::<Message, 1>::new(Pace { gap: 0, ..PACE });
+    let mut client: Client<Message, 1> = Client::new(Pace { gap: 0, ..PACE });
     assert!(client.hold(power(3, 100.0), REFRESH, PartialEq::eq, 0).is_ok());
     assert_eq!(client.hold(power(4, 0.0), REFRESH, PartialEq::eq, 0), Err(NotHeld::Full));
     assert_eq!(client.ask(power(3, 0.0), 0), Err(Full));

@@ -1,0 +1,124 @@
+//! The modules that answer a request to many.
+
+use super::{Client, Entry, Nodes};
+use crate::filter::IdFilter;
+use crate::{Addressed, Destination, Error, Protocol, Replies, Request, Route};
+
+/// Why members are not noted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoMembers {
+    /// There is no room for another group.
+    Full,
+    /// The document does not name the target.
+    Target(Error),
+}
+
+impl core::fmt::Display for NoMembers {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Full => formatter.write_str("there is no room for another group"),
+            Self::Target(error) => error.fmt(formatter),
+        }
+    }
+}
+
+impl core::error::Error for NoMembers {}
+
+/// The members of a target, and who of them has not answered.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// What identifiers of requests to the target show.
+    target: IdFilter,
+    members: Nodes,
+    /// The members that have not answered in this round, or not as they should.
+    pub missing: Nodes,
+    /// The members of whom nothing has come in this round.
+    unheard: Nodes,
+}
+
+/// Groups whose members are known.
+#[derive(Clone, Copy, Debug)]
+pub struct Groups<const G: usize>(pub [Option<Group>; G]);
+
+impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
+    /// Notes which modules answer requests to a target if each of several does. Such a request is then
+    /// done as soon as all of them have answered. It is sent again as long as some are missing. There is
+    /// room for `G` targets, and no members mean that they are not known.
+    ///
+    /// Of requests to one such target, one is under way at a time.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a target that the document does not name, and one more than there is room for.
+    pub fn members(&mut self, target: impl Into<Route<P::Target>>, members: impl Into<Nodes>) -> Result<(), NoMembers> {
+        let (route, members) = (target.into(), members.into());
+        let target = route.target().request(route.sender()).map_err(NoMembers::Target)?;
+        let groups = &mut self.groups.0;
+        let known = groups.iter().position(|group| group.is_some_and(|group| group.target == target));
+        let place = known.or_else(|| groups.iter().position(Option::is_none));
+        let group = (!members.is_empty()).then_some(Group { target, members, missing: members, unheard: members });
+        match place.and_then(|place| groups.get_mut(place)) {
+            Some(slot) => *slot = group,
+            None if group.is_some() => return Err(NoMembers::Full),
+            None => {}
+        }
+        Ok(())
+    }
+}
+
+impl<const G: usize> Groups<G> {
+    /// Returns the group that a request asks, if its members are known.
+    pub fn of<P>(&self, request: &Request<P, ()>) -> Option<&Group> {
+        self.0.iter().flatten().find(|group| group.target.matches(request.frame().raw_id()))
+    }
+
+    /// Returns the group whose members answer a request.
+    pub fn answering<P>(&mut self, request: &Request<P, ()>) -> Option<&mut Group> {
+        let groups = self.0.iter_mut().flatten().filter(|_| matches!(request.replies(), Replies::Each(_)));
+        groups.into_iter().find(|group| group.target.matches(request.frame().raw_id()))
+    }
+
+    /// Notes that a module has spoken.
+    pub fn heard(&mut self, node: u8) {
+        self.0.iter_mut().flatten().for_each(|group| {
+            group.unheard.remove(node);
+        });
+    }
+
+    /// Returns the modules that a request goes to, if they are known.
+    pub fn reach<P: Protocol>(&self, entry: &Entry<P>) -> Option<Nodes> {
+        let group = || self.of(&entry.request).map(|group| group.members);
+        entry.node.map(|node| Nodes::from([node])).or_else(group)
+    }
+
+    /// Tests whether two requests wait for the members of one group.
+    pub fn is_shared<P>(&self, one: &Request<P, ()>, other: &Request<P, ()>) -> bool {
+        let is_each = |request: &Request<P, ()>| matches!(request.replies(), Replies::Each(_));
+        let group = self.of(one).filter(|_| is_each(one) && is_each(other));
+        group.is_some_and(|group| group.target.matches(other.frame().raw_id()))
+    }
+}
+
+impl Group {
+    /// Begins a round, in which nobody has answered.
+    pub fn begin(&mut self) {
+        (self.missing, self.unheard) = (self.members, self.members);
+    }
+
+    /// Notes that a module has answered, as it should or not. Returns whether that is new.
+    pub fn answered(&mut self, node: u8, is_good: bool) -> bool {
+        let is_member = self.members.contains(node);
+        if is_good {
+            return self.missing.remove(node) || !is_member;
+        }
+        if is_member {
+            self.missing.insert(node);
+        }
+        true
+    }
+
+    /// Returns the missing members of whom nothing has come.
+    pub fn silent(&self) -> Nodes {
+        self.missing.both(&self.unheard)
+    }
+}

@@ -1,0 +1,37 @@
+//! Modules that answer no more, and those that do again.
+
+use super::{Nodes, Step};
+
+/// Which modules are silent, and which of them the program knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Health {
+    pub silent: Nodes,
+    told: Nodes,
+}
+
+impl Health {
+    pub const NEW: Self = Self { silent: Nodes::NONE, told: Nodes::NONE };
+
+    /// Notes that modules have not answered.
+    pub fn lost(&mut self, nodes: &Nodes) {
+        self.silent = self.silent.either(nodes);
+    }
+
+    /// Notes that a module has spoken.
+    pub fn heard(&mut self, node: u8) {
+        self.silent.remove(node);
+    }
+
+    /// Says of one module that it is silent, or back.
+    pub fn news(&mut self) -> Option<Step> {
+        if self.silent == self.told {
+            return None;
+        }
+        let node = (0..=u8::MAX).find(|node| self.silent.contains(*node) != self.told.contains(*node))?;
+        if self.told.remove(node) {
+            return Some(Step::Back(node));
+        }
+        self.told.insert(node);
+        Some(Step::Silent(node))
+    }
+}

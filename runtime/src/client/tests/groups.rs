@@ -1,0 +1,200 @@
+//! Requests to groups whose members the client knows.
+
+use super::{PACE, answer};
+use crate::client::{Client, Heard, NoMembers, Nodes, NotHeld, Step, Ticket};
+use crate::tests::heaters::{Heat, Message, To, frame};
+use crate::{Error, Frame, Request};
+
+type Asking = Client<Message, 4, 2>;
+
+const REFRESH: u32 = 1000;
+
+fn power(target: To, power_w: f64) -> Request<Message, Heat> {
+    Heat { power_w }.set(target).expect("a legal request")
+}
+
+/// The echo of 1500 W.
+fn group() -> Request<Message, Heat> {
+    power(To::Group(2), 1500.0)
+}
+
+fn echo(heater: u8, steps: u8) -> Frame {
+    frame(0x0107_F000 | u32::from(heater), [2, 0xF0, 0, steps])
+}
+
+fn asking(members: &[u8]) -> Asking {
+    let mut client = Asking::new(PACE);
+    client.members(To::Group(2), members.iter().copied().collect::<Nodes>()).expect("room");
+    client
+}
+
+fn hold(client: &mut Asking, target: To, power_w: f64, now: u32) -> Result<Ticket, NotHeld> {
+    client.hold(power(target, power_w), REFRESH, PartialEq::eq, now)
+}
+
+/// Asks heaters 1 and 4 as a group, and sends the request.
+fn asked() -> (Asking, Ticket) {
+    let mut client = asking(&[1, 4]);
+    let ticket = client.ask(group(), 0).expect("room");
+    assert_eq!(client.poll(0), Step::Send(*group().frame()));
+    (client, ticket)
+}
+
+fn is_answer(heard: &Heard<Message>, to: Ticket) -> bool {
+    matches!(heard, Heard::Answer { ticket, .. } if *ticket == to)
+}
+
+fn is_twice(heard: &Heard<Message>) -> bool {
+    matches!(heard, Heard::Twice { .. })
+}
+
+#[test]
+fn a_group_is_done_as_soon_as_all_members_have_answered() {
+    let (mut client, ticket) = asked();
+    assert!(is_answer(&client.handle(&answer(4)), ticket));
+    assert_eq!(client.poll(10), Step::Wait(Some(100)));
+    assert!(is_twice(&client.handle(&answer(4))));
+    // Heater 7 is no member, and answers too.
+    assert!(is_answer(&client.handle(&answer(7)), ticket));
+    assert_eq!(client.poll(20), Step::Wait(Some(100)));
+    assert!(is_answer(&client.handle(&answer(1)), ticket));
+    assert_eq!([client.poll(21), client.poll(21)], [Step::Done(ticket), Step::Wait(Some(200))]);
+}
+
+#[test]
+fn a_refusal_of_a_member_is_an_answer() {
+    let (mut client, ticket) = asked();
+    assert!(is_answer(&client.handle(&answer(4)), ticket));
+    let refused = frame(0x0107_F001, [2, 0xF2, 0, 150]);
+    assert!(matches!(client.handle(&refused), Heard::Refusal { ticket: of, .. } if of == ticket));
+    assert_eq!(client.poll(1), Step::Done(ticket));
+}
+
+#[test]
+fn a_group_is_asked_again_while_members_are_missing_and_says_which() {
+    let (mut client, ticket) = asked();
+    assert!(is_answer(&client.handle(&answer(4)), ticket));
+    assert_eq!(client.poll(100), Step::Send(*group().frame()));
+    assert!(is_twice(&client.handle(&answer(4))));
+    assert_eq!(
+        [client.poll(199), client.poll(200)],
+        [Step::Wait(Some(200)), Step::Missing { ticket, nodes: [1].into() }]
+    );
+    assert_eq!([client.poll(200), client.poll(200)], [Step::Silent(1), Step::Wait(Some(300))]);
+    assert!(matches!(client.handle(&answer(1)), Heard::Late { .. }));
+    assert_eq!(client.poll(201), Step::Back(1));
+}
+
+#[test]
+fn a_member_that_answers_while_the_request_waits_to_be_sent_again_counts() {
+    let (mut client, ticket) = asked();
+    let all = client.ask(power(To::All, 0.0), 90).expect("room");
+    assert_eq!([client.poll(90), client.poll(90)], [Step::Send(*power(To::All, 0.0).frame()), Step::Done(all)]);
+    assert_eq!(client.poll(100), Step::Wait(Some(110)));
+    assert!(is_answer(&client.handle(&answer(4)), ticket));
+    assert_eq!(client.poll(109), Step::Wait(Some(110)));
+    assert!(is_answer(&client.handle(&answer(1)), ticket));
+    assert_eq!(client.poll(110), Step::Done(ticket));
+}
+
+#[test]
+fn each_round_waits_for_all_members_anew() {
+    let mut client = asking(&[1, 4]);
+    let ticket = client.every(300, group(), 0).expect("room");
+    for round in [0, 300, 600] {
+        assert_eq!(client.poll(round), Step::Send(*group().frame()));
+        assert!(is_answer(&client.handle(&answer(1)), ticket));
+        assert_eq!(client.poll(round), Step::Wait(Some(round + 100)));
+        assert!(is_answer(&client.handle(&answer(4)), ticket));
+        assert_eq!(client.poll(round), Step::Done(ticket));
+    }
+}
+
+#[test]
+fn a_held_group_is_in_effect_when_all_members_agree() {
+    let mut client = asking(&[1, 4]);
+    let ticket = hold(&mut client, To::Group(2), 0.0, 0).expect("the members are known");
+    let off = Step::Send(*power(To::Group(2), 0.0).frame());
+    assert_eq!(client.poll(0), off);
+    assert!(is_answer(&client.handle(&echo(1, 0)), ticket));
+    let refused = frame(0x0107_F004, [2, 0xF2, 0, 0]);
+    assert!(matches!(client.handle(&refused), Heard::Refusal { .. }));
+    assert_eq!(client.poll(100), off);
+    // One that agreed says something else now.
+    assert!(matches!(client.handle(&echo(1, 50)), Heard::NotInEffect { .. }));
+    assert!(is_answer(&client.handle(&echo(4, 0)), ticket));
+    assert_eq!(client.poll(200), Step::Missing { ticket, nodes: [1].into() });
+    // It is not silent.
+    assert_eq!(client.poll(200), Step::Wait(Some(300)));
+    assert_eq!([client.poll(999), client.poll(1000)], [Step::Wait(Some(1000)), off]);
+    assert!(is_answer(&client.handle(&echo(1, 0)), ticket) && is_answer(&client.handle(&echo(4, 0)), ticket));
+    assert_eq!(client.poll(1000), Step::Done(ticket));
+}
+
+#[test]
+fn a_stop_of_a_group_replaces_what_is_held_of_its_members_only() {
+    let mut client = asking(&[1, 4]);
+    for heater in [1, 4, 5] {
+        hold(&mut client, To::Heater(heater), 500.0, 0).expect("room");
+    }
+    let steps = [0, 20, 40].map(|now| client.poll(now));
+    assert_eq!(steps, [1, 4, 5].map(|heater| Step::Send(*power(To::Heater(heater), 500.0).frame())));
+    for heater in [1, 4, 5] {
+        assert!(matches!(client.handle(&echo(heater, 50)), Heard::Answer { .. }));
+    }
+    let stop = hold(&mut client, To::Group(2), 0.0, 500).expect("it takes the room of its members");
+    let mut sent = std::vec::Vec::new();
+    for now in 500..3000 {
+        if let Step::Send(frame) = client.poll(now) {
+            sent.push(frame);
+            for heater in if frame == *power(To::Group(2), 0.0).frame() { [1, 4] } else { [5; 2] } {
+                assert!(!matches!(
+                    client.handle(&echo(heater, if heater == 5 { 50 } else { 0 })),
+                    Heard::NotInEffect { .. }
+                ));
+            }
+        }
+    }
+    assert!(
+        sent.iter()
+            .all(|frame| [*power(To::Group(2), 0.0).frame(), *power(To::Heater(5), 500.0).frame()].contains(frame))
+    );
+    assert_eq!((sent.len(), hold(&mut client, To::Group(2), 0.0, 3000)), (5, Ok(stop)));
+}
+
+#[test]
+fn no_member_is_held_otherwise_than_its_group() {
+    let mut client = asking(&[1, 4]);
+    client.members(To::Group(3), [4, 5]).expect("room");
+    let stop = hold(&mut client, To::Group(2), 0.0, 0).expect("the members are known");
+    assert_eq!(hold(&mut client, To::Heater(4), 500.0, 1), Err(NotHeld::Torn(stop)));
+    assert_eq!(hold(&mut client, To::Group(3), 500.0, 1), Err(NotHeld::Torn(stop)));
+    assert!(hold(&mut client, To::Heater(5), 500.0, 1).is_ok());
+    client.cancel(stop);
+    assert!(hold(&mut client, To::Heater(4), 500.0, 1).is_ok());
+}
+
+#[test]
+fn an_answer_of_a_member_does_not_count_while_it_could_be_one_to_what_the_group_replaced() {
+    let mut client = asking(&[1]);
+    hold(&mut client, To::Heater(1), 0.0, 0).expect("room");
+    assert!(matches!(client.poll(0), Step::Send(_)));
+    let stop = hold(&mut client, To::Group(2), 0.0, 5).expect("room");
+    let off = Step::Send(*power(To::Group(2), 0.0).frame());
+    assert_eq!(client.poll(20), off);
+    assert!(matches!(client.handle(&echo(1, 0)), Heard::Late { ticket, .. } if ticket == stop));
+    assert_eq!([client.poll(199), client.poll(200)], [Step::Wait(Some(200)), off]);
+    assert!(is_answer(&client.handle(&echo(1, 0)), stop));
+    assert_eq!(client.poll(201), Step::Done(stop));
+}
+
+#[test]
+fn there_is_room_for_some_targets_that_the_document_names() {
+    let mut client = asking(&[1]);
+    assert_eq!(client.members(To::Group(3), [2]), Ok(()));
+    assert_eq!(client.members(To::Group(4), [3]), Err(NoMembers::Full));
+    assert_eq!(client.members(To::Group(2), Nodes::NONE), Ok(()));
+    assert_eq!(client.members(To::Group(4), [3]), Ok(()));
+    assert!(matches!(client.members(To::Group(16), [3]), Err(NoMembers::Target(Error::Address { .. }))));
+    assert_eq!(hold(&mut client, To::Group(2), 0.0, 0), Err(NotHeld::Unconfirmed));
+}
