@@ -75,6 +75,9 @@ const LONGEST: u32 = (1 << 31) - 1;
 ///
 /// A request keeps its room until no answer to it can come any more, and for ever if it is asked again
 /// and again.
+///
+/// A client takes 96 bytes. Each request takes 100 on a processor of 32 bits, and 112 on one of 64 bits.
+/// Each group takes 108.
 #[derive(Clone, Copy, Debug)]
 pub struct Client<P, const N: usize, const G: usize = 0> {
     pace: Pace,

@@ -239,6 +239,14 @@ fn a_full_table_refuses_a_request_until_one_has_ended() {
 }
 
 #[test]
+fn a_client_takes_no_more_memory_than_its_documentation_says() {
+    let [none, request, group] =
+        [size_of::<Client<Message, 0>>(), size_of::<Client<Message, 1>>(), size_of::<Client<Message, 0, 1>>()];
+    // Only the pointers of a request are larger on a processor of 64 bits.
+    assert!(none <= 96 && request - none <= 112 && group - none <= 108 + 4, "{none}, {request}, {group}");
+}
+
+#[test]
 fn on_a_bus_with_faults_every_request_ends_once_with_its_own_answer() {
     let mut ends = [0; 3];
     for seed in 1..=300 {
