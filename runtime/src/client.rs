@@ -63,8 +63,9 @@ pub use pace::Pace;
 
 use core::num::NonZeroU32;
 
+use crate::clock::{earlier, has_come};
 use crate::{Frame, Problem, Protocol, Received, Replies, Request};
-use entry::{Entry, State, earlier, has_come};
+use entry::{Entry, State};
 use group::Groups;
 use health::Health;
 
@@ -294,36 +295,51 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Says what a received frame is.
     pub fn handle(&mut self, frame: &impl embedded_can::Frame) -> Heard<P> {
-        let mut entries = self.entries.iter_mut().flatten();
-        let groups = &mut self.groups;
-        let awaiting = |entry: &&mut Entry<P>| entry.awaits() && entry.request.refuses(frame).is_some();
+        let awaiting = self.asking(frame, Entry::awaits);
         let received = match Received::decode_by(self.model, frame) {
             Ok(received) => received,
-            Err(Problem::Length) => {
-                let short = |entry: &mut Entry<P>| {
-                    let is_group_known = groups.answering(&entry.request).is_some();
-                    entry.answered_short(frame, is_group_known)
-                };
-                return entries.find(awaiting).map_or(Heard::Unrecognised(Problem::Length), short);
-            }
-            Err(problem) => return Heard::Unrecognised(problem),
+            Err(problem) => return self.unrecognised(frame, problem, awaiting),
         };
         let node = sender(&received);
         if let Some(node) = node {
             self.health.heard(node);
-            groups.heard(node);
+            self.groups.heard(node);
         }
-        if let Some(entry) = entries.find(awaiting) {
+        if let Some(entry) = awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
             let is_refusal = entry.request.refuses(frame) == Some(true);
             let begun = entry.begun;
-            let heard = entry.answered(received, is_refusal, self.model, groups.answering(&entry.request));
+            let heard = entry.answered(received, is_refusal, self.model, self.groups.answering(&entry.request));
             if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
                 self.put_off(node, begun);
             }
             return heard;
         }
-        let past = self.entries.iter().flatten().find_map(|entry| entry.too_late(frame, received));
-        past.unwrap_or(Heard::Other(received))
+        let past = self.asking(frame, Entry::is_resting).and_then(|place| self.entries.get(place)?.as_ref());
+        past.and_then(|entry| entry.too_late(received)).unwrap_or(Heard::Other(received))
+    }
+
+    /// Returns the place of the first request of some kind that a frame answers.
+    fn asking(&self, frame: &impl embedded_can::Frame, is_one: impl Fn(&Entry<P>) -> bool) -> Option<usize> {
+        let mut slots = self.entries.iter();
+        slots.position(|slot| {
+            slot.as_ref().is_some_and(|entry| is_one(entry) && self.groups.refuses(entry, frame).is_some())
+        })
+    }
+
+    /// Says what a frame is that is not recognised.
+    fn unrecognised(
+        &mut self,
+        frame: &impl embedded_can::Frame,
+        problem: Problem,
+        awaiting: Option<usize>,
+    ) -> Heard<P> {
+        match awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
+            Some(entry) if problem == Problem::Length => {
+                let is_group_known = self.groups.answering(&entry.request).is_some();
+                entry.answered_short(frame, is_group_known)
+            }
+            _ => Heard::Unrecognised(problem),
+        }
     }
 
     /// Notes that a module has heard what was sent at a time.
@@ -357,16 +373,18 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         Some(Step::Send(*entry.request.frame()))
     }
 
-    /// Tests whether an answer to another request could be taken for one to this.
+    /// Tests whether an answer to another request could be taken for one to this: to one that is under
+    /// way, or to one that has waited longer and would never be sent if this one went first each time.
     fn is_blocked(&self, place: usize, now: u32) -> bool {
         let Some(own) = self.entries.get(place).and_then(Option::as_ref) else { return true };
-        let others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
-        let groups = &self.groups;
-        let is_like = |other: &Entry<P>| {
-            other.is_open(now) && own.request.is_like(&other.request)
-                || other.awaits() && groups.is_shared(&own.request, &other.request)
-        };
-        others.into_iter().any(is_like)
+        let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
+        others.any(|other| {
+            let is_like = self.groups.is_like(own, other);
+            let is_shared = self.groups.is_shared(&own.request, &other.request);
+            is_like && other.is_open(now)
+                || is_shared && other.awaits()
+                || (is_like || is_shared) && other.is_to_go_before(own, now)
+        })
     }
 
     /// Returns the next time at which something is to do.

@@ -28,6 +28,7 @@ pub mod assembler;
 mod bcd;
 mod bytes;
 pub mod client;
+mod clock;
 mod entry;
 mod error;
 mod exchange;

@@ -150,6 +150,11 @@ impl<P, R> Request<P, R> {
         answers(self).into_iter().flatten().any(overlaps)
     }
 
+    /// Tests whether each of several modules answers.
+    pub(crate) fn has_many_answers(&self) -> bool {
+        self.who == Who::Each && self.reply != IdFilter::NONE
+    }
+
     /// Tests whether both carry the same message by the same access.
     pub(crate) fn is_of_same_exchange(&self, other: &Self) -> bool {
         self.exchange.is(other.exchange)
@@ -194,8 +199,16 @@ impl<P: Protocol, R> Request<P, R> {
 
     /// Returns the number of the one module that it goes to, if it is below 256.
     pub(crate) fn node(&self) -> Option<u8> {
-        let way = self.exchange.way::<P>(Kind::Request, self.frame.raw_id())?;
-        u8::try_from(P::node(&way)?).ok()
+        self.node_of(Kind::Request, self.frame.raw_id())
+    }
+
+    /// Returns the number of the module that sends an answer, if it is below 256.
+    pub(crate) fn sender(&self, answer: &impl embedded_can::Frame) -> Option<u8> {
+        self.node_of(Kind::Reply, own_id::<P>(answer)?)
+    }
+
+    fn node_of(&self, kind: Kind, id: u32) -> Option<u8> {
+        u8::try_from(P::node(&self.exchange.way::<P>(kind, id)?)?).ok()
     }
 
     /// Copies a frame that answers this request, and says how. Most frames on a bus fail at the identifier, which is

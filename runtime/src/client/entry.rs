@@ -4,7 +4,8 @@ use core::num::NonZeroU32;
 
 use super::group::Group;
 use super::hold::Hold;
-use super::{Heard, Nodes, Pace, Step, has_one_answer, sender};
+use super::{Heard, Nodes, Pace, Step, has_one_answer};
+use crate::clock::{earlier, has_come, is_later};
 use crate::{Protocol, Received, Replies, Request};
 
 /// Names a request of a client.
@@ -59,22 +60,6 @@ pub enum State {
     },
 }
 
-/// Tests whether a time has come.
-pub fn has_come(time: u32, now: u32) -> bool {
-    now.wrapping_sub(time) < 1 << 31
-}
-
-/// Tests whether a time is before another one, both within 24 days of now.
-pub fn earlier(time: u32, other: u32, now: u32) -> bool {
-    let since = |time: u32| now.wrapping_sub(time) as i32;
-    since(time) > since(other)
-}
-
-/// Tests whether a time is after another one, both within 24 days of each other.
-pub fn is_later(time: u32, other: u32) -> bool {
-    !has_come(time, other)
-}
-
 impl<P: Protocol> Entry<P> {
     pub fn new(ticket: Ticket, request: Request<P, ()>, pace: Pace, now: u32) -> Self {
         Self {
@@ -101,9 +86,20 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
+    /// Tests whether this has waited longer than another one, and neither is under way.
+    pub fn is_to_go_before(&self, other: &Self, now: u32) -> bool {
+        let times = self.due(now).zip(other.due(now));
+        !self.is_under_way() && !other.is_under_way() && times.is_some_and(|(own, other)| earlier(own, other, now))
+    }
+
     /// Tests whether the entry would take a frame for its answer, now or later.
     pub fn awaits(&self) -> bool {
-        self.is_under_way() && !matches!(self.state, State::Resting { .. })
+        self.is_under_way() && !self.is_resting()
+    }
+
+    /// Tests whether its round has ended.
+    pub const fn is_resting(&self) -> bool {
+        matches!(self.state, State::Resting { .. })
     }
 
     /// Tests whether an answer to what was sent, or to what was held before, can come in this round.
@@ -114,7 +110,8 @@ impl<P: Protocol> Entry<P> {
     /// Tests whether an answer can come.
     pub fn is_open(&self, now: u32) -> bool {
         match self.state {
-            State::Due { .. } | State::Waiting { .. } => self.is_under_way(),
+            State::Due { .. } => self.deaf().map_or(self.sent > 0, |deaf| !has_come(deaf, now)),
+            State::Waiting { .. } => true,
             State::Resting { until, .. } => !has_come(until, now),
         }
     }
@@ -190,7 +187,7 @@ impl<P: Protocol> Entry<P> {
         }
         let is_good = self.hold.is_none() || !is_refusal && self.agrees(&received, model);
         let is_group_known = group.is_some();
-        if let (Some(group), Some(node)) = (group, sender(&received)) {
+        if let (Some(group), Some(node)) = (group, self.request.sender(received.frame())) {
             if !group.answered(node, is_good) {
                 return Heard::Twice { ticket, received };
             }
@@ -242,9 +239,8 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Says of a frame that answers a request which has ended.
-    pub fn too_late(&self, frame: &impl embedded_can::Frame, received: Received<P>) -> Option<Heard<P>> {
+    pub const fn too_late(&self, received: Received<P>) -> Option<Heard<P>> {
         let State::Resting { is_lost, .. } = self.state else { return None };
-        self.request.refuses(frame)?;
         let ticket = self.ticket;
         Some(if is_lost { Heard::Late { ticket, received } } else { Heard::Twice { ticket, received } })
     }

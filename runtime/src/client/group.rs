@@ -42,8 +42,8 @@ pub struct Groups<const G: usize>(pub [Option<Group>; G]);
 
 impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
     /// Notes which modules answer requests to a target if each of several does. Such a request is then
-    /// done as soon as all of them have answered. It is sent again as long as some are missing. There is
-    /// room for `G` targets, and no members mean that they are not known.
+    /// done as soon as all of them have answered. It is sent again as long as some are missing. Nobody
+    /// else answers it. There is room for `G` targets, and no members mean that they are not known.
     ///
     /// Of requests to one such target, one is under way at a time.
     ///
@@ -74,8 +74,9 @@ impl<const G: usize> Groups<G> {
 
     /// Returns the group whose members answer a request.
     pub fn answering<P>(&mut self, request: &Request<P, ()>) -> Option<&mut Group> {
-        let groups = self.0.iter_mut().flatten().filter(|_| matches!(request.replies(), Replies::Each(_)));
-        groups.into_iter().find(|group| group.target.matches(request.frame().raw_id()))
+        let id = request.frame().raw_id();
+        let group = self.0.iter_mut().flatten().find(|group| group.target.matches(id))?;
+        Some(group).filter(|_| request.has_many_answers())
     }
 
     /// Notes that a module has spoken.
@@ -91,10 +92,31 @@ impl<const G: usize> Groups<G> {
         entry.node.map(|node| Nodes::from([node])).or_else(group)
     }
 
+    /// Returns the modules that answer a request, if they are known.
+    fn answerers<P: Protocol>(&self, entry: &Entry<P>) -> Option<Nodes> {
+        match entry.request.replies() {
+            Replies::One(_) => entry.node.map(|node| Nodes::from([node])),
+            Replies::Each(_) => self.of(&entry.request).map(|group| group.members),
+            Replies::Coordinator(_) | Replies::Nobody => None,
+        }
+    }
+
+    /// Tells whether a frame that answers a request refuses it. Returns `None` for any other frame.
+    pub fn refuses<P: Protocol>(&self, entry: &Entry<P>, frame: &impl embedded_can::Frame) -> Option<bool> {
+        let is_refusal = entry.request.refuses(frame)?;
+        let is_expected = || Some(self.answerers(entry)?.contains(entry.request.sender(frame)?));
+        Some(is_refusal).filter(|_| is_expected().unwrap_or(true))
+    }
+
+    /// Tests whether a frame can answer both requests.
+    pub fn is_like<P: Protocol>(&self, one: &Entry<P>, other: &Entry<P>) -> bool {
+        let known = || self.answerers(one).zip(self.answerers(other));
+        one.request.is_like(&other.request) && known().is_none_or(|(one, other)| !one.both(&other).is_empty())
+    }
+
     /// Tests whether two requests wait for the members of one group.
     pub fn is_shared<P>(&self, one: &Request<P, ()>, other: &Request<P, ()>) -> bool {
-        let is_each = |request: &Request<P, ()>| matches!(request.replies(), Replies::Each(_));
-        let group = self.of(one).filter(|_| is_each(one) && is_each(other));
+        let group = self.of(one).filter(|_| one.has_many_answers() && other.has_many_answers());
         group.is_some_and(|group| group.target.matches(other.frame().raw_id()))
     }
 }
@@ -105,15 +127,12 @@ impl Group {
         (self.missing, self.unheard) = (self.members, self.members);
     }
 
-    /// Notes that a module has answered, as it should or not. Returns whether that is new.
+    /// Notes that a member has answered, as it should or not. Returns whether that is new.
     pub fn answered(&mut self, node: u8, is_good: bool) -> bool {
-        let is_member = self.members.contains(node);
         if is_good {
-            return self.missing.remove(node) || !is_member;
+            return self.missing.remove(node);
         }
-        if is_member {
-            self.missing.insert(node);
-        }
+        self.missing.insert(node);
         true
     }
 

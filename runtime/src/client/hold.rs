@@ -2,9 +2,10 @@
 
 use core::num::NonZeroU32;
 
-use super::entry::{Entry, State, has_come, is_later};
+use super::entry::{Entry, State};
 use super::group::Groups;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
+use crate::clock::{has_come, is_later};
 use crate::{Protocol, Received, Request};
 
 /// Says whether an echo agrees: whether the second message says what the first one asks for.

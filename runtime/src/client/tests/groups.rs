@@ -8,6 +8,7 @@ use crate::{Error, Frame, Request};
 type Asking = Client<Message, 4, 2>;
 
 const REFRESH: u32 = 1000;
+const GROUP: To = To::Group(2);
 
 fn power(target: To, power_w: f64) -> Request<Message, Heat> {
     Heat { power_w }.set(target).expect("a legal request")
@@ -54,8 +55,8 @@ fn a_group_is_done_as_soon_as_all_members_have_answered() {
     assert!(is_answer(&client.handle(&answer(4)), ticket));
     assert_eq!(client.poll(10), Step::Wait(Some(100)));
     assert!(is_twice(&client.handle(&answer(4))));
-    // Heater 7 is no member, and answers too.
-    assert!(is_answer(&client.handle(&answer(7)), ticket));
+    // Heater 7 is no member.
+    assert!(matches!(client.handle(&answer(7)), Heard::Other(_)));
     assert_eq!(client.poll(20), Step::Wait(Some(100)));
     assert!(is_answer(&client.handle(&answer(1)), ticket));
     assert_eq!([client.poll(21), client.poll(21)], [Step::Done(ticket), Step::Wait(Some(200))]);
@@ -197,4 +198,46 @@ fn there_is_room_for_some_targets_that_the_document_names() {
     assert_eq!(client.members(To::Group(4), [3]), Ok(()));
     assert!(matches!(client.members(To::Group(16), [3]), Err(NoMembers::Target(Error::Address { .. }))));
     assert_eq!(hold(&mut client, To::Group(2), 0.0, 0), Err(NotHeld::Unconfirmed));
+}
+
+#[test]
+fn a_group_is_asked_although_its_members_are_asked_all_the_time() {
+    let mut client = asking(&[1, 4]);
+    for (heater, first) in [(1, 0), (4, 150)] {
+        client.every(300, power(To::Heater(heater), 100.0), first).expect("room");
+    }
+    client.ask(group(), 10).expect("room");
+    let sent = (0..1000).find(|now| client.poll(*now) == Step::Send(*group().frame()));
+    // Heater 1 is sent at 0, its answer can come until 300 ms. Heater 4 is due at 150 and waits.
+    assert_eq!(sent, Some(300));
+}
+
+#[test]
+fn other_modules_are_asked_while_a_group_answers() {
+    let (mut client, ticket) = asked();
+    let other = client.ask(power(To::Heater(7), 1500.0), 1).expect("room");
+    assert_eq!(client.poll(20), Step::Send(*power(To::Heater(7), 1500.0).frame()));
+    // An answer without a byte, which is no refusal, and one that is.
+    let short = |result| Frame::new_raw(0x0107_F007, true, [2, result, 0, 0, 0, 0, 0, 0], 3);
+    assert!(matches!(client.handle(&short(0xF0)), Heard::Broken(of) if of == other));
+    assert!(matches!(client.handle(&short(0xF2)), Heard::ShortRefusal(of) if of == other));
+    assert!(is_answer(&client.handle(&answer(4)), ticket) && is_answer(&client.handle(&answer(1)), ticket));
+    assert_eq!(client.poll(21), Step::Done(ticket));
+}
+
+#[test]
+fn two_requests_that_replace_others_do_not_wait_for_each_other_for_ever() {
+    let mut client = asking(&[4]);
+    let both = |client: &mut Asking, power_w, now| {
+        hold(client, To::Heater(1), power_w, now).expect("room");
+        hold(client, GROUP, power_w, now).expect("room");
+    };
+    let sent = |target, power_w| Step::Send(*power(target, power_w).frame());
+    both(&mut client, 500.0, 0);
+    assert_eq!([0, 20].map(|now| client.poll(now)), [sent(To::Heater(1), 500.0), sent(GROUP, 500.0)]);
+    both(&mut client, 0.0, 21);
+    client.members(GROUP, [1, 4]).expect("room");
+    // Answers to the old requests can come until 200 and 220 ms.
+    let next = (21..1000).find(|now| matches!(client.poll(*now), Step::Send(_)));
+    assert_eq!(next, Some(200));
 }
