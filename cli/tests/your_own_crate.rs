@@ -7,7 +7,7 @@ use std::process::Command;
 const PAGES: [&str; 2] = ["docs/your-own-crate.md", "README.md"];
 
 /// Files of the crate that a page can quote.
-const FILES: [&str; 14] = [
+const FILES: [&str; 15] = [
     "Cargo.toml",
     "build.rs",
     "frames.jsonl",
@@ -21,6 +21,7 @@ const FILES: [&str; 14] = [
     "tests/frames.rs",
     "tests/meters.rs",
     "tests/pumps.rs",
+    "tests/simulated.rs",
     "tests/steps.rs",
 ];
 

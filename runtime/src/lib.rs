@@ -55,6 +55,7 @@ mod route;
 mod scale;
 mod set;
 mod signal;
+pub mod sim;
 mod status;
 #[cfg(test)]
 mod tests;

@@ -1,16 +1,14 @@
 //! A client on a bus with faults, and in single situations.
 
-mod bus;
 mod groups;
 mod health;
 mod holds;
-
-use core::time::Duration;
-use std::vec::Vec;
+mod trial;
 
 use super::{Client, Full, Heard, Pace, Step, Ticket};
 use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
 use crate::{Frame, Problem, Request, Time, Timing};
+use core::time::Duration;
 
 const PACE: Pace = Pace { gap: 20, wait: 100, tries: 2, late: 100 };
 
@@ -247,21 +245,19 @@ fn a_client_takes_no_more_memory_than_its_documentation_says() {
 }
 
 #[test]
-fn on_a_bus_with_faults_every_request_ends_once_with_its_own_answer() {
-    let mut ends = [0; 3];
+fn on_a_bus_with_faults_the_client_does_nothing_wrong() {
+    let mut outcomes = [0; 7];
     for seed in 1..=300 {
-        let outcome = bus::run(seed, PACE);
-        assert_eq!(outcome.wrong, 0, "seed {seed}: an answer was taken for one to another request");
-        assert!(outcome.shortest_gap >= PACE.gap, "seed {seed}: a gap of {} ms", outcome.shortest_gap);
-        let open: Vec<_> = outcome.ends.iter().enumerate().filter(|(_, ends)| **ends != 1).collect();
-        assert!(open.is_empty(), "seed {seed}: these requests did not end once: {open:?}");
-        ends.iter_mut().zip(outcome.counts).for_each(|(sum, count)| *sum += count);
+        let outcome = trial::run(seed, PACE);
+        assert!(outcome.wrong.is_empty(), "seed {seed}: {:#?}", &outcome.wrong[..outcome.wrong.len().min(5)]);
+        let counts = outcome.ends.into_iter().chain(outcome.stops).chain(outcome.echoes);
+        outcomes.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
-    assert!(ends.iter().all(|count| *count > 500), "answered, refused, lost: {ends:?}");
+    assert!(outcomes.iter().all(|count| *count > 300), "ends, stops and echoes: {outcomes:?}");
 }
 
 #[test]
 fn a_client_that_does_not_wait_for_late_answers_takes_them_for_others() {
     let careless = Pace { late: 0, ..PACE };
-    assert!((1..=100).any(|seed| bus::run(seed, careless).wrong > 0));
+    assert!((1..=30).any(|seed| !trial::run(seed, careless).wrong.is_empty()));
 }

@@ -92,6 +92,7 @@ impl Destination for To {
         let byte = |number: i32| u8::try_from(number).ok();
         Some(match way.place() {
             (0, None) => Route::new(Self::Heater(byte(way.number(TARGET, &HEATER))?), way.number(SOURCE, &CONTROLLER)),
+            (1, None) => Route::new(Self::Group(byte(way.number(TARGET, &GROUP))?), way.number(SOURCE, &CONTROLLER)),
             (1, Some(Who::Coordinator)) => {
                 Route::new(Self::Group(byte(way.number(SOURCE, &GROUP))?), way.number(TARGET, &CONTROLLER))
             }
@@ -148,6 +149,11 @@ impl Heat {
         .reply(FRAME)
         .of("heat", FRAME.id(COMMAND, 8))
         .length(4);
+    pub const ASK: Exchange = Exchange::new("ask", &[Some(Who::One), Some(Who::Each), None])
+        .request(FRAME)
+        .reply(FRAME)
+        .of("heat", FRAME.id(COMMAND, 0x0C))
+        .length(4);
     pub const REPORT: Exchange =
         Exchange::new("report", &[None; 3]).report(FRAME).of("heat", FRAME.id(COMMAND, 0x0B)).length(4);
     pub const REPORT_1: Exchange = Self::REPORT.models(&[1]);
@@ -157,6 +163,10 @@ impl Heat {
 
     pub fn set(self, route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
         Self::SET.request_to(route, &self)
+    }
+
+    pub fn ask(route: impl Into<Route<To>>) -> Result<Request<Message, Self>, Error> {
+        Self::ASK.request_to(route, &())
     }
 }
 
@@ -184,6 +194,7 @@ impl Protocol for Message {
         match (frame.id(COMMAND), frame.data(FUNCTION.place)) {
             (0x07, 0x01) => frame.request(&Heat::SET, Self::Heat(frame.values())),
             (0x08, _) => frame.request(&Heat::READ, Self::ReadHeat),
+            (0x0C, _) => frame.request(&Heat::ASK, Self::ReadHeat),
             (0x0A, _) => frame.best([
                 frame.request(&Heat::READ, Self::ReadHeat),
                 frame.request(&Heat::SET, Self::Heat(frame.values())),
@@ -197,6 +208,7 @@ impl Protocol for Message {
         match (frame.id(COMMAND), frame.data(FUNCTION.place)) {
             (0x07, 0x02) => frame.reply(&Heat::SET, Self::Heat(frame.values())),
             (0x08, _) => frame.reply(&Heat::READ, Self::Heat(frame.values())),
+            (0x0C, _) => frame.reply(&Heat::ASK, Self::Heat(frame.values())),
             (0x0A, _) => frame.best([
                 frame.report(&Heat::REPORT_1, Self::Heat(frame.values())),
                 frame.report(&Heat::REPORT_2, Self::Heat(frame.values())),
@@ -207,7 +219,7 @@ impl Protocol for Message {
     }
 
     fn request_lengths(frame: &Incoming) -> &'static [u8] {
-        if matches!(frame.id(COMMAND), 0x07 | 0x08) { &[4] } else { &[] }
+        if matches!(frame.id(COMMAND), 0x07 | 0x08 | 0x0C) { &[4] } else { &[] }
     }
 
     fn reply_lengths(frame: &Incoming) -> &'static [u8] {
@@ -218,6 +230,10 @@ impl Protocol for Message {
         let source = Address::new(SOURCE, &CONTROLLER);
         Way::best([
             shown.request(0).address(&Address::new(TARGET, &HEATER).excluding(OTHERS)).address(&source),
+            shown
+                .request(1)
+                .address(&Address::new(TARGET, &GROUP).excluding(&[(0, 0x4F), (0x60, 0xFF)]))
+                .address(&source),
             shown.reply(1, Who::Each).address(&Address::new(SOURCE, &HEATER)),
             shown.reply(1, Who::Coordinator).address(&Address::new(SOURCE, &GROUP)),
             shown.request(2).id(TARGET, 0x3F).address(&source),

@@ -7,6 +7,7 @@ use canspec_runtime::assembler::{Assembler, Partial};
 use canspec_runtime::client::{self, Client, Heard, Pace, Step};
 use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
+use canspec_runtime::sim::{Answer, Bench, Device, Faults, Random, Rules};
 use canspec_runtime::transfers::{self, Transferred, Transport};
 use canspec_runtime::{
     Addressed, AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading,
@@ -102,7 +103,8 @@ pub fn questions<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
 }
 
 /// Asks modules by a client, with every message that carries nothing.
-pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
+pub fn client<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
+    bench::<T::Protocol>();
     let pace = Pace { gap: unknown(), wait: unknown(), tries: unknown(), late: unknown() };
     let mut client = Client::<T::Protocol, 3, 2>::new(pace);
     if unknown() {
@@ -134,6 +136,33 @@ pub fn client<T: Destination<Protocol: Addressed> + Unknown>() {
         client.silent().iter().for_each(sink);
     }
     sink(client);
+}
+
+/// Does what nobody foresees.
+#[derive(Clone, Copy)]
+struct Any;
+
+impl<P: Addressed + Unknown> Device<P> for Any {
+    fn answer(&mut self, request: &Received<P>, _now: u32) -> Answer<P> {
+        sink(request);
+        if unknown() { Answer::Values(unknown()) } else { Answer::Refusal(unknown()) }
+    }
+}
+
+/// Simulates modules.
+fn bench<P: Addressed + Unknown>() {
+    let rules = Rules { gap: unknown(), watchdog: Some(unknown()), boot: unknown(), starting_up: Some(unknown()) };
+    let mut bench = Bench::<P, Any, 2, 3>::new([(unknown(), Any), (unknown(), Any)], rules, unknown());
+    bench.another_controller(unknown_frame(), unknown(), unknown());
+    for _ in 0..unknown::<u8>() {
+        if let Some(faults) = bench.faults(unknown()) {
+            *faults = Faults::random(&mut Random::new(unknown()), unknown(), unknown());
+            faults.slowest = unknown();
+        }
+        bench.send(&unknown_frame(), unknown());
+        bench.restart(unknown(), unknown());
+        sink((bench.poll(unknown()), bench.is_up(unknown()), bench.device(unknown())));
+    }
 }
 
 fn ticket(asked: Result<client::Ticket, client::Full>) {

@@ -1,0 +1,194 @@
+//! A bus with simulated devices, for tests of programs that talk to them.
+//!
+//! A program says what a device does, by [`Device`]. A [`Bench`] has some of them, each with its number
+//! and its [`Faults`]. It takes the frames of a client, and gives back what the devices answer. It
+//! complains about a client that asks too fast, sends what the document forbids, or lets a watchdog run
+//! out. Time is a number of milliseconds, and may wrap around. The seed decides everything.
+//!
+//! ```
+//! use canspec_runtime::sim::{Answer, Bench, Device, Event, Rules};
+//! use canspec_runtime::{Addressed, Frame, Received};
+//!
+//! /// A device that does what it is told, and says so.
+//! struct Obedient;
+//!
+//! impl<P: Addressed> Device<P> for Obedient {
+//!     fn answer(&mut self, request: &Received<P>, _now: u32) -> Answer<P> {
+//!         Answer::Values(*request.content())
+//!     }
+//! }
+//!
+//! fn answers<P: Addressed>(request: &Frame) -> Vec<Event> {
+//!     let rules = Rules { gap: 20, watchdog: Some(10_000), ..Rules::default() };
+//!     let mut bench = Bench::<P, Obedient, 2, 16>::new([(1, Obedient), (2, Obedient)], rules, 7);
+//!     bench.send(request, 0);
+//!     (0..100).flat_map(|now| std::iter::from_fn(|| bench.poll(now)).collect::<Vec<_>>()).collect()
+//! }
+//! ```
+
+mod complaint;
+mod device;
+mod faults;
+mod node;
+mod random;
+#[cfg(test)]
+pub(crate) mod tests;
+mod wire;
+
+pub use complaint::Complaint;
+pub use device::{Answer, Device};
+pub use faults::Faults;
+pub use random::Random;
+
+use core::marker::PhantomData;
+
+use crate::clock::has_come;
+use crate::{Addressed, Frame, Received};
+use node::{Node, has_coordinator};
+use wire::Wire;
+
+/// How many complaints wait to be taken. More are dropped.
+const COMPLAINTS: usize = 4;
+
+/// What the devices of a bus expect, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rules {
+    /// The shortest time from one frame of the client to the next.
+    pub gap: u32,
+    /// The silence after which a device acts by itself.
+    pub watchdog: Option<u32>,
+    /// How long a device takes to start.
+    pub boot: u32,
+    /// The error code of its answers until then. Without it, it does not answer.
+    pub starting_up: Option<u64>,
+}
+
+/// What comes from the bus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A frame for the client.
+    Frame(Frame),
+    /// The client does something wrong.
+    Complaint(Complaint),
+}
+
+/// A bus with `N` devices, and with room for `W` frames under way to the client.
+#[derive(Clone, Copy, Debug)]
+pub struct Bench<P, D, const N: usize, const W: usize> {
+    nodes: [Node<D>; N],
+    rules: Rules,
+    random: Random,
+    wire: Wire<W>,
+    /// When the client sent last.
+    sent: Option<u32>,
+    /// Another controller: its frame, the time between two of them, and when the next one is due.
+    other: Option<(Frame, u32, u32)>,
+    complaints: [Option<Complaint>; COMPLAINTS],
+    protocol: PhantomData<P>,
+}
+
+impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, W> {
+    /// Returns a bus with devices, each with its number. They have just heard something at time 0.
+    pub fn new(devices: [(u8, D); N], rules: Rules, seed: u64) -> Self {
+        Self {
+            nodes: devices.map(|(number, device)| Node::new(number, device)),
+            rules,
+            random: Random::new(seed),
+            wire: Wire([None; W]),
+            sent: None,
+            other: None,
+            complaints: [None; COMPLAINTS],
+            protocol: PhantomData,
+        }
+    }
+
+    /// Returns a device.
+    pub fn device(&mut self, node: u8) -> Option<&mut D> {
+        self.node(node).map(|node| &mut node.device)
+    }
+
+    /// Returns the faults of a device.
+    pub fn faults(&mut self, node: u8) -> Option<&mut Faults> {
+        self.node(node).map(|node| &mut node.faults)
+    }
+
+    /// Tests whether a device is on, and has started.
+    pub fn is_up(&self, node: u8) -> bool {
+        self.nodes.iter().any(|known| known.number == node && known.is_up())
+    }
+
+    /// Lets a device start anew.
+    pub fn restart(&mut self, node: u8, now: u32) {
+        let boot = self.rules.boot;
+        if let Some(node) = self.node(node) {
+            node.restart(boot, now);
+        }
+    }
+
+    /// Adds another controller, which sends a frame every so many milliseconds from a time on. The
+    /// devices answer it, and the client hears it all.
+    pub fn another_controller(&mut self, frame: Frame, every: u32, from: u32) {
+        self.other = Some((frame, every.max(1), from));
+    }
+
+    /// Takes a frame of the client.
+    pub fn send(&mut self, frame: &Frame, now: u32) {
+        let after = self.sent.map(|sent| now.wrapping_sub(sent)).filter(|after| *after < self.rules.gap);
+        if let Some(after) = after {
+            self.complain(Complaint::Gap { frame: *frame, after });
+        }
+        self.sent = Some(now);
+        match Received::decode(frame) {
+            Err(problem) => self.complain(Complaint::Unrecognised { frame: *frame, problem }),
+            Ok(received) if !received.is_to_module() => self.complain(Complaint::Direction(*frame)),
+            Ok(received) => {
+                if let Err(error) = received.encode() {
+                    self.complain(Complaint::Illegal { frame: *frame, error });
+                }
+                self.deliver(&received, now);
+            }
+        }
+    }
+
+    /// Lets time pass, and returns what comes next. Call it until nothing comes.
+    pub fn poll(&mut self, now: u32) -> Option<Event> {
+        for place in 0..N {
+            let Some(node) = self.nodes.get_mut(place) else { continue };
+            if node.tick(&self.rules, now) {
+                let node = node.number;
+                self.complain(Complaint::Unfed { node });
+            }
+        }
+        if let Some((frame, every, due)) = self.other.filter(|(_, _, due)| has_come(*due, now)) {
+            self.other = Some((frame, every, due.wrapping_add(every)));
+            self.wire.send(now, frame);
+            if let Ok(received) = Received::decode(&frame) {
+                self.deliver(&received, now);
+            }
+        }
+        let complaint = self.complaints.iter_mut().find_map(Option::take).map(Event::Complaint);
+        complaint.or_else(|| self.wire.arrived(now).map(Event::Frame))
+    }
+
+    /// Lets the devices that a request addresses hear and answer it.
+    fn deliver(&mut self, request: &Received<P>, now: u32) {
+        let Self { nodes, rules, random, wire, .. } = self;
+        let mut speaks = true;
+        for node in nodes.iter_mut().filter(|node| node.is_asked(request)) {
+            let reply = node.answer(request, rules, random, now).filter(|_| speaks);
+            let Some(reply) = reply else { continue };
+            speaks = !has_coordinator(request);
+            node.spoil(request, reply, random, |delay, frame| wire.send(now.wrapping_add(delay), frame));
+        }
+    }
+
+    fn node(&mut self, node: u8) -> Option<&mut Node<D>> {
+        self.nodes.iter_mut().find(|known| known.number == node)
+    }
+
+    fn complain(&mut self, complaint: Complaint) {
+        if let Some(slot) = self.complaints.iter_mut().find(|slot| slot.is_none()) {
+            *slot = Some(complaint);
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! What a simulated device does.
+
+use crate::{Protocol, Received};
+
+/// What a device answers. It goes to whom asked, if anybody answers in the addressing mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answer<P> {
+    /// The reply that carries this.
+    Values(P),
+    /// A reply with this error code.
+    Refusal(u64),
+    /// Nothing.
+    Silence,
+}
+
+/// The behaviour of a device. The bench knows its number, its watchdog and its faults.
+pub trait Device<P: Protocol> {
+    /// Takes a request, and answers it.
+    fn answer(&mut self, request: &Received<P>, now: u32) -> Answer<P>;
+
+    /// Tests whether it belongs to those that a request to many addresses. By default it does.
+    fn is_asked(&self, _request: &Received<P>) -> bool {
+        true
+    }
+
+    /// Lets time pass.
+    fn tick(&mut self, _now: u32) {}
+
+    /// Acts by itself, since its watchdog has run out.
+    fn silence(&mut self, _now: u32) {}
+
+    /// Starts anew, without what it was told.
+    fn power_on(&mut self, _now: u32) {}
+
+    /// Changes the values of a reply, for the fault of a wrong echo. By default it changes nothing.
+    fn drift(&self, values: P) -> P {
+        values
+    }
+}

@@ -1,0 +1,58 @@
+//! Faults of a device and of its frames.
+
+use super::Random;
+
+/// Faults of one device: how many of a hundred frames have each, and when the device fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// Requests that do not reach it.
+    pub deaf: u8,
+    /// Replies that get lost.
+    pub lost: u8,
+    /// Replies that come twice.
+    pub twice: u8,
+    /// Replies with a byte less or more than they should have.
+    pub broken: u8,
+    /// Replies that show another sender.
+    pub disguised: u8,
+    /// Requests that it refuses, with `code`.
+    pub refused: u8,
+    /// The error code of such a refusal.
+    pub code: u64,
+    /// Replies whose values [drift](super::Device::drift).
+    pub drifted: u8,
+    /// The longest time in milliseconds until a reply comes. The shortest is 1.
+    pub slowest: u32,
+    /// When it starts anew by itself.
+    pub restarts: Option<u32>,
+    /// When it dies. It neither hears nor says anything from then on.
+    pub dies: Option<u32>,
+}
+
+impl Faults {
+    /// No faults.
+    pub const NONE: Self = Self {
+        deaf: 0,
+        lost: 0,
+        twice: 0,
+        broken: 0,
+        disguised: 0,
+        refused: 0,
+        code: 0,
+        drifted: 0,
+        slowest: 1,
+        restarts: None,
+        dies: None,
+    };
+
+    /// Draws faults: up to `most` of a hundred frames have each. One device of four starts anew, and one
+    /// of eight dies, at a time before `end`.
+    pub fn random(random: &mut Random, most: u8, end: u32) -> Self {
+        let mut draw = || u8::try_from(random.below(u32::from(most).saturating_add(1))).unwrap_or(most);
+        let [deaf, lost, twice, broken, disguised, refused, drifted] =
+            [draw(), draw(), draw(), draw(), draw(), draw(), draw()];
+        let restarts = random.chance(25).then(|| random.below(end));
+        let dies = random.chance(12).then(|| random.below(end));
+        Self { deaf, lost, twice, broken, disguised, refused, drifted, restarts, dies, ..Self::NONE }
+    }
+}

@@ -1,0 +1,159 @@
+//! A device on the bus.
+
+use super::{Answer, Device, Faults, Random, Rules};
+use crate::clock::has_come;
+use crate::plumbing::Who;
+use crate::{Addressed, Destination, Frame, Protocol, Received};
+
+/// A device on the bus.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<D> {
+    pub number: u8,
+    pub device: D,
+    pub faults: Faults,
+    pub is_dead: bool,
+    /// When it heard a request last.
+    heard: u32,
+    /// Until when it starts, if it does.
+    boots: Option<u32>,
+    /// Whether its watchdog has run out since.
+    is_alone: bool,
+}
+
+impl<D> Node<D> {
+    pub const fn new(number: u8, device: D) -> Self {
+        Self { number, device, faults: Faults::NONE, is_dead: false, heard: 0, boots: None, is_alone: false }
+    }
+
+    /// Tests whether it is on, and has started.
+    pub const fn is_up(&self) -> bool {
+        !self.is_dead && self.boots.is_none()
+    }
+
+    /// Starts anew.
+    pub fn restart<P: Protocol>(&mut self, boot: u32, now: u32)
+    where
+        D: Device<P>,
+    {
+        self.device.power_on(now);
+        (self.boots, self.heard, self.is_alone) = (Some(now.wrapping_add(boot)), now, false);
+    }
+
+    /// Lets time pass, and tells whether the watchdog has just run out.
+    pub fn tick<P: Protocol>(&mut self, rules: &Rules, now: u32) -> bool
+    where
+        D: Device<P>,
+    {
+        self.is_dead |= self.faults.dies.is_some_and(|time| has_come(time, now));
+        if self.is_dead {
+            return false;
+        }
+        if self.faults.restarts.is_some_and(|time| has_come(time, now)) {
+            self.faults.restarts = None;
+            self.restart(rules.boot, now);
+        }
+        if self.boots.is_some_and(|time| has_come(time, now)) {
+            (self.boots, self.heard) = (None, now);
+        }
+        self.device.tick(now);
+        let silence = now.wrapping_sub(self.heard);
+        let is_out = !self.is_alone && self.is_up() && rules.watchdog.is_some_and(|longest| silence > longest);
+        if is_out {
+            self.is_alone = true;
+            self.device.silence(now);
+        }
+        is_out
+    }
+
+    /// Tests whether a request addresses it.
+    pub fn is_asked<P: Protocol>(&self, request: &Received<P>) -> bool
+    where
+        D: Device<P>,
+    {
+        match request.node() {
+            Some(node) => node == i32::from(self.number),
+            None => self.device.is_asked(request),
+        }
+    }
+
+    /// Takes a request, and returns what it answers.
+    pub fn answer<P: Addressed>(
+        &mut self,
+        request: &Received<P>,
+        rules: &Rules,
+        random: &mut Random,
+        now: u32,
+    ) -> Option<Frame>
+    where
+        D: Device<P>,
+    {
+        if self.is_dead || random.chance(self.faults.deaf) {
+            return None;
+        }
+        (self.heard, self.is_alone) = (now, false);
+        let answer = if self.boots.is_some() {
+            rules.starting_up.map_or(Answer::Silence, Answer::Refusal)
+        } else if random.chance(self.faults.refused) {
+            Answer::Refusal(self.faults.code)
+        } else {
+            self.device.answer(request, now)
+        };
+        match answer {
+            Answer::Values(values) if random.chance(self.faults.drifted) => {
+                request.answer(self.number, self.device.drift(values)).ok()
+            }
+            Answer::Values(values) => request.answer(self.number, values).ok(),
+            Answer::Refusal(code) => request.refuse(self.number, code).ok(),
+            Answer::Silence => None,
+        }
+    }
+
+    /// Puts the faults of frames into a reply, and hands over each frame with the time until it comes.
+    pub fn spoil<P: Addressed>(
+        &self,
+        request: &Received<P>,
+        reply: Frame,
+        random: &mut Random,
+        mut send: impl FnMut(u32, Frame),
+    ) {
+        let Faults { lost, twice, broken, disguised, slowest, .. } = self.faults;
+        let reply = if random.chance(disguised) { self.disguise(request, reply, random) } else { reply };
+        let reply = if random.chance(broken) { cut(reply, random) } else { reply };
+        for _ in 0..=u8::from(random.chance(twice)) {
+            let delay = random.below(slowest.max(1)).saturating_add(1);
+            if !random.chance(lost) {
+                send(delay, reply);
+            }
+        }
+    }
+
+    /// Puts the address of another module where a reply shows its sender.
+    fn disguise<P: Addressed>(&self, request: &Received<P>, reply: Frame, random: &mut Random) -> Frame {
+        let other = self.number.wrapping_add(1).wrapping_add(u8::try_from(random.below(3)).unwrap_or_default());
+        let pattern = way(request).and_then(|(mode, who)| P::MODES.get(mode)?.reply(who));
+        let mut addresses = pattern.map_or(&[][..], |pattern| pattern.addresses).iter();
+        let sender = addresses
+            .find(|address| !address.kind().is_sent() && address.number(reply.raw_id()) == i32::from(self.number));
+        let id =
+            sender.map(|address| address.bits().put(reply.raw_id().into(), address.kind().raw(other.into()).into()));
+        id.map_or(reply, |id| reply.with_id(id))
+    }
+}
+
+/// Takes a byte away or adds one.
+fn cut(frame: Frame, random: &mut Random) -> Frame {
+    let length = frame.byte_count();
+    let other = if length == 8 || random.chance(50) { length.saturating_sub(1) } else { length.saturating_add(1) };
+    frame.with(frame.bytes(), other)
+}
+
+/// Returns the mode of a request, and who answers.
+fn way<P: Addressed>(request: &Received<P>) -> Option<(usize, Who)> {
+    let mode = request.target()?.mode();
+    Some((mode, request.exchange().who(mode)?))
+}
+
+/// Tests whether one module alone answers a request for all.
+pub fn has_coordinator<P: Addressed>(request: &Received<P>) -> bool {
+    way(request).is_some_and(|(_, who)| who == Who::Coordinator)
+}

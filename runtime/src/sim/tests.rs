@@ -1,0 +1,250 @@
+//! The bench itself, with heaters.
+
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::{Answer, Bench, Complaint, Device, Event, Faults, Random, Rules};
+use crate::plumbing::Who;
+use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
+use crate::{Frame, Problem, Received};
+
+const RULES: Rules = Rules { gap: 20, watchdog: Some(1000), boot: 300, starting_up: Some(7) };
+
+/// A heater, which does what it is told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Heater {
+    pub power_w: f64,
+    /// The group that it belongs to.
+    pub group: Option<u8>,
+    /// What happened to it by itself.
+    pub events: Vec<(u32, &'static str)>,
+    /// How often it was told something, and when last.
+    pub told: Vec<(u32, f64)>,
+}
+
+impl Device<Message> for Heater {
+    fn answer(&mut self, request: &Received<Message>, now: u32) -> Answer<Message> {
+        if let Message::Heat(Heat { power_w }) = *request.content() {
+            self.power_w = power_w;
+            self.told.push((now, power_w));
+        }
+        Answer::Values(Message::Heat(Heat { power_w: self.power_w }))
+    }
+
+    fn is_asked(&self, request: &Received<Message>) -> bool {
+        match request.target() {
+            Some(To::Group(group)) => self.group == Some(group),
+            other => other == Some(To::All),
+        }
+    }
+
+    fn silence(&mut self, now: u32) {
+        self.power_w = 0.0;
+        self.events.push((now, "alone"));
+    }
+
+    fn power_on(&mut self, now: u32) {
+        self.power_w = 0.0;
+        self.events.push((now, "on"));
+    }
+
+    fn drift(&self, _: Message) -> Message {
+        Message::Heat(Heat { power_w: self.power_w + 10.0 })
+    }
+}
+
+type Heaters = Bench<Message, Heater, 3, 16>;
+
+/// Heaters 1 and 2 of group 2, and heater 3.
+fn heaters(seed: u64) -> Heaters {
+    let heater = |group| Heater { group, ..Heater::default() };
+    Bench::new([(1, heater(Some(2))), (2, heater(Some(2))), (3, heater(None))], RULES, seed)
+}
+
+fn set(target: To) -> Frame {
+    *HEAT.set(target).expect("a legal request").frame()
+}
+
+/// Returns all that comes until a time, as texts with their times.
+fn events(bench: &mut Heaters, times: core::ops::Range<u32>) -> Vec<(u32, String)> {
+    let mut events = Vec::new();
+    for now in times {
+        while let Some(event) = bench.poll(now) {
+            events.push((
+                now,
+                match event {
+                    Event::Frame(frame) => frame.to_string(),
+                    Event::Complaint(complaint) => complaint.to_string(),
+                },
+            ));
+        }
+    }
+    events
+}
+
+fn texts<const M: usize>(expected: [(u32, &str); M]) -> Vec<(u32, String)> {
+    expected.map(|(now, text)| (now, text.to_string())).into()
+}
+
+/// Returns the answer of heater 3 under some faults.
+fn answers(faults: Faults) -> Vec<(u32, String)> {
+    let mut bench = heaters(1);
+    *bench.faults(3).expect("heater 3") = faults;
+    bench.send(&set(To::Heater(3)), 0);
+    events(&mut bench, 0..50)
+}
+
+#[test]
+fn the_module_that_is_asked_answers_and_does_what_it_is_told() {
+    assert_eq!(answers(Faults::NONE), texts([(1, "0107F003#02F00096")]));
+    let mut bench = heaters(1);
+    bench.send(&set(To::Heater(3)), 0);
+    let powers = [1, 2, 3].map(|node| bench.device(node).expect("a heater").power_w);
+    assert_eq!(powers.map(f64::to_bits), [0.0, 0.0, 1500.0].map(f64::to_bits));
+}
+
+#[test]
+fn each_member_of_a_group_answers_and_nobody_answers_all() {
+    let mut bench = heaters(1);
+    bench.send(&set(To::Group(2)), 0);
+    assert_eq!(events(&mut bench, 0..50), texts([(1, "0107F001#02F00096"), (1, "0107F002#02F00096")]));
+    bench.send(&set(To::All), 50);
+    assert_eq!(events(&mut bench, 50..100), []);
+    assert!((1..=3).all(|node| bench.device(node).is_some_and(|heater| heater.power_w > 0.0)));
+}
+
+#[test]
+fn one_module_answers_for_all() {
+    assert_eq!(Heat::READ.who(1), Some(Who::Coordinator));
+    let read = Heat::READ.request_to::<To, Heat>(To::Group(2), &()).expect("a legal request");
+    let mut bench = heaters(1);
+    bench.send(read.frame(), 0);
+    assert_eq!(events(&mut bench, 0..50), texts([(1, "0108F05D#00000000")]));
+}
+
+#[test]
+fn every_fault_shows() {
+    let always = |change: fn(&mut Faults)| {
+        let mut faults = Faults::NONE;
+        change(&mut faults);
+        answers(faults)
+    };
+    assert_eq!(always(|faults| faults.deaf = 100), []);
+    assert_eq!(always(|faults| faults.lost = 100), []);
+    assert_eq!(always(|faults| faults.twice = 100), texts([(1, "0107F003#02F00096"); 2]));
+    assert_eq!(always(|faults| (faults.refused, faults.code) = (100, 5)), texts([(1, "1507F003#02F00000")]));
+    assert_eq!(always(|faults| faults.drifted = 100), texts([(1, "0107F003#02F00097")]));
+    let broken = always(|faults| faults.broken = 100);
+    assert!(broken == texts([(1, "0107F003#02F000")]) || broken == texts([(1, "0107F003#02F0009600")]));
+    let disguised = always(|faults| faults.disguised = 100);
+    assert!(["04", "05", "06"].iter().any(|other| disguised == [(1, std::format!("0107F0{other}#02F00096"))]));
+    let slow = always(|faults| faults.slowest = 40);
+    assert!(slow.len() == 1 && slow.iter().all(|(now, _)| (2..=40).contains(now)));
+    assert_eq!(always(|faults| faults.dies = Some(0)).len(), 1, "it dies when time passes");
+}
+
+#[test]
+fn a_dead_module_neither_hears_nor_says_anything() {
+    let mut bench = heaters(1);
+    bench.faults(3).expect("heater 3").dies = Some(10);
+    assert!(bench.is_up(3));
+    assert_eq!(events(&mut bench, 0..20), []);
+    bench.send(&set(To::Heater(3)), 20);
+    assert_eq!((events(&mut bench, 20..100), bench.is_up(3)), (Vec::new(), false));
+    assert_eq!(bench.device(3).expect("heater 3").told, []);
+}
+
+#[test]
+fn a_module_that_starts_anew_refuses_until_it_has_started() {
+    let mut bench = heaters(1);
+    bench.send(&set(To::Heater(3)), 0);
+    bench.faults(3).expect("heater 3").restarts = Some(100);
+    assert_eq!(events(&mut bench, 0..101).len(), 1);
+    assert!(!bench.is_up(3));
+    bench.send(&set(To::Heater(3)), 101);
+    assert_eq!(events(&mut bench, 101..399), texts([(102, "1D07F003#02F00000")]));
+    assert_eq!(events(&mut bench, 399..401), []);
+    assert!(bench.is_up(3));
+    let heater = bench.device(3).expect("heater 3");
+    assert_eq!((heater.power_w.to_bits(), &*heater.events), (0.0_f64.to_bits(), &[(100, "on")][..]));
+}
+
+#[test]
+fn a_watchdog_runs_out_once_until_the_module_hears_something() {
+    let mut bench = heaters(1);
+    bench.send(&set(To::Heater(3)), 500);
+    let unfed = |node| std::format!("module {node} has heard nothing until its watchdog ran out");
+    let told = events(&mut bench, 501..4000);
+    let complaints: Vec<_> = told.into_iter().filter(|(_, text)| text.starts_with("module")).collect();
+    assert_eq!(complaints, [(1001, unfed(1)), (1001, unfed(2)), (1501, unfed(3))]);
+    assert_eq!(bench.device(3).expect("heater 3").events, [(1501, "alone")]);
+    bench.send(&set(To::Heater(3)), 4000);
+    assert_eq!(events(&mut bench, 4001..5001).len(), 1);
+    assert_eq!(events(&mut bench, 5001..5002), [(5001, unfed(3))]);
+}
+
+#[test]
+fn a_client_must_keep_the_gap_and_send_what_the_document_allows() {
+    let mut bench = heaters(1);
+    let mut complaints = |request: Frame, now| {
+        bench.send(&request, now);
+        let events = core::iter::from_fn(|| bench.poll(now)).collect::<Vec<_>>();
+        events.into_iter().filter(|event| matches!(event, Event::Complaint(_))).collect::<Vec<_>>()
+    };
+    let legal = set(To::Heater(3));
+    assert_eq!([complaints(legal, 0), complaints(legal, 20)], [[], []]);
+    let soon = Event::Complaint(Complaint::Gap { frame: legal, after: 19 });
+    assert_eq!(complaints(legal, 39), [soon]);
+    let foreign = frame(0x0455_0000, [0; 4]);
+    let unrecognised = Complaint::Unrecognised { frame: foreign, problem: Problem::Identifier };
+    assert_eq!(complaints(foreign, 100), [Event::Complaint(unrecognised)]);
+    let reply = frame(0x0107_F003, [2, 0xF0, 0, 150]);
+    assert_eq!(complaints(reply, 200), [Event::Complaint(Complaint::Direction(reply))]);
+    let hot = frame(0x0107_03F0, [1, 0, 0, 201]);
+    assert!(matches!(&*complaints(hot, 300), [Event::Complaint(Complaint::Illegal { frame, .. })] if *frame == hot));
+}
+
+#[test]
+fn another_controller_is_answered_and_heard() {
+    let mut bench = heaters(1);
+    let other = *HEAT.set(crate::Route::new(To::Heater(3), 0xF1)).expect("a legal request").frame();
+    bench.another_controller(other, 60, 10);
+    let heard = texts([
+        (10, "010703F1#01000096"),
+        (11, "0107F103#02F00096"),
+        (70, "010703F1#01000096"),
+        (71, "0107F103#02F00096"),
+    ]);
+    assert_eq!(events(&mut bench, 0..100), heard);
+}
+
+#[test]
+fn a_seed_decides_everything_and_another_one_decides_otherwise() {
+    let run = |seed| {
+        let mut bench = heaters(seed);
+        let mut random = Random::new(seed);
+        for node in 1..=3 {
+            *bench.faults(node).expect("a heater") = Faults { slowest: 50, ..Faults::random(&mut random, 30, 2000) };
+        }
+        let mut all = Vec::new();
+        for now in (0..4000).step_by(40) {
+            bench.send(&set(To::Group(2)), now);
+            all.extend(events(&mut bench, now..now + 40));
+        }
+        all
+    };
+    assert!(run(1) == run(1) && run(1) != run(2));
+}
+
+#[test]
+fn random_numbers_reach_every_value_below_their_limit() {
+    let mut random = Random::new(3);
+    let mut counts = [0; 10];
+    for _ in 0..10_000 {
+        let number = usize::try_from(random.below(10)).expect("it is below 10");
+        counts[number] += 1;
+    }
+    // 1000 each are expected, with a deviation of 30.
+    assert!(counts.iter().all(|count| (850..1150).contains(count)), "{counts:?}");
+    assert_eq!((random.below(0), random.chance(0), random.chance(100)), (0, false, true));
+}
