@@ -33,7 +33,8 @@
 //! ```
 //!
 //! Every request ends once: as answered, as refused, as lost, or as done if nobody or each module of
-//! several answers it.
+//! several answers it. If it is asked [again and again](Client::every), each round ends so.
+//! What a device must go on doing is [held](Client::hold).
 //!
 //! Two requests that one frame could answer are never under way at once. The second one waits until
 //! no answer to the first can come. So an answer that comes late is never taken for another one, if
@@ -253,8 +254,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         &self.health.silent
     }
 
-    /// Sends a request before all others that are due, if it is due: a stop, for instance. The gap between
-    /// requests stays.
+    /// Sends a request before all others that are due, if it is due: a stop, for instance. It keeps the gap
+    /// between requests. It also waits until no answer to another request could be taken for one to it.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
         let due = self.entries.iter_mut().flatten().find(|entry| entry.ticket == ticket && entry.due(now).is_some());
         if let Some(entry) = due {
@@ -373,8 +374,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         Some(Step::Send(*entry.request.frame()))
     }
 
-    /// Tests whether an answer to another request could be taken for one to this: to one that is under
-    /// way, or to one that has waited longer and would never be sent if this one went first each time.
+    /// Tests whether an answer to another request could be taken for one to this, and the other one is under
+    /// way or has waited longer. Otherwise the one that has waited longest might never be sent.
     fn is_blocked(&self, place: usize, now: u32) -> bool {
         let Some(own) = self.entries.get(place).and_then(Option::as_ref) else { return true };
         let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);

@@ -125,8 +125,8 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
         }
     }
 
-    /// Adds another controller, which sends a frame every so many milliseconds from a time on. The
-    /// devices answer it, and the client hears it all.
+    /// Adds another controller, which sends a frame from a time on, with `every` milliseconds between two
+    /// of them. The devices answer it, and the client hears it all.
     pub fn another_controller(&mut self, frame: Frame, every: u32, from: u32) {
         self.other = Some((frame, every.max(1), from));
     }

@@ -32,7 +32,7 @@ pub struct Group {
     members: Nodes,
     /// The members that have not answered in this round, or not as they should.
     pub missing: Nodes,
-    /// The members of whom nothing has come in this round.
+    /// The members that have sent nothing in this round.
     unheard: Nodes,
 }
 
@@ -45,7 +45,8 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
     /// done as soon as all of them have answered. It is sent again as long as some are missing. Nobody
     /// else answers it. There is room for `G` targets, and no members mean that they are not known.
     ///
-    /// Of requests to one such target, one is under way at a time.
+    /// Of requests to one such target, one is under way at a time. Tell it before you hold something of a
+    /// member, since the client then knows what contradicts what.
     ///
     /// # Errors
     ///
@@ -136,7 +137,7 @@ impl Group {
         true
     }
 
-    /// Returns the missing members of whom nothing has come.
+    /// Returns the missing members that have sent nothing.
     pub fn silent(&self) -> Nodes {
         self.missing.both(&self.unheard)
     }

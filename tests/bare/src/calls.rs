@@ -103,7 +103,7 @@ pub fn questions<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
 }
 
 /// Asks modules by a client, with every message that carries nothing.
-pub fn client<T: Destination<Protocol: Addressed + Unknown> + Unknown>() {
+pub fn client<T: Destination<Protocol: Addressed<Target = T> + Unknown> + Unknown>() {
     bench::<T::Protocol>();
     let pace = Pace { gap: unknown(), wait: unknown(), tries: unknown(), late: unknown() };
     let mut client = Client::<T::Protocol, 3, 2>::new(pace);

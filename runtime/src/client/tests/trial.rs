@@ -44,11 +44,21 @@ struct Wish {
     is_confirmed: bool,
 }
 
+/// What was asked once.
+struct Asked {
+    ticket: Ticket,
+    frame: Frame,
+    power_w: f64,
+    sent: u8,
+    ends: u32,
+}
+
 struct Trial {
+    pace: Pace,
     random: Random,
     bench: Bench<Message, Heater, 6, 64>,
     client: Client<Message, 32, 1>,
-    asked: Vec<(Ticket, f64, u32)>,
+    asked: Vec<Asked>,
     wishes: Vec<Wish>,
     /// The heaters that are reported silent.
     silent: Nodes,
@@ -94,7 +104,7 @@ impl Trial {
             bench.another_controller(*other.frame(), 70, 0);
         }
         let (silent, outcome) = (Nodes::NONE, Outcome::default());
-        Self { random, bench, client, asked: vec![], wishes: vec![], silent, outcome }
+        Self { pace, random, bench, client, asked: vec![], wishes: vec![], silent, outcome }
     }
 
     fn millisecond(&mut self, now: u32) {
@@ -141,8 +151,9 @@ impl Trial {
         if now < END - 5000 && self.random.below(400) == 0 {
             let power_w = 10.0 * f64::from(u32::try_from(self.asked.len() % 200).expect("few"));
             let heater = 1 + u8::try_from(self.random.below(2)).expect("few");
-            if let Ok(ticket) = self.client.ask(set(To::Heater(heater), power_w), now) {
-                self.asked.push((ticket, power_w, 0));
+            let request = set(To::Heater(heater), power_w);
+            if let Ok(ticket) = self.client.ask(request, now) {
+                self.asked.push(Asked { ticket, frame: *request.frame(), power_w, sent: 0, ends: 0 });
             }
         }
     }
@@ -174,6 +185,8 @@ impl Trial {
 
     fn send(&mut self, request: &Frame, now: u32) {
         self.bench.send(request, now);
+        let asked = self.asked.iter_mut().filter(|asked| asked.ends == 0 && asked.frame == *request);
+        asked.for_each(|asked| asked.sent += 1);
         let is_set = |target| set(target, 0.0).frame().raw_id() == request.raw_id();
         let Some(target) = [3, 4, 5, 6].map(To::Heater).into_iter().chain([GROUP]).find(|target| is_set(*target))
         else {
@@ -204,11 +217,16 @@ impl Trial {
 
     /// Notes how a request ends that was asked once.
     fn end(&mut self, ticket: Ticket, end: usize, content: Option<Message>, now: u32) {
-        let Some((_, power_w, ends)) = self.asked.iter_mut().find(|(known, ..)| *known == ticket) else { return };
-        *ends += 1;
+        let Some(asked) = self.asked.iter_mut().find(|asked| asked.ticket == ticket) else { return };
+        asked.ends += 1;
         self.outcome.ends[end] += 1;
-        if content.is_some_and(|content| content != Message::Heat(Heat { power_w: *power_w })) {
+        let is_right = content.is_none_or(|content| content == Message::Heat(Heat { power_w: asked.power_w }));
+        let is_tried = end < 2 || asked.sent == self.pace.tries;
+        if !is_right {
             self.wrong(now, "an answer is taken for one to another request");
+        }
+        if !is_tried {
+            self.wrong(now, "a request is lost that was not sent as often as it may be");
         }
     }
 
@@ -275,7 +293,7 @@ impl Trial {
 
     fn finish(&mut self) {
         let now = END;
-        if self.asked.iter().any(|(_, _, ends)| *ends != 1) {
+        if self.asked.iter().any(|asked| asked.ends != 1) {
             self.wrong(now, "a request does not end once");
         }
         for heater in 1..=6 {
