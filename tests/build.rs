@@ -6,9 +6,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use canspec_codegen::Generated;
 use canspec_codegen::emit::{Options, Scaled, Switch};
-use canspec_codegen::source::Source;
+use canspec_codegen::{Bases, Generated};
 
 fn main() {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
@@ -67,7 +66,7 @@ fn specs(folder: &Path) -> Vec<(String, PathBuf)> {
 
 /// Compiles a feature spec; a wrong one stops the build with its diagnostics.
 fn generate(path: &Path, options: &Options) -> Generated {
-    match Source::read(path).and_then(|source| canspec_codegen::generate(source, options)) {
+    match Bases::default().read(path).and_then(|source| canspec_codegen::generate(source, options)) {
         Ok(generated) => generated,
         Err(diagnostics) => panic!("{}", diagnostics.concise()),
     }

@@ -14,6 +14,7 @@ use serde::Serialize;
 use crate::failure::{Failure, Finish, draw};
 use crate::line::Members;
 use crate::output::output;
+use crate::protocols;
 
 /// Check specs and the examples of their documents.
 ///
@@ -70,9 +71,10 @@ impl Check {
     /// Compiles each spec when it is its turn.
     fn outcomes(&self) -> Box<dyn Iterator<Item = (Diagnostics, Object)> + '_> {
         if self.specs.is_empty() {
-            return Box::new(SPECS.iter().map(|spec| self.outcome(Source::new(spec.file, spec.text.into()))));
+            return Box::new(SPECS.iter().map(|spec| self.outcome(protocols::source(spec))));
         }
-        Box::new(self.specs.iter().map(|path| self.outcome(Source::read(path))))
+        let bases = protocols::bases();
+        Box::new(self.specs.iter().map(move |path| self.outcome(bases.read(path))))
     }
 
     /// Compiles a source. If it cannot be read, only its name is known.

@@ -87,7 +87,7 @@ impl Compile {
     }
 
     fn builder(&self) -> Builder {
-        self.specs.iter().fold(Builder::new().options(self.options()), Builder::spec)
+        self.specs.iter().fold(Builder::new().options(self.options()).bases(protocols::bases()), Builder::spec)
     }
 
     fn options(&self) -> Options {

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::model::Protocol;
 use canspec_codegen::source::Source;
-use canspec_codegen::{Outcome, compile, nearest};
+use canspec_codegen::{Bases, Outcome, compile, nearest};
 use canspec_specs::{SPECS, Spec};
 use clap::Args;
 
@@ -97,13 +98,22 @@ pub fn chosen_file(choice: &Settings, path: &Path) -> Result<Source, Failure> {
 
 /// Returns the text of a spec file.
 pub fn file(path: &Path) -> Result<Source, Failure> {
-    Source::read(path).map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
+    bases().read(path).map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
 }
 
 /// Returns the text of a built-in spec.
 pub fn text(spec: &Spec) -> Result<Source, Failure> {
-    let source = Source::new(spec.file, spec.text.as_bytes().to_vec());
-    source.map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
+    source(spec).map_err(|diagnostics| Failure::Spec(Box::new(diagnostics)))
+}
+
+/// Returns the text of a built-in spec, or why it cannot be read.
+pub fn source(spec: &Spec) -> Result<Source, Diagnostics> {
+    Source::new(spec.file, spec.text.into()).and_then(|source| bases().add_to(source))
+}
+
+/// Returns the built-in specs, on which others can be based.
+pub fn bases() -> Bases {
+    SPECS.iter().map(|spec| (spec.name, spec.text)).collect()
 }
 
 /// Compiles a built-in spec or else a file.

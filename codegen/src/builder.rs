@@ -10,6 +10,7 @@ mod tests;
 use std::path::{Path, PathBuf};
 use std::{env, io};
 
+use crate::bases::Bases;
 use crate::diagnostic::Diagnostics;
 use crate::emit::{Options, Scaled, Switch};
 use crate::files;
@@ -41,6 +42,7 @@ pub struct Builder {
     folders: Vec<PathBuf>,
     specs: Vec<PathBuf>,
     out_dir: Option<PathBuf>,
+    bases: Bases,
     options: Options,
 }
 
@@ -66,6 +68,15 @@ impl Builder {
     pub fn folder(mut self, path: impl Into<PathBuf>) -> Self {
         self.folders.push(path.into());
         self
+    }
+
+    /// Sets the specs that others can be based on, beside those in the folder of each.
+    ///
+    /// A build script that depends on `canspec-specs` adds the built-in specs by
+    /// `canspec_specs::SPECS.iter().map(|spec| (spec.name, spec.text)).collect()`.
+    #[must_use]
+    pub fn bases(self, bases: Bases) -> Self {
+        Self { bases, ..self }
     }
 
     /// Sets a folder to write to instead of `OUT_DIR`, by its path from the crate's root.
@@ -134,7 +145,7 @@ impl Builder {
     /// Does the work of [`Builder::build`], and returns the lines for cargo.
     fn run(&self) -> Vec<String> {
         let inputs = self.inputs();
-        let mut lines = cargo::rerun(self.folders.iter().chain(&inputs.specs));
+        let mut lines = cargo::rerun(self.folders.iter().chain(&inputs.files));
         match generated::all(inputs, &self.options) {
             Ok(generated) => {
                 lines.extend(generated.iter().flat_map(|one| cargo::diagnostics(&one.warnings)));
@@ -146,7 +157,7 @@ impl Builder {
     }
 
     fn inputs(&self) -> Inputs {
-        inputs::find(&self.specs, &self.folders)
+        inputs::find(&self.specs, &self.folders, &self.bases)
     }
 
     fn write(&self, generated: &[Generated]) -> io::Result<()> {

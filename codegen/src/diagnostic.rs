@@ -91,6 +91,17 @@ impl Diagnostic {
         Self { replacement: Some(Text::new(&text.into())), ..self }
     }
 
+    /// Moves its ranges of bytes, whose text now stands behind another one.
+    #[must_use]
+    pub(crate) fn moved(mut self, by: usize) -> Self {
+        for at in std::iter::once(&mut self.at).chain(self.others.iter_mut().map(|(at, _)| at)) {
+            if let At::Span(span) = at {
+                *span = span.start + by..span.end + by;
+            }
+        }
+        self
+    }
+
     fn new(rule: &'static Rule, severity: Severity, at: At, message: &str) -> Self {
         let message = Text::new(message);
         Self { rule, severity, message, at, label: None, others: Vec::new(), help: None, replacement: None }
@@ -153,6 +164,11 @@ impl Diagnostics {
         };
         self.items.retain(|item| item.severity == Severity::Error || item.rule.name != rule || !is_inside(&item.at));
         self.items.len() < before
+    }
+
+    /// Tells whether a place stands in a spec that this one is based on.
+    pub fn is_taken_over(&self, at: &At) -> bool {
+        self.span(at).is_some_and(|span| self.source.file_of(span.start) > 0)
     }
 
     /// Returns the text of the spec.
@@ -237,17 +253,23 @@ impl Diagnostics {
             rule: item.rule.name,
             severity: item.severity,
             message: item.message.for_people(),
-            file: self.source.name(),
+            file: self.file(&item.at),
             place: self.place(&item.at),
             label: item.label.as_ref().map(Text::for_people),
-            others: item
-                .others
-                .iter()
-                .map(|(at, text)| Other { place: self.place(at), text: text.for_people() })
-                .collect(),
+            others: item.others.iter().map(|(at, text)| self.other(at, text, self.file(&item.at))).collect(),
             help: item.help.as_ref().map(Text::for_people),
             replacement: item.replacement.as_ref().map(Text::for_people),
         }
+    }
+
+    fn other<'a>(&'a self, at: &At, text: &'a Text, primary: &str) -> Other<'a> {
+        let file = Some(self.file(at)).filter(|file| *file != primary);
+        Other { file, place: self.place(at), text: text.for_people() }
+    }
+
+    /// Returns the name of the file in which a place is.
+    fn file(&self, at: &At) -> &str {
+        self.source.file_name(self.span(at).map_or(0, |span| span.start))
     }
 
     fn place(&self, at: &At) -> Option<Position> {
@@ -316,6 +338,9 @@ pub struct Position {
 /// Another place that has to do with a diagnostic.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Other<'a> {
+    /// Name of the file, if it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<&'a str>,
     /// Where it is; absent for the file as a whole.
     #[serde(flatten)]
     pub place: Option<Position>,

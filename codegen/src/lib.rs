@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 
+pub mod bases;
 mod builder;
 pub mod check;
 pub mod diagnostic;
@@ -32,6 +33,7 @@ pub mod syntax;
 pub mod text;
 mod words;
 
+pub use bases::Bases;
 pub use builder::{Builder, Generated, generate};
 use diagnostic::Diagnostics;
 use model::Protocol;

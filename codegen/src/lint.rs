@@ -33,12 +33,15 @@ pub(crate) const RULES: [(&Rule, Lint); 5] = [
     (&uneven::UNEVEN, uneven::lint),
 ];
 
-/// Applies every rule to a spec that could be read.
+/// Applies every rule to a spec that could be read. What is taken over from another spec is judged
+/// there.
 pub fn lint(diagnostics: &mut Diagnostics) {
     let Some(tree) = diagnostics.tree() else { return };
     let written = Written { text: diagnostics.source().text(), tree, tables: table::tables(tree) };
     let found: Vec<_> = RULES.iter().flat_map(|(_, lint)| lint(&written)).collect();
     for item in found {
-        diagnostics.push(item);
+        if !diagnostics.is_taken_over(&item.at) {
+            diagnostics.push(item);
+        }
     }
 }

@@ -2,6 +2,7 @@
 //! into.
 
 mod values;
+mod whole;
 
 use std::borrow::Cow;
 
@@ -17,6 +18,7 @@ pub fn schema() -> String {
     let settings = SchemaSettings::draft07().with_transform(as_written);
     let mut schema = settings.into_generator().into_root_schema_for::<Spec>().to_value();
     values::restrict(&mut schema);
+    whole::demand_keys(&mut schema);
     format!("{schema:#}\n")
 }
 

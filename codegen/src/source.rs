@@ -42,7 +42,8 @@ impl Source {
         if problems.is_empty() { Ok(source) } else { Err(Diagnostics::new(source).with(problems)) }
     }
 
-    /// Reads a spec file.
+    /// Reads a spec file alone. [`Bases::read`](crate::Bases::read) also finds the specs that it is
+    /// based on.
     ///
     /// # Errors
     ///
@@ -52,7 +53,7 @@ impl Source {
         let path = path.as_ref();
         let name = path.display().to_string();
         match read_limited(path) {
-            Ok(bytes) => Self::new(name, bytes),
+            Ok(bytes) => Self::new(name, bytes).map(|source| source.at_path(path)),
             Err(error) => Err(unreadable(&name, &error)),
         }
     }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use canspec_codegen::interpret::{Form, Frame};
 use canspec_codegen::model::{AddressPattern, FrameLayout, Id, Message, MessageId, ModeId, ModelId, Protocol, Signal};
-use canspec_codegen::{Outcome, compile, source::Source};
+use canspec_codegen::{Bases, Outcome, compile};
 use canspec_runtime::LongLayout;
 use canspec_runtime::parts::Parted;
 use canspec_runtime::plumbing::{Physical, Raw};
@@ -158,7 +158,7 @@ pub fn protocol(path: impl AsRef<Path>) -> Protocol {
 ///
 /// If the file cannot be read.
 pub fn outcome(path: impl AsRef<Path>) -> Outcome {
-    match Source::read(path) {
+    match Bases::default().read(path) {
         Ok(source) => compile(source),
         Err(diagnostics) => panic!("{}", diagnostics.concise()),
     }

@@ -13,7 +13,7 @@ mod messages;
 mod names;
 mod numbers;
 pub mod run;
-mod yaml;
+pub mod yaml;
 
 use canspec_codegen::model::{Protocol, Symbol};
 use canspec_codegen::source::Source;

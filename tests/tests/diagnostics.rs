@@ -5,11 +5,11 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use canspec_codegen::compile_with_examples;
 use canspec_codegen::diagnostic::{Diagnostics, Severity};
 use canspec_codegen::model::NoteRule;
 use canspec_codegen::rules::{self, RULES};
 use canspec_codegen::source::Source;
+use canspec_codegen::{Bases, compile_with_examples};
 
 /// Rules that no YAML file can break, which the compiler tests itself.
 const WITHOUT_FIXTURE: [&str; 1] = ["file"];
@@ -145,7 +145,16 @@ fn all_errors_of_one_stage_come_in_one_run_in_the_order_of_the_file() -> Result 
 fn diagnose(spec: &Path) -> Result<Diagnostics> {
     let source = Source::new(file_name(spec), fs::read(spec)?)?;
     let percent = (folder_name(spec) == "no_example").then_some(100);
-    Ok(compile_with_examples(source, percent).diagnostics)
+    let whole = bases(spec)?.add_to(source);
+    Ok(whole.map_or_else(|refused| refused, |source| compile_with_examples(source, percent).diagnostics))
+}
+
+/// Returns the specs beside a spec.
+fn bases(spec: &Path) -> Result<Bases> {
+    let beside = files(spec.parent().ok_or("a spec stands in a folder")?)?;
+    let specs = beside.iter().filter(|path| path.extension().is_some_and(|kind| kind == "yaml"));
+    let named = specs.map(|path| Ok((file_name(&path.with_extension("")), fs::read_to_string(path)?)));
+    named.collect::<Result<Vec<_>>>().map(Bases::from_iter)
 }
 
 /// Returns the specs of all rules whose file name starts with `prefix`.

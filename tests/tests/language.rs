@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use canspec_codegen::compile;
 use canspec_codegen::diagnostic::Diagnostics;
 use canspec_codegen::source::Source;
+use canspec_codegen::{Bases, compile};
 
 const REFERENCE: &str = "docs/language.md";
 const README: &str = "README.md";
@@ -137,12 +137,14 @@ fn listing(document: &str, spec: &[Line], diagnostics: &Diagnostics) -> String {
     if lines.is_empty() { "  nothing is wrong with it".to_owned() } else { lines.join("\n") }
 }
 
+/// Compiles a spec, which can be based on the smallest one.
 fn compiled(spec: &[Line]) -> Diagnostics {
     let lines: Vec<_> = spec.iter().map(|(_, line)| *line).collect();
-    match Source::new("spec.yaml", lines.join("\n").into_bytes()) {
-        Ok(source) => compile(source).diagnostics,
-        Err(diagnostics) => diagnostics,
-    }
+    let reference = read(REFERENCE);
+    let smallest = blocks(&reference).swap_remove(0).lines.iter().map(|(_, line)| *line).collect::<Vec<_>>().join("\n");
+    let bases = Bases::from_iter([("charger", smallest)]);
+    let source = Source::new("spec.yaml", lines.join("\n").into_bytes()).and_then(|source| bases.add_to(source));
+    source.map_or_else(|diagnostics| diagnostics, |source| compile(source).diagnostics)
 }
 
 /// Returns the blocks of a document that are fenced as YAML.

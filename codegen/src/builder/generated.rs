@@ -54,8 +54,8 @@ pub fn generate(source: Source, options: &Options) -> Result<Generated, Diagnost
 /// Compiles every spec, or returns all that is wrong with them.
 pub fn all(inputs: Inputs, options: &Options) -> Result<Vec<Generated>, Vec<Diagnostics>> {
     let (mut generated, mut refused) = (Vec::new(), inputs.refused);
-    for path in inputs.specs {
-        let compiled = Source::read(path).and_then(|source| generate(source, options));
+    for source in inputs.specs {
+        let compiled = source.and_then(|source| generate(source, options));
         match compiled.and_then(|one| unclaimed(one, &generated)) {
             Ok(one) => generated.push(one),
             Err(diagnostics) => refused.push(diagnostics),

@@ -4,20 +4,23 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use crate::bases::Bases;
 use crate::diagnostic::{At, Diagnostic, Diagnostics};
-use crate::source;
+use crate::source::{self, Source};
 
 /// The specs to compile.
 pub struct Inputs {
     /// Every spec once: first the named ones, then those of each folder in the order of their
     /// names.
-    pub specs: Vec<PathBuf>,
+    pub specs: Vec<Result<Source, Diagnostics>>,
+    /// The files of the specs, and those that they are based on.
+    pub files: Vec<PathBuf>,
     /// What is wrong with the folders.
     pub refused: Vec<Diagnostics>,
 }
 
-/// Finds the named specs, and those of the folders.
-pub fn find(specs: &[PathBuf], folders: &[PathBuf]) -> Inputs {
+/// Finds the named specs, and those of the folders, and reads them.
+pub fn find(specs: &[PathBuf], folders: &[PathBuf], bases: &Bases) -> Inputs {
     let (mut specs, mut refused) = (specs.to_vec(), Vec::new());
     for folder in folders {
         match entries(folder) {
@@ -29,7 +32,12 @@ pub fn find(specs: &[PathBuf], folders: &[PathBuf]) -> Inputs {
             Err(error) => refused.push(unreadable(folder, &error)),
         }
     }
-    Inputs { specs: distinct(specs), refused }
+    let files = distinct(specs);
+    let specs: Vec<_> = files.iter().map(|path| bases.read(path)).collect();
+    let read = specs.iter().map(|read| read.as_ref().unwrap_or_else(|refused| refused.source()));
+    let bases = read.flat_map(Source::paths_of_bases).map(Path::to_owned);
+    let files = distinct(files.iter().cloned().chain(bases).collect());
+    Inputs { specs, files, refused }
 }
 
 /// Returns the files of a folder that end like a spec, in small or capital letters.

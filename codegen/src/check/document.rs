@@ -28,7 +28,11 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for name in names.iter().filter(|name| !sections.iter().any(|(_, section)| is_of(name, section))) {
         let text = format!("no section begins with `{name}`");
         let help = format!("write where the document has a fact, as in `section: \"{name} 2.1\"`, or take it out");
-        diagnostics.push(Diagnostic::warning(&DOCUMENT, root.key(*name).at_key(), text).help(help));
+        let at = root.key(*name).at_key();
+        // What has no section there may have none here.
+        if !diagnostics.is_taken_over(&at) {
+            diagnostics.push(Diagnostic::warning(&DOCUMENT, at, text).help(help));
+        }
     }
     if protocol.documents.iter().any(|document| document.name.is_none()) {
         return;

@@ -10,14 +10,14 @@ rules! {
 }
 
 /// Takes out the allowed warnings. An allowance without a warning is stale, unless an error kept
-/// rules from being applied.
+/// rules from being applied. One of another spec may be about something that was not taken over.
 pub fn allow(allowances: &[Allowance], diagnostics: &mut Diagnostics) {
     for (index, Allowance { rule, at, .. }) in allowances.iter().enumerate() {
         let was_needed = diagnostics.allow(rule, at);
-        if was_needed || diagnostics.has_errors() {
+        let path = Path::default().key("allow").index(index).key("rule");
+        if was_needed || diagnostics.has_errors() || diagnostics.is_taken_over(&path.at_value()) {
             continue;
         }
-        let path = Path::default().key("allow").index(index).key("rule");
         let text = format!("there is no warning of the rule `{rule}` in `{at}`");
         let help = "take the allowance out, or correct `rule` and `at`; errors cannot be allowed";
         diagnostics.push(Diagnostic::warning(&STALE_ALLOWANCE, path.at_value(), text).help(help));

@@ -41,8 +41,7 @@ impl Diagnostics {
     fn excerpts<'a>(&'a self, title: Title<'a>, item: &'a Diagnostic, primary: Range<usize>) -> Group<'a> {
         let others = item.others.iter().filter_map(|(at, text)| Some((self.span(at)?, text.for_people())));
         let others = others.map(|(span, text)| (AnnotationKind::Context, span, Some(text)));
-        let (near, far): (Vec<Mark>, Vec<Mark>) =
-            others.partition(|(_, span, _)| distance(span, &primary) < EXCERPT_LIMIT);
+        let (near, far): (Vec<Mark>, Vec<Mark>) = others.partition(|(_, span, _)| self.are_near(span, &primary));
         let marks =
             iter::once((AnnotationKind::Primary, primary, item.label.as_ref().map(Text::for_people))).chain(near);
         far.into_iter().fold(self.excerpt(marks.collect(), Group::with_title(title)), |group, mark| {
@@ -55,19 +54,21 @@ impl Diagnostics {
         let end = marks.iter().map(|(_, span, _)| span.end).max().unwrap_or_default();
         let shown = self.source.whole_lines(&(start..end));
         let (line, column) = self.source.line_column(start);
+        let file = self.source.file_name(start);
         if shown.len() > EXCERPT_LIMIT {
-            return group.element(Origin::path(self.source.name()).line(line).char_column(column));
+            return group.element(Origin::path(file).line(line).char_column(column));
         }
         let annotations = marks
             .into_iter()
             .map(|(kind, span, label)| kind.span(span.start - shown.start..span.end - shown.start).label(label));
-        let snippet = Snippet::source(&self.source.text()[shown.clone()]).line_start(line).path(self.source.name());
+        let snippet = Snippet::source(&self.source.text()[shown.clone()]).line_start(line).path(file);
         group.element(snippet.annotations(annotations))
     }
-}
 
-fn distance(one: &Range<usize>, other: &Range<usize>) -> usize {
-    one.start.abs_diff(other.start)
+    fn are_near(&self, one: &Range<usize>, other: &Range<usize>) -> bool {
+        let file = |span: &Range<usize>| self.source.file_of(span.start);
+        file(one) == file(other) && one.start.abs_diff(other.start) < EXCERPT_LIMIT
+    }
 }
 
 /// Tests whether the renderer draws a control character as it is, so that it would act on a terminal.

@@ -27,6 +27,16 @@ pub struct Spec {
     pub protocol: String,
     /// What the devices are, in a few words without a full stop: `Charging modules`.
     pub title: String,
+    /// Name of another spec that this one takes over and changes: `megmeet`. It is a file
+    /// `megmeet.yaml` beside this one, or else a built-in protocol. Nothing is taken over if absent.
+    pub based_on: Option<String>,
+    /// List of what is in both specs and not joined, by the keys that lead to it: `[messages.output.title]`;
+    /// none if absent.
+    #[serde(default)]
+    pub replaces: Vec<String>,
+    /// List of what is not taken over, by the keys that lead to it: `[messages.fan_speed]`; none if absent.
+    #[serde(default)]
+    pub removes: Vec<String>,
     /// The vendor document that the spec follows: `{title: Charging module CAN protocol, version: V1.0}`.
     /// It may be absent if `documents` names others.
     pub document: Option<Document>,

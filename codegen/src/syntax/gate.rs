@@ -17,7 +17,7 @@ use crate::syntax::rules;
 /// Deepest nesting of maps and lists.
 const DEPTH_LIMIT: usize = 64;
 
-/// Most values in one file.
+/// Most values in a spec and those that it is based on.
 const NODE_LIMIT: usize = 600_000;
 
 /// The reader stops after this number of errors.
@@ -26,19 +26,17 @@ const PROBLEM_LIMIT: usize = 1000;
 /// Words that some readers of YAML take for a text, and others for a truth value or nothing.
 const UNCLEAR_WORDS: [&str; 10] = ["on", "off", "yes", "no", "y", "n", "true", "false", "null", "~"];
 
-/// Reads the tree of a spec and reports all that is refused. It returns no tree if the text cannot
-/// be read to its end.
-pub(super) fn read(source: &Source) -> (Option<Node>, Vec<Diagnostic>) {
-    let mut gate = Gate { source, problems: Vec::new(), open: Vec::new(), root: None, nodes: 0, gap: 0 };
-    let read = gate.read_events();
-    let tree = read.and_then(|()| gate.finish());
-    match tree {
-        Ok(tree) => (Some(tree), gate.problems),
-        Err(stopped) => {
-            gate.problems.push(*stopped);
-            (None, gate.problems)
-        }
-    }
+/// Reads the tree of each file of a spec and reports all that is refused. There is no tree of a
+/// file that cannot be read to its end.
+pub(super) fn read(source: &Source) -> (Vec<Option<Node>>, Vec<Diagnostic>) {
+    let mut gate = Gate::new(source);
+    let trees = source.parts().map(|part| gate.read_part(part)).collect();
+    (trees, gate.problems)
+}
+
+/// Reads the tree of the last file alone, if that is possible.
+pub(super) fn read_last(source: &Source) -> Option<Node> {
+    Gate::new(source).read_part(source.last_part())
 }
 
 /// An error after which reading on is pointless.
@@ -46,6 +44,10 @@ type Stopped = Box<Diagnostic>;
 
 struct Gate<'a> {
     source: &'a Source,
+    /// The bytes of the file that is read.
+    part: Range<usize>,
+    /// Number of characters before the file.
+    before: usize,
     problems: Vec<Diagnostic>,
     open: Vec<Open>,
     root: Option<Node>,
@@ -75,13 +77,31 @@ struct Key {
     span: Range<usize>,
 }
 
-impl Gate<'_> {
+impl<'a> Gate<'a> {
+    fn new(source: &'a Source) -> Self {
+        let (problems, open) = (Vec::new(), Vec::new());
+        Self { source, part: 0..0, before: 0, problems, open, root: None, nodes: 0, gap: 0 }
+    }
+
+    fn read_part(&mut self, part: Range<usize>) -> Option<Node> {
+        (self.gap, self.before) = (part.start, self.source.characters_before(part.start));
+        self.part = part;
+        self.open.clear();
+        let read = self.read_events().and_then(|()| self.finish());
+        read.map_err(|stopped| self.problems.push(*stopped)).ok()
+    }
+
+    /// Returns the text up to the end of the file that is read.
+    fn text(&self) -> &'a str {
+        &self.source.text()[..self.part.end]
+    }
+
     fn read_events(&mut self) -> Result<(), Stopped> {
-        let mut parser = Parser::new_from_str(self.source.text());
+        let mut parser = Parser::new_from_str(&self.text()[self.part.start..]);
         while let Some(event) = parser.next_event() {
             let (event, span) = event.map_err(|error| {
-                let at = self.source.byte_of_character(error.marker().index());
-                Box::new(complaint::translate(self.source.text(), at, error.info(), self.opened()))
+                let at = self.byte(error.marker().index());
+                Box::new(self.translated(at, error.info()))
             })?;
             let span = self.bytes(span);
             self.take(event, span.clone())?;
@@ -93,10 +113,17 @@ impl Gate<'_> {
         Ok(())
     }
 
+    /// Says what the parser complains about. What stands in other files is no cause of it.
+    fn translated(&self, at: usize, complaint: &str) -> Diagnostic {
+        let start = self.part.start;
+        let opened = self.opened().map(|opened| opened - start);
+        complaint::translate(&self.text()[start..], at - start, complaint, opened).moved(start)
+    }
+
     /// Returns the bracket of the innermost map or list that is still to be closed.
     fn opened(&self) -> Option<usize> {
         let start = self.open.last()?.start;
-        self.source.text()[start..].starts_with(['{', '[']).then_some(start)
+        self.text()[start..].starts_with(['{', '[']).then_some(start)
     }
 
     fn finish(&mut self) -> Result<Node, Stopped> {
@@ -106,7 +133,12 @@ impl Gate<'_> {
                 let message = format!("expected a map of the whole spec, found {}", node.describe());
                 Err(stopped(&rules::WRONG_KIND, node.span, message, "start with `canspec: 1`"))
             }
-            _ => Err(stopped(&rules::YAML, 0..0, "the file is empty".to_owned(), "start with `canspec: 1`")),
+            _ => Err(stopped(
+                &rules::YAML,
+                self.part.start..self.part.start,
+                "the file is empty".to_owned(),
+                "start with `canspec: 1`",
+            )),
         }
     }
 
@@ -204,12 +236,12 @@ impl Gate<'_> {
 
     /// Tests whether a key is only the end of a text that holds a comma.
     fn has_no_colon(&self, key: &Key) -> bool {
-        self.opened().is_some() && !self.source.text()[key.span.end..].trim_start().starts_with(':')
+        self.opened().is_some() && !self.text()[key.span.end..].trim_start().starts_with(':')
     }
 
     /// Returns the comment that stands in place of a value.
     fn comment_after(&self, key: &Key) -> Option<&str> {
-        let line = self.source.text()[key.span.end..].lines().next()?;
+        let line = self.text()[key.span.end..].lines().next()?;
         let rest = line.trim_start().strip_prefix(':')?.trim();
         rest.starts_with('#').then_some(rest)
     }
@@ -221,13 +253,13 @@ impl Gate<'_> {
             return None;
         };
         let Entries::Map { key: Some(outer), .. } = &around.entries else { return None };
-        let mut lines = self.source.text()[key.span.end..].lines().skip(1).map(str::trim_start);
+        let mut lines = self.text()[key.span.end..].lines().skip(1).map(str::trim_start);
         let (next, _) = lines.find(|line| !line.is_empty() && !line.starts_with('#'))?.split_once(':')?;
         (self.opened().is_none() && entries.contains_key(next)).then_some(outer.name.as_str())
     }
 
     fn help_on_comma(&self, key: &Key) -> String {
-        let before = self.source.text()[..key.span.start].trim_end_matches(',');
+        let before = self.text()[..key.span.start].trim_end_matches(',');
         let is_of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '.');
         let number = before.rsplit(|letter: char| !is_of_number(letter)).next().unwrap_or_default();
         let digit = |letter: char| letter.is_ascii_digit();
@@ -276,7 +308,7 @@ impl Gate<'_> {
     fn put(&mut self, node: Node) -> Result<(), Stopped> {
         self.nodes += 1;
         if self.nodes > NODE_LIMIT {
-            let message = format!("more than {NODE_LIMIT} values in one file");
+            let message = format!("more than {NODE_LIMIT} values in one spec");
             return Err(stopped(&rules::YAML, node.span, message, "check that this is the spec you mean"));
         }
         if self.expects_key() {
@@ -296,7 +328,7 @@ impl Gate<'_> {
             let what =
                 if node.content == Content::Refused { "a key that is an alias" } else { "a key that is no text" };
             self.problems.push(refused(node.span.clone(), what, "write a plain name before the `:`"));
-            self.source.text()[node.span.clone()].to_owned()
+            self.text()[node.span.clone()].to_owned()
         };
         if let Some(Open { entries: Entries::Map { key, .. }, .. }) = self.open.last_mut() {
             *key = Some(Key { name, span: node.span });
@@ -325,7 +357,7 @@ impl Gate<'_> {
 
     fn refuse_question_mark(&mut self, key: usize) {
         let mut start = self.gap.min(key);
-        let gap = &self.source.text()[start..key];
+        let gap = &self.text()[start..key];
         for line in gap.split_inclusive('\n') {
             let indicators = line.split('#').next().unwrap_or_default();
             if let Some(at) = indicators.find('?') {
@@ -340,18 +372,23 @@ impl Gate<'_> {
     /// Ends the span of a text where the text ends. The parser stretches the span of an empty text
     /// up to what follows.
     fn written(&self, span: Range<usize>, unwritten: bool) -> Range<usize> {
-        let length = if unwritten { 0 } else { self.source.text()[span.clone()].trim_end().len() };
+        let length = if unwritten { 0 } else { self.text()[span.clone()].trim_end().len() };
         span.start..span.start + length
     }
 
     fn first_line(&self, span: Range<usize>) -> Range<usize> {
-        let line = self.source.text()[span.clone()].lines().next().unwrap_or_default();
+        let line = self.text()[span.clone()].lines().next().unwrap_or_default();
         span.start..span.start + line.trim_end().len()
     }
 
     fn bytes(&self, span: Span) -> Range<usize> {
-        let start = self.source.byte_of_character(span.start.index());
-        start..self.source.byte_of_character(span.end.index()).max(start)
+        let start = self.byte(span.start.index());
+        start..self.byte(span.end.index()).max(start)
+    }
+
+    /// Returns the place of a character of the file that is read.
+    fn byte(&self, position: usize) -> usize {
+        self.source.byte_of_character(self.before + position).min(self.part.end)
     }
 }
 

@@ -32,7 +32,7 @@ fn nesting_up_to_the_limit_is_read() {
 #[test]
 fn many_values_are_refused() {
     let keys = lines(310_000, |number| format!("k{number}: 1\n"));
-    assert_eq!(errors(&keys), ["mini.yaml:300001:1: error[yaml]: more than 600000 values in one file"]);
+    assert_eq!(errors(&keys), ["mini.yaml:300001:1: error[yaml]: more than 600000 values in one spec"]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What the front end reads, refuses and says.
 
+mod families;
 mod gate;
 mod hostile;
 mod places;

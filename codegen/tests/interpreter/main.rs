@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use canspec_codegen::interpret::{Decoded, Form, Frame, Problem, Refusal, Target, Value, decode, request};
 use canspec_codegen::model::{ModelId, Protocol};
 use canspec_codegen::source::Source;
-use canspec_codegen::{Outcome, compile};
+use canspec_codegen::{Bases, Outcome, compile};
 
 /// Numbers of 64 bits that are set and read.
 const WIDE: &str = r#"
@@ -49,7 +49,7 @@ fn specs(folder: &str) -> Vec<PathBuf> {
 }
 
 fn outcome(path: &Path) -> Outcome {
-    compile(Source::read(path).expect("the spec is a text"))
+    compile(Bases::default().read(path).expect("the spec is a text"))
 }
 
 fn feature(name: &str) -> Protocol {

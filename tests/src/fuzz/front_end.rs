@@ -5,10 +5,12 @@ use canspec_codegen::diagnostic::{Diagnostic, Diagnostics};
 use canspec_codegen::source::Source;
 
 use super::emitted;
+use super::specs::BASES;
 
 /// Compiles the bytes, and uses what comes of them.
 pub fn run(data: &[u8]) {
-    let outcome = match Source::new("spec.yaml", data.to_vec()) {
+    let source = Source::new("spec.yaml", data.to_vec()).and_then(|source| BASES.add_to(source));
+    let outcome = match source {
         Ok(source) => compile(source),
         Err(diagnostics) => return shown(&diagnostics),
     };

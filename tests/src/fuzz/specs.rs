@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
+use canspec_codegen::Bases;
 use canspec_codegen::schema::schema;
 use serde_json::Value;
 
@@ -19,6 +20,14 @@ pub static SPECS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let folders = FOLDERS.into_iter().map(str::to_owned).chain(rule_folders());
     let paths = folders.flat_map(|folder| specs(&folder));
     paths.filter_map(|path| fs::read_to_string(path).ok()).collect()
+});
+
+/// The right specs, on which others can be based.
+pub static BASES: LazyLock<Bases> = LazyLock::new(|| {
+    let paths = ["specs", "tests/specs/features"].into_iter().flat_map(specs);
+    let named =
+        paths.filter_map(|path| Some((path.file_stem()?.to_str()?.to_owned(), fs::read_to_string(&path).ok()?)));
+    named.collect()
 });
 
 /// The words of the language.

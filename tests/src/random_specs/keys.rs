@@ -12,6 +12,9 @@ const REFERENCE: &str = include_str!("../../../docs/language.md");
 /// Places of fields in a message: there the reference's letter M counts.
 const OF_MESSAGES: [&str; 2] = ["messages.*.fields.*", "messages.*.value"];
 
+/// Keys of a spec that is based on another one. `tests/tests/families.rs` makes such specs.
+const OF_FAMILIES: [&str; 3] = ["based_on", "replaces", "removes"];
+
 /// How often each key is set at each place.
 #[derive(Clone, Debug)]
 pub struct Keys {
@@ -61,7 +64,8 @@ impl Keys {
         if is_field(&schema) {
             return;
         }
-        for (key, value) in schema["properties"].as_object().into_iter().flatten() {
+        let keys = schema["properties"].as_object().into_iter().flatten();
+        for (key, value) in keys.filter(|(key, _)| !OF_FAMILIES.contains(&key.as_str())) {
             self.wanted.insert((place.to_owned(), key.clone()));
             self.want(value, &joined(place, key));
         }

@@ -1,0 +1,69 @@
+//! Demands keys of a spec that takes nothing over. One that is based on another spec says only what
+//! it changes.
+
+use serde_json::{Map, Value, json};
+
+/// Keys that every spec has.
+const ALWAYS: [&str; 3] = ["canspec", "protocol", "title"];
+
+/// Structs that are items of lists. A list is never joined with another one.
+const ITEMS: [&str; 2] = ["Allowance", "ValueExample"];
+
+/// Moves the demands for keys to where no `based_on` stands.
+pub fn demand_keys(schema: &mut Value) {
+    let mut demanded = Map::new();
+    let definitions = schema["definitions"].as_object_mut().into_iter().flatten();
+    for (name, definition) in definitions.filter(|(name, _)| !ITEMS.contains(&name.as_str())) {
+        if let Some(keys) = definition.as_object_mut().and_then(|definition| definition.remove("required")) {
+            demanded.insert(name.clone(), keys);
+        }
+    }
+    let mut whole = Demands { schema, demanded: &demanded, around: Vec::new() }.inside(schema);
+    whole.insert("required".to_owned(), schema["required"].take());
+    schema["required"] = json!(ALWAYS);
+    schema["if"] = json!({ "required": ["based_on"] });
+    // Without a `then`, some editors take the `if` for a demand.
+    schema["then"] = json!({});
+    schema["else"] = whole.into();
+}
+
+struct Demands<'a> {
+    schema: &'a Value,
+    /// The keys that each struct demands.
+    demanded: &'a Map<String, Value>,
+    /// The structs around a value. One that holds itself is described once.
+    around: Vec<&'a str>,
+}
+
+impl<'a> Demands<'a> {
+    /// Returns what the keys of a map demand.
+    fn inside(&mut self, map: &'a Value) -> Map<String, Value> {
+        let mut found = Map::new();
+        let keys = map["properties"].as_object().into_iter().flatten();
+        let keys: Map<_, _> = keys.filter_map(|(key, value)| Some((key.clone(), self.of(value)?))).collect();
+        if !keys.is_empty() {
+            found.insert("properties".to_owned(), keys.into());
+        }
+        if let Some(entries) = map.get("additionalProperties").and_then(|entries| self.of(entries)) {
+            found.insert("additionalProperties".to_owned(), entries);
+        }
+        found
+    }
+
+    /// Returns what a value demands, if it demands anything.
+    fn of(&mut self, value: &'a Value) -> Option<Value> {
+        let value = value["anyOf"].as_array().filter(|kinds| kinds.len() == 1).map_or(value, |kinds| &kinds[0]);
+        let found = match value["$ref"].as_str().and_then(|place| place.strip_prefix("#/definitions/")) {
+            None => self.inside(value),
+            Some(name) if self.around.contains(&name) => return None,
+            Some(name) => {
+                self.around.push(name);
+                let mut found = self.inside(&self.schema["definitions"][name]);
+                self.around.pop();
+                found.extend(self.demanded.get(name).map(|keys| ("required".to_owned(), keys.clone())));
+                found
+            }
+        };
+        (!found.is_empty()).then(|| found.into())
+    }
+}
