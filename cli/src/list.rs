@@ -1,5 +1,6 @@
 //! `canspec list`.
 
+mod derivation;
 mod timing;
 
 use std::io::{self, BufWriter, Write};
@@ -78,14 +79,18 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
     writeln!(out, "{}: {}", protocol.name, protocol.title.for_people())?;
     protocol.documents.iter().try_for_each(|known| writeln!(out, "{}", document(known)))?;
     protocol.sides.sentence().map_or(Ok(()), |sentence| writeln!(out, "{sentence}"))?;
+    derivation::write(out, protocol)?;
     writeln!(out)?;
     let selectors = selectors(protocol);
     let upper: Vec<String> = selectors.iter().map(|id| protocol[*id].name.to_uppercase()).collect();
     let mut headings: Vec<&str> = upper.iter().map(String::as_str).collect();
     headings.extend(["ACCESS", "MESSAGE", "UNIT", "SECTION"]);
+    headings.extend(protocol.derivation.as_ref().map(|_| "FROM"));
     let mut rows = Vec::new();
-    for message in &protocol.messages {
-        rows.push(message_row(protocol, &selectors, message));
+    for (id, message) in protocol.messages.ids().zip(&protocol.messages) {
+        let mut row = message_row(protocol, &selectors, message);
+        row.cells.extend(derivation::descent(protocol, id));
+        rows.push(row);
         // What the parts say together tells more than what each frame says.
         let message = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
         let signals = message.signals.iter().filter(|_| value(message).is_none());
@@ -237,6 +242,7 @@ fn signal_row(protocol: &Protocol, selectors: usize, message: &Message, signal: 
     cells.push(format!("  {}", field_name(message, signal)));
     cells.push(signal.unit.map_or(String::new(), |unit| unit.symbol.to_string()));
     cells.push(words(signal.doc.section.as_ref().filter(|_| signal.doc.section != message.doc.section)));
+    cells.extend(protocol.derivation.as_ref().map(|_| String::new()));
     let doc = message.array_of(signal).map_or(&signal.doc, |array| &array.doc);
     Row { cells, last: titled(title(doc), meaning(protocol, signal)), separator: ", " }
 }

@@ -7,6 +7,7 @@
 mod address;
 mod array;
 mod data;
+mod derivation;
 mod encoding;
 mod example;
 mod extent;
@@ -29,6 +30,7 @@ pub(crate) use address::exclude;
 pub use address::{Address, AddressPattern, AddressType, Direction, FieldTest, Mode, Way};
 pub use array::{Array, Element};
 pub use data::{DeviceModel, Doc, Document, Erratum, Procedure, Sides, TypeOfModel};
+pub use derivation::{Derivation, Descent};
 pub use encoding::{Encoding, Linear, Piece, TextForm};
 pub use example::{Example, Failure, LongExample, Meaning, Misfit, Origin, Said, ValueExample};
 pub use extent::Extent;
@@ -64,6 +66,8 @@ pub struct Protocol {
     pub name: String,
     /// The spec's file name, without folders.
     pub file: Text,
+    /// How the spec changes the one that it is based on, if it is.
+    pub derivation: Option<Derivation>,
     /// What the devices are, without a full stop.
     pub title: Text,
     /// The documents that the spec follows. At most one has no name, and is the first.

@@ -6,6 +6,7 @@ mod access;
 mod addressing;
 mod arrays;
 mod data;
+mod derivation;
 mod direction;
 mod encodings;
 mod examples;
@@ -126,9 +127,11 @@ impl Resolver<'_> {
         self.check_types_used();
         self.check_units_used();
         self.check_allowances();
+        let derivation = self.derivation(&messages);
         Some(Protocol {
             name,
             file,
+            derivation,
             title: Text::new(&self.spec.title),
             documents,
             sides,
