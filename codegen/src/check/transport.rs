@@ -13,6 +13,7 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let carried: Vec<&LongMessage> = carried.collect();
         for (index, long) in carried.iter().enumerate() {
             let earlier = &carried[..index];
+            partial(long).into_iter().for_each(|flaw| diagnostics.push(flaw));
             match &transport.standard {
                 Standard::J1939(groups) => j1939::check(protocol, groups, long, earlier, diagnostics),
                 Standard::Isotp(_) => isotp::check(protocol, long, earlier, diagnostics),
@@ -29,4 +30,15 @@ pub fn has_rust(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let help = "`canspec decode` and `encode` know it; in Rust, `canspec_runtime::isotp` joins its frames to bytes";
         diagnostics.push(Diagnostic::error(&rules::TRANSPORT, at, text).help(help));
     }
+}
+
+/// Finds a field that only some kinds of frames with fields have.
+fn partial(long: &LongMessage) -> Option<Diagnostic> {
+    let mut carrying = long.frames.iter().filter(|layout| !layout.signals.is_empty());
+    carrying.find(|layout| layout.signals.len() < long.content.signals.len())?;
+    let signal = long.content.signals.iter().find(|signal| !signal.kinds.is_empty())?;
+    let (field, name) = (long.content.field_name(signal), &long.content.name);
+    let text = format!("only some frames of `{name}` have `{field}`, and others have the rest of its fields");
+    let help = "each kind of frame has all fields or none, so that they are one struct; make two messages of it";
+    Some(Diagnostic::error(&rules::TRANSPORT, signal.doc.path.key("in").at_key(), text).help(help))
 }
