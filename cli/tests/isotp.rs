@@ -16,7 +16,7 @@ const READING: &str = "\
 ";
 
 fn canspec(arguments: &[&str], input: &str) -> (String, String) {
-    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/transports/isotp.yaml");
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/specs/devices/units.yaml");
     let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
     let command = command.args(arguments).arg("--spec").arg(spec).stdin(Stdio::piped());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("canspec runs");

@@ -34,7 +34,6 @@ mod unreachable;
 pub use example::{Counts, Unproven, unproven};
 pub use grid::{fits, has_exact_steps};
 pub use stale_allowance::allow;
-pub use transport::has_rust;
 
 use crate::diagnostic::Diagnostics;
 use crate::model::Protocol;

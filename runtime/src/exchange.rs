@@ -60,7 +60,7 @@ impl Exchange {
         Self { answers, offered: offered(answers), ..self }
     }
 
-    /// Says that a request carries values.
+    /// Says that a request carries values, or travels by a transport.
     #[must_use]
     pub const fn with_values(self) -> Self {
         Self { has_values: true, ..self }
@@ -170,7 +170,7 @@ impl Exchange {
         }
     }
 
-    /// Tests whether a request carries values.
+    /// Tests whether a request carries values, or travels by a transport.
     pub const fn has_values(&self) -> bool {
         self.has_values
     }

@@ -45,7 +45,8 @@ mod pdu;
 mod sender;
 
 use embedded_can::Id;
-use pdu::{CONSECUTIVE, FIRST, LONGEST, SINGLE};
+pub(crate) use pdu::SINGLE;
+use pdu::{CONSECUTIVE, FIRST, LONGEST};
 
 pub use crate::long::buffer::Memory;
 use crate::long::buffer::room;

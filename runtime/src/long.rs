@@ -25,7 +25,7 @@ pub trait LongLayout: Copy + 'static {
     const MESSAGE: &'static str;
     /// The least number of data bytes: those up to the end of the last field that is always there.
     const SHORTEST: usize;
-    /// The greatest number of data bytes.
+    /// The greatest number of data bytes, those of constants included.
     const LONGEST: usize;
     /// The byte in which no field has a bit.
     const BLANK: u8 = 0;
@@ -49,7 +49,8 @@ pub trait LongLayout: Copy + 'static {
 
     /// Writes the values to the front of a buffer, and returns what is written. It also overwrites
     /// the rest of the buffer. [`LONGEST`](Self::LONGEST) bytes are always enough. Bits that no
-    /// field covers are those of [`BLANK`](Self::BLANK).
+    /// field covers are those of [`BLANK`](Self::BLANK). Constants are none of the fields: what sends
+    /// the message writes them.
     ///
     /// # Errors
     ///
@@ -60,21 +61,23 @@ pub trait LongLayout: Copy + 'static {
     /// - a field that is missing before one that is there,
     /// - a buffer with too few bytes.
     fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
-        self.encode_by(Payload::new(Self::MESSAGE, [0; 8]), buffer)
+        self.encode_by(Payload::new(Self::MESSAGE, [0; 8]), 0, buffer).map(|data| &*data)
     }
 
-    /// The same as [`encode`](Self::encode), of values that keep to the limits that `rules` say.
+    /// The same as [`encode`](Self::encode), of values that keep to the limits that `rules` say, in
+    /// at least `least` bytes.
     ///
     /// # Errors
     ///
     /// The same as those of [`encode`](Self::encode), and values outside the limits.
     #[doc(hidden)]
-    fn encode_by<'a>(&self, rules: Payload, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
+    fn encode_by<'a>(&self, rules: Payload, least: usize, buffer: &'a mut [u8]) -> Result<&'a mut [u8], Error> {
         buffer.fill(Self::BLANK);
         let mut payload = LongPayload::new(rules, Self::ELEMENTS, buffer);
         Self::ENCODE(self, &mut payload)?;
-        let by_elements = || payload.elements().map_or(Self::LONGEST, Self::BYTES);
-        let (length, room) = (payload.length().unwrap_or_else(by_elements), buffer.len());
-        buffer.get(..length).ok_or(Error::Room { message: Self::MESSAGE, length, room })
+        let by_elements = || payload.elements().map_or(Self::SHORTEST, Self::BYTES);
+        let length = payload.length().unwrap_or_else(by_elements).max(least);
+        let room = buffer.len();
+        buffer.get_mut(..length).ok_or(Error::Room { message: Self::MESSAGE, length, room })
     }
 }

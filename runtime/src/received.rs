@@ -157,6 +157,11 @@ impl<P: Protocol> Received<P> {
         Self { content, frame, kind: Kind::Reply, is_other: true, ..*self }
     }
 
+    /// Returns the device model for which the frame was recognised, by number.
+    pub(crate) const fn model(&self) -> Option<u8> {
+        self.model
+    }
+
     fn way(&self) -> Option<Way> {
         self.exchange.way::<P>(self.kind, self.frame.raw_id())
     }

@@ -108,7 +108,8 @@ impl Examples {
         }
         ended.extend(assembly.finish(protocol, example.model));
         let [message] = ended.as_slice() else { panic!("{}: {} messages", example.doc.path, ended.len()) };
-        let Some(mut data) = message.data.clone() else { return };
+        // A kind of frame without values has nothing to compare.
+        let Some(mut data) = message.data.clone().filter(|_| !message.decoded.signals.is_empty()) else { return };
         let count = example.count.map(usize::from);
         if protocol[example.long].parts().is_some() {
             data.truncate(protocol[example.long].bytes_with(count));

@@ -35,12 +35,11 @@ impl Generated {
 ///
 /// # Errors
 ///
-/// The spec has errors, or does not suit the chosen type of scaled values. A message travels by ISO-TP.
+/// The spec has errors, or does not suit the chosen type of scaled values.
 pub fn generate(source: Source, options: &Options) -> Result<Generated, Diagnostics> {
     let Outcome { protocol, mut diagnostics, .. } = compile(source);
     if let Some(protocol) = &protocol {
         check::fits(protocol, options.scaled, &mut diagnostics);
-        check::has_rust(protocol, &mut diagnostics);
     }
     match protocol.filter(|_| !diagnostics.has_errors()) {
         Some(protocol) => {

@@ -22,16 +22,6 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Tests that Rust can be generated for what carries the messages.
-pub fn has_rust(protocol: &Protocol, diagnostics: &mut Diagnostics) {
-    for transport in protocol.transports.iter().filter(|transport| !transport.standard.has_plain_frames()) {
-        let text = format!("no Rust can be generated for `{}` yet, since it is ISO-TP", transport.name);
-        let at = transport.doc.path.key("kind").at_value();
-        let help = "`canspec decode` and `encode` know it; in Rust, `canspec_runtime::isotp` joins its frames to bytes";
-        diagnostics.push(Diagnostic::error(&rules::TRANSPORT, at, text).help(help));
-    }
-}
-
 /// Finds a field that only some kinds of frames with fields have.
 fn partial(long: &LongMessage) -> Option<Diagnostic> {
     let mut carrying = long.frames.iter().filter(|layout| !layout.signals.is_empty());

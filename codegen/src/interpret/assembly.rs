@@ -281,7 +281,7 @@ fn expected(long: &LongMessage, count: Option<usize>) -> Option<usize> {
 }
 
 /// Returns those addresses that are not sent by everybody.
-fn module(protocol: &Protocol, peers: &Peers) -> Peers {
+pub(super) fn module(protocol: &Protocol, peers: &Peers) -> Peers {
     let own = peers.iter().filter(|(kind, _)| protocol[*kind].send.is_none());
     own.copied().collect()
 }

@@ -78,8 +78,13 @@ impl<'a> Extent<'a> {
 
     /// Returns how many data bytes it has with some number of elements in fields of varying length, or with all.
     pub fn bytes_with(self, elements: Option<usize>) -> usize {
+        self.reach(elements).max(self.head())
+    }
+
+    /// Returns how many data bytes reach to the end of its signals with some number of elements, or with all.
+    pub fn reach(self, elements: Option<usize>) -> usize {
         let present = self.signals().filter(|(_, signal)| self.long.is_among(elements, signal));
-        present.map(|(_, signal)| signal.reach_with(elements)).max().unwrap_or(0).max(self.head())
+        present.map(|(_, signal)| signal.reach_with(elements)).max().unwrap_or(0)
     }
 
     /// Returns the first field whose length varies, if there is one. Others vary with it.

@@ -103,7 +103,7 @@ impl LongMessage {
     /// Returns the number of data bytes up to the end of the last field that is always there.
     pub fn least(&self) -> usize {
         let text = self.open_text().map_or(0, |(_, run)| run.least.into());
-        self.lengths.first().map_or_else(|| self.bytes_with(Some(text)), |length| usize::from(*length))
+        self.lengths.first().map_or_else(|| self.whole().reach(Some(text)), |length| usize::from(*length))
     }
 
     /// Tests whether it can have some number of data bytes.

@@ -14,7 +14,7 @@ const THIRD: &str = "7E8#2209000000000000";
 const SINGLE: &str = "7E8#0562F19103E80000";
 
 fn units() -> Protocol {
-    protocol("tests/specs/transports/isotp.yaml")
+    protocol("tests/specs/devices/units.yaml")
 }
 
 fn frame(text: &str) -> Frame {

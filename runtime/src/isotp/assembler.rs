@@ -6,10 +6,10 @@ use crate::assembler::elapsed;
 use crate::long::buffer::Buffer;
 
 /// Puts the messages of up to `N` pairs of identifiers together, each in memory `M`, such as
-/// `[u8; memory(4095)]`.
+/// `[u8; memory(4095)]`. `L` is what tells pairs apart.
 #[derive(Clone, Copy, Debug)]
-pub struct Assembler<M, const N: usize> {
-    sessions: [Option<Session<M>>; N],
+pub struct Assembler<M, const N: usize, L = Link> {
+    sessions: [Option<Session<M, L>>; N],
     block: u8,
     separation: Separation,
     padding: Option<u8>,
@@ -17,16 +17,16 @@ pub struct Assembler<M, const N: usize> {
 
 /// A message on its way.
 #[derive(Clone, Copy, Debug)]
-struct Session<M> {
-    transfer: Transfer<M>,
+struct Session<M, L> {
+    transfer: Transfer<M, L>,
     since: u32,
 }
 
 /// A message, or what came of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Transfer<M> {
+pub struct Transfer<M, L = Link> {
     /// Who sends it, and to whom.
-    pub link: Link,
+    pub link: L,
     size: usize,
     /// Bytes of the first chunk that are not data: a first frame has fewer than the others.
     head: usize,
@@ -36,22 +36,22 @@ pub struct Transfer<M> {
 /// What a frame changes.
 #[derive(Clone, Copy, Debug)]
 #[must_use = "a message can have ended"]
-pub struct Event<M> {
+pub struct Event<M, L = Link> {
     /// The message that is whole now.
-    pub whole: Option<Transfer<M>>,
+    pub whole: Option<Transfer<M, L>>,
     /// The message that was on its way and comes to nothing.
-    pub broken: Option<Broken<M>>,
+    pub broken: Option<Broken<M, L>>,
     /// The message that would begin, but comes to nothing.
-    pub refused: Option<Broken<M>>,
+    pub refused: Option<Broken<M, L>>,
     /// What the receiver answers, from the message's target to its source.
-    pub answer: Option<(Link, Packet)>,
+    pub answer: Option<(L, Packet)>,
 }
 
 /// A message that comes to nothing.
 #[derive(Clone, Copy, Debug)]
-pub struct Broken<M> {
+pub struct Broken<M, L = Link> {
     /// What came of it.
-    pub transfer: Transfer<M>,
+    pub transfer: Transfer<M, L>,
     /// Why.
     pub cause: Cause,
 }
@@ -71,9 +71,9 @@ pub enum Cause {
     Full,
 }
 
-impl<M: Memory> Transfer<M> {
+impl<M: Memory, L: Copy> Transfer<M, L> {
     /// Returns a message with the data of its only frame, or of its first one, if there is room for them.
-    fn new(link: Link, size: usize, head: usize, data: &[u8]) -> (Self, bool) {
+    fn new(link: L, size: usize, head: usize, data: &[u8]) -> (Self, bool) {
         let mut transfer = Self { link, size, head, buffer: Buffer::new(CONSECUTIVE) };
         let has_room = super::memory(size) <= M::BLANK.as_ref().len() && transfer.add(head, data);
         (transfer, has_room)
@@ -107,14 +107,14 @@ impl<M: Memory> Transfer<M> {
     }
 }
 
-impl<M: Memory> Event<M> {
-    const NONE: Self = Self { whole: None, broken: None, refused: None, answer: None };
+impl<M: Memory, L: Copy> Event<M, L> {
+    pub(crate) const NONE: Self = Self { whole: None, broken: None, refused: None, answer: None };
 
-    fn broken(transfer: Transfer<M>, cause: Cause) -> Self {
+    fn broken(transfer: Transfer<M, L>, cause: Cause) -> Self {
         Self { broken: Some(Broken { transfer, cause }), ..Self::NONE }
     }
 
-    fn refused(self, transfer: Transfer<M>) -> Self {
+    fn refused(self, transfer: Transfer<M, L>) -> Self {
         Self { refused: Some(Broken { transfer, cause: Cause::Full }), ..self }
     }
 }
@@ -129,8 +129,27 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
     /// Returns an assembler without sessions. It lets all frames of a message come at once, and
     /// [`PADDING`] fills its answers up.
     pub const fn new() -> Self {
-        Self { sessions: [None; N], block: 0, separation: Separation(0), padding: Some(PADDING) }
+        Self::NEW
     }
+
+    /// Takes the data bytes of a frame. One that the standard tells receivers to ignore changes nothing.
+    pub fn receive(&mut self, link: Link, data: &[u8], now: u32) -> Event<M> {
+        let event = match Pdu::decode(data) {
+            Some(Pdu::Single(data)) => self.single(link, data),
+            Some(Pdu::First { size, data }) => self.first(link, usize::try_from(size).unwrap_or(usize::MAX), data, now),
+            Some(Pdu::Consecutive { number, data }) => self.consecutive(link, number, data, now),
+            Some(Pdu::Flow(flow)) => self.flow(|known| *known == link.reversed(), flow, now),
+            None => Event::NONE,
+        };
+        Event { answer: event.answer.map(|(link, packet)| (link.reversed(), packet)), ..event }
+    }
+}
+
+/// Pairs of identifiers, however they are told apart. Here an answer stands beside the link of its message.
+impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
+    /// An assembler without sessions.
+    pub(crate) const NEW: Self =
+        Self { sessions: [None; N], block: 0, separation: Separation(0), padding: Some(PADDING) };
 
     /// Asks senders to wait for an answer after a block of frames, unless it is 0, and to leave time
     /// between frames.
@@ -145,34 +164,23 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
         Self { padding, ..self }
     }
 
-    /// Takes the data bytes of a frame. One that the standard tells receivers to ignore changes nothing.
-    pub fn receive(&mut self, link: Link, data: &[u8], now: u32) -> Event<M> {
-        match Pdu::decode(data) {
-            Some(Pdu::Single(data)) => self.single(link, data),
-            Some(Pdu::First { size, data }) => self.first(link, size, data, now),
-            Some(Pdu::Consecutive { number, data }) => self.consecutive(link, number, data, now),
-            Some(Pdu::Flow(flow)) => self.flow(link.reversed(), flow, now),
-            None => Event::NONE,
-        }
-    }
-
     /// Gives up a message whose sender has been silent for too long. Call this until it returns
     /// `None`.
-    pub fn timed_out(&mut self, now: u32) -> Option<Event<M>> {
-        let is_silent = |session: &Session<M>| elapsed(session.since, now).is_some_and(|silence| silence >= PATIENCE);
+    pub fn timed_out(&mut self, now: u32) -> Option<Event<M, L>> {
+        let is_silent =
+            |session: &Session<M, L>| elapsed(session.since, now).is_some_and(|silence| silence >= PATIENCE);
         let slot = self.sessions.iter_mut().find(|slot| slot.as_ref().is_some_and(is_silent))?;
         Some(Event::broken(slot.take()?.transfer, Cause::Silent))
     }
 
-    fn single(&mut self, link: Link, data: &[u8]) -> Event<M> {
+    pub(crate) fn single(&mut self, link: L, data: &[u8]) -> Event<M, L> {
         let event = self.restarted(link);
         let (transfer, has_room) = Transfer::new(link, data.len(), 0, data);
         if has_room { Event { whole: Some(transfer), ..event } } else { event.refused(transfer) }
     }
 
-    fn first(&mut self, link: Link, size: u32, data: &[u8], now: u32) -> Event<M> {
+    pub(crate) fn first(&mut self, link: L, size: usize, data: &[u8], now: u32) -> Event<M, L> {
         let event = self.restarted(link);
-        let size = usize::try_from(size).unwrap_or(usize::MAX);
         let (transfer, has_room) = Transfer::new(link, size, CONSECUTIVE - FIRST, data);
         let is_free = self.sessions.iter().any(Option::is_none);
         if !has_room || !is_free || !SIZES.contains(&size) {
@@ -182,7 +190,7 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
         self.allowing(event, link)
     }
 
-    fn consecutive(&mut self, link: Link, number: u8, data: &[u8], now: u32) -> Event<M> {
+    pub(crate) fn consecutive(&mut self, link: L, number: u8, data: &[u8], now: u32) -> Event<M, L> {
         let Some(Session { mut transfer, since }) = self.take(link) else { return Event::NONE };
         if transfer.frames() & 0xF != number.into() {
             return Event::broken(transfer, Cause::Number(number));
@@ -196,14 +204,15 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
         if transfer.missing() == 0 {
             return Event { whole: Some(transfer), ..Event::NONE };
         }
+        let link = transfer.link;
         self.keep(Session { transfer, since: now });
         let in_block = transfer.frames().saturating_sub(1).checked_rem(self.block.into());
         if in_block == Some(0) { self.allowing(Event::NONE, link) } else { Event::NONE }
     }
 
     /// Takes what the receiver of a message answers, if somebody listens to both.
-    fn flow(&mut self, link: Link, flow: Flow, now: u32) -> Event<M> {
-        let Some(session) = self.take(link) else { return Event::NONE };
+    pub(crate) fn flow(&mut self, is_meant: impl Fn(&L) -> bool, flow: Flow, now: u32) -> Event<M, L> {
+        let Some(session) = self.take_any(is_meant) else { return Event::NONE };
         if flow == Flow::Overflow {
             return Event::broken(session.transfer, Cause::Overflow);
         }
@@ -212,25 +221,29 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
     }
 
     /// Ends the message that a sender has begun before.
-    fn restarted(&mut self, link: Link) -> Event<M> {
+    pub(crate) fn restarted(&mut self, link: L) -> Event<M, L> {
         self.take(link).map_or(Event::NONE, |session| Event::broken(session.transfer, Cause::Restarted))
     }
 
-    fn allowing(&self, event: Event<M>, link: Link) -> Event<M> {
+    fn allowing(&self, event: Event<M, L>, link: L) -> Event<M, L> {
         self.answering(event, link, Flow::Continue { block: self.block, separation: self.separation })
     }
 
-    fn answering(&self, event: Event<M>, link: Link, flow: Flow) -> Event<M> {
-        Event { answer: Some((link.reversed(), flow.encode(self.padding))), ..event }
+    fn answering(&self, event: Event<M, L>, link: L, flow: Flow) -> Event<M, L> {
+        Event { answer: Some((link, flow.encode(self.padding))), ..event }
     }
 
     /// Takes the session of a pair of identifiers out.
-    fn take(&mut self, link: Link) -> Option<Session<M>> {
-        let is_meant = |session: &Session<M>| session.transfer.link == link;
+    fn take(&mut self, link: L) -> Option<Session<M, L>> {
+        self.take_any(|known| *known == link)
+    }
+
+    fn take_any(&mut self, is_meant: impl Fn(&L) -> bool) -> Option<Session<M, L>> {
+        let is_meant = |session: &Session<M, L>| is_meant(&session.transfer.link);
         self.sessions.iter_mut().find(|slot| slot.as_ref().is_some_and(is_meant))?.take()
     }
 
-    fn keep(&mut self, session: Session<M>) {
+    fn keep(&mut self, session: Session<M, L>) {
         if let Some(slot) = self.sessions.iter_mut().find(|slot| slot.is_none()) {
             *slot = Some(session);
         }

@@ -179,10 +179,10 @@ fn a_device_model_has_only_blank_bytes_where_it_lacks_a_text() {
     let plate = |serial| Plate { code: 1, name: Text::default(), serial: Some(Bytes::new(serial)) };
     let mut last = [0; 12];
     last[11] = 1;
-    assert!(plate([0; 12]).encode_by(on(7), &mut [0; 23]).is_ok());
+    assert!(plate([0; 12]).encode_by(on(7), 0, &mut [0; 23]).is_ok());
     let refused = Error::Meaning { message: "plate", signal: "serial" };
-    assert_eq!(plate(last).encode_by(on(7), &mut [0; 23]), Err(refused));
-    assert!(plate(last).encode_by(on(8), &mut [0; 23]).is_ok());
+    assert_eq!(plate(last).encode_by(on(7), 0, &mut [0; 23]), Err(refused));
+    assert!(plate(last).encode_by(on(8), 0, &mut [0; 23]).is_ok());
 }
 
 /// A count, and 2 to 6 letters or bytes behind it.

@@ -8,7 +8,7 @@ use canspec_runtime::client::{self, Client, Heard, Pace, Step};
 use canspec_runtime::parts::{self, Outcome, Parted};
 use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::sim::{Answer, Bench, Device, Faults, Random, Rules};
-use canspec_runtime::transfers::{self, Transferred, Transport};
+use canspec_runtime::transfers::{self, Filled, Grouped, Transferred, Transport};
 use canspec_runtime::{
     Addressed, AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading,
     Received, Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
@@ -279,7 +279,29 @@ pub fn transferred<L: Transferred + Unknown>() {
         (&mut sender).for_each(sink);
         sink(sender.receive(&unknown_frame()));
     }
-    sink(sender.abort(transfers::Reason::OTHER));
+}
+
+/// Gives up a message by J1939.
+pub fn aborted<T: Grouped>() {
+    if let Some(sender) = black_box(None::<transfers::Sender<'static, T>>) {
+        sink(sender.abort(transfers::Reason::OTHER));
+    }
+}
+
+/// Does what only ISO-TP does: puts messages without values together and makes them.
+pub fn bare<T: Filled>() {
+    let mut assembler = transfers::Assembler::<T, 3>::new().pacing(unknown(), isotp::Separation(unknown()));
+    let event = assembler.receive(&unknown_frame(), unknown());
+    if let (Some(whole), Some((exchange, kind))) = (&event.whole, T::CARRIES.first()) {
+        sink((whole.is_bare(exchange, *kind), whole.is_error_reply()));
+    }
+    let broken = event.broken.iter().chain(&event.refused).map(|broken| &broken.transfer);
+    for transfer in broken {
+        sink((transfer.data(), transfer.link.id(), transfer.link.is_to_module(), transfer.size()));
+    }
+    if let Some(sender) = transfers::Sender::<T>::bare(&unknown_frame()) {
+        sender.for_each(sink);
+    }
 }
 
 fn packets<M: tp::Memory>(event: &tp::Event<M>) {

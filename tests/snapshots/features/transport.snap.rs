@@ -609,12 +609,16 @@ pub struct Tp;
 impl transfers::Transport for Tp {
     type Protocol = Message;
     type Memory = [u8; 15];
-    const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
-    const TARGET: Bits = Identifier::TARGET;
-    const SOURCE: Bits = Identifier::SOURCE;
+    type Standard = transfers::J1939;
     const SENDS: &'static [(Bits, u32)] = &[(Identifier::PRIORITY, 0x7)];
     const CARRIES: &'static [(&'static Exchange, Kind)] =
         &[(&Battery::OF_VEHICLE, Kind::Report), (&Profile::OF_CHARGER, Kind::Report)];
+}
+
+impl transfers::Grouped for Tp {
+    const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
+    const TARGET: Bits = Identifier::TARGET;
+    const SOURCE: Bits = Identifier::SOURCE;
 }
 
 /// Every message that a frame can carry.

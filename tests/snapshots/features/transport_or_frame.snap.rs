@@ -624,11 +624,15 @@ pub struct Tp;
 impl transfers::Transport for Tp {
     type Protocol = Message;
     type Memory = [u8; 15];
+    type Standard = transfers::J1939;
+    const SENDS: &'static [(Bits, u32)] = &[(Identifier::PRIORITY, 0x7)];
+    const CARRIES: &'static [(&'static Exchange, Kind)] = &[(&Cells::OF_VEHICLE, Kind::Report)];
+}
+
+impl transfers::Grouped for Tp {
     const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
     const TARGET: Bits = Identifier::TARGET;
     const SOURCE: Bits = Identifier::SOURCE;
-    const SENDS: &'static [(Bits, u32)] = &[(Identifier::PRIORITY, 0x7)];
-    const CARRIES: &'static [(&'static Exchange, Kind)] = &[(&Cells::OF_VEHICLE, Kind::Report)];
 }
 
 /// Every message that a frame can carry.

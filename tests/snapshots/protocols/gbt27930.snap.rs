@@ -5131,9 +5131,7 @@ pub struct Tp;
 impl transfers::Transport for Tp {
     type Protocol = Message;
     type Memory = [u8; 528];
-    const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
-    const TARGET: Bits = Identifier::TARGET;
-    const SOURCE: Bits = Identifier::SOURCE;
+    type Standard = transfers::J1939;
     const SENDS: &'static [(Bits, u32)] = &[(Identifier::PRIORITY, 0x7)];
     const CARRIES: &'static [(&'static Exchange, Kind)] = &[
         (&Brm::BMS_CYCLE, Kind::Report),
@@ -5149,6 +5147,12 @@ impl transfers::Transport for Tp {
         (&Dm6::CHARGER_EVENT, Kind::Report),
         (&Dm6::BMS_EVENT, Kind::Report),
     ];
+}
+
+impl transfers::Grouped for Tp {
+    const GROUP: &'static [Bits] = &[Identifier::PAGE, Identifier::FORMAT, Identifier::TARGET];
+    const TARGET: Bits = Identifier::TARGET;
+    const SOURCE: Bits = Identifier::SOURCE;
 }
 
 /// Every message that a frame can carry.

@@ -174,6 +174,8 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("LongLayout") => quote!(calls::long_layout::<#owner>();),
         Some("Parted") => quote!(calls::parted::<#owner>();),
         Some("Transport") => quote!(calls::transfers::<#owner>();),
+        Some("Grouped") => quote!(calls::aborted::<#owner>();),
+        Some("Filled") => quote!(calls::bare::<#owner>();),
         Some("Transferred") => quote!(calls::transferred::<#owner>();),
         Some("Destination") => quote!(calls::questions::<#owner>(); calls::client::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),

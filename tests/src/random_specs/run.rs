@@ -47,14 +47,6 @@ impl Run {
     }
 
     fn add_spec(&mut self, spec: &Spec, modules: &mut Crate) -> io::Result<Result<(), String>> {
-        // ISO-TP has no Rust yet.
-        let protocol = match spec.protocol() {
-            Ok(protocol) => protocol,
-            Err(errors) => return Ok(Err(errors)),
-        };
-        if protocol.transports.iter().any(|transport| !transport.standard.has_plain_frames()) {
-            return Ok(Ok(()));
-        }
         let scaled = match spec.seed % 3 {
             0 => Scaled::F64,
             1 => Scaled::F32,

@@ -11,25 +11,26 @@ use super::plan::long::{Field, Length, Long, Row, Step};
 use super::plan::message::Message;
 use super::plan::signal::Member;
 use super::scales;
-use super::transport::{sent, transferred};
+use super::transport::{bare, sent, transferred};
 
 /// The longest array that `serde` knows.
 const LONGEST_OF_SERDE: usize = 32;
 
 /// Emits the struct of a long message.
 pub fn long(message: &Message, long: &Long, derives: Derives) -> TokenStream {
-    let (definition, layout) = (definition(long, derives), layout(long));
+    let (definition, layout) = (definition(long, derives), (!long.fields.is_empty()).then(|| layout(long)));
     let Long { name, fields, requests, transfer, .. } = long;
     let exchanges = message.exchanges.iter().filter(|_| *name == message.owner).map(exchange);
     let transfers = transfer.iter().flat_map(|transfer| transfer.requests.iter().map(|own| sent(own, transfer)));
-    let transferred = transfer.as_ref().map(|transfer| transferred(name, transfer));
+    let bare = transfer.iter().flat_map(|transfer| transfer.bare.iter().map(|own| bare(own, transfer)));
+    let transferred = transfer.as_ref().filter(|_| !fields.is_empty()).map(|transfer| transferred(name, transfer));
     let (signals, requests) = (fields.iter().map(signal), requests.iter().map(request));
     let by_model = fields.iter().filter(|field| field.row.is_none());
     let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));
-    let optional = derives.long_message(name);
+    let optional = if fields.is_empty() { derives.message(name, true) } else { derives.long_message(name) };
     quote! {
         #definition
-        impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#transfers)* #(#by_model)* }
+        impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#transfers)* #(#bare)* #(#by_model)* }
         #layout
         #transferred
         #optional
@@ -40,7 +41,8 @@ fn definition(Long { name, comment, fields, is_exact, .. }: &Long, derives: Deri
     let eq = is_exact.then(|| quote!(, Eq, Hash));
     let attributes = derives.structure(&quote!(Clone, Copy, Debug, PartialEq #eq));
     let members = fields.iter().map(|field| member(field, derives));
-    quote!(#comment #attributes pub struct #name { #(#members),* })
+    let body = if fields.is_empty() { quote!(;) } else { quote!({ #(#members),* }) };
+    quote!(#comment #attributes pub struct #name #body)
 }
 
 fn member(Field { signal, row, .. }: &Field, derives: Derives) -> TokenStream {

@@ -126,7 +126,7 @@ impl Plan {
             carrier::Planner { protocol, types, models: &models, messages: &messages, variants: &variants };
         let carriers = protocol.long_messages.ids().map(|id| planner_of_parts.carrier(id)).collect();
         let transports = protocol.transports.ids();
-        let transports = transports.filter_map(|id| Transport::new(protocol, types, &messages, id)).collect();
+        let transports = transports.map(|id| Transport::new(protocol, types, &messages, id)).collect();
         let address_types = protocol.address_types.iter().zip(addresses);
         Self {
             base: Base::new(&protocol.identifier),

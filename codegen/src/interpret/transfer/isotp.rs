@@ -1,7 +1,7 @@
 //! Transfers by ISO 15765-2: a single frame, or a first frame and consecutive ones, and the receiver's flow control.
 
 use super::{Arrived, Part, Started, sending};
-use crate::interpret::assembly::{Assembled, Peers, Taken};
+use crate::interpret::assembly::{Assembled, Peers, Taken, module};
 use crate::interpret::encode::{frame, refuse};
 use crate::interpret::{Frame, Refusal, padded};
 use crate::model::{
@@ -54,11 +54,13 @@ impl Link {
     }
 
     /// Tests whether a frame of the receiver answers one of the sender. Its mode can be another one, if addresses
-    /// show who they are.
-    fn answers(&self, other: &Self) -> bool {
+    /// show who they are. An address that everybody sends can lack.
+    fn answers(&self, protocol: &Protocol, other: &Self) -> bool {
         let is_opposite = self.transport == other.transport && self.sender != other.sender;
-        let is_between = self.peers == other.peers && (self.mode == other.mode || !self.peers.is_empty());
-        is_opposite && is_between
+        let [named, others] = [self, other].map(|link| module(protocol, &link.peers));
+        let differs = |(kind, number): &(_, _)| other.peers.iter().any(|known| known.0 == *kind && known.1 != *number);
+        let is_between = named == others && !self.peers.iter().any(differs);
+        is_opposite && is_between && (self.mode == other.mode || !named.is_empty())
     }
 }
 
@@ -143,7 +145,9 @@ impl<M: Clone> Transfers<M> {
     /// Takes what the receiver answers.
     fn flow(&mut self, part: &Part) -> Taken<M> {
         let link = Link::of(part);
-        let Some(open) = self.0.iter().position(|known| link.answers(&known.link)) else { return Taken::NOTHING };
+        let Some(open) = self.0.iter().position(|known| link.answers(part.protocol, &known.link)) else {
+            return Taken::NOTHING;
+        };
         let is_over = part.number("status") == Some(OVERFLOW);
         let ended = is_over.then(|| self.end(part, open, Some("the receiver has no room for it")));
         Taken { is_part: true, ended: ended.into_iter().collect() }

@@ -1,17 +1,11 @@
 //! Numbers of groups, and the frames that show them.
 
-use super::Transport;
-use crate::protocol::{Heading, heading};
+use super::{Grouped, is_to_module, put};
 use crate::tp::{ALL, Link};
 use crate::{Bits, Data, Exchange, Filter, Frame, Kind, Protocol};
 
 /// The byte of a group's number that is the address of a receiver, if the group has one.
 const RECEIVER: u32 = 0xFF;
-
-/// Tests whether an identifier goes to a module.
-pub fn is_to_module<T: Transport>(id: u32) -> bool {
-    matches!(heading::<T::Protocol>(id), Some(Heading::Module))
-}
 
 /// Tests whether the last byte of a group's number is the place of a receiver.
 fn has_receiver(group: u32) -> bool {
@@ -19,31 +13,27 @@ fn has_receiver(group: u32) -> bool {
 }
 
 /// Returns the number of the group that an identifier shows. The address of a receiver is no part of it.
-pub fn group_of<T: Transport>(id: u32) -> u32 {
+pub fn group_of<T: Grouped>(id: u32) -> u32 {
     let group = T::GROUP.iter().fold(0, |group: u32, bits| group.wrapping_shl(bits.width().into()) | bits.of(id));
     if has_receiver(group) { group & !RECEIVER } else { group }
 }
 
 /// Returns an identifier with the number of another group. The receiver stays, if the identifier has room for it.
-pub fn with_group<T: Transport>(id: u32, group: u32) -> u32 {
+pub fn with_group<T: Grouped>(id: u32, group: u32) -> u32 {
     let group = if has_receiver(group) { group & !RECEIVER | T::TARGET.of(id) } else { group };
     let put = |(id, group): (u32, u32), bits: &Bits| (put(id, *bits, group), group.wrapping_shr(bits.width().into()));
     T::GROUP.iter().rev().fold((id, group), put).0
 }
 
-fn put(id: u32, bits: Bits, value: u32) -> u32 {
-    u32::try_from(bits.put(id.into(), value.into())).unwrap_or(id)
-}
-
 /// Returns who sends a frame, and to whom. A group without a place for the receiver goes to all.
-pub fn link<T: Transport>(id: u32) -> Link {
+pub fn link<T: Grouped>(id: u32) -> Link {
     let byte = |bits: Bits| u8::try_from(bits.of(id)).unwrap_or(ALL);
     let target = if has_receiver(group_of::<T>(id)) { byte(T::TARGET) } else { ALL };
     Link { source: byte(T::SOURCE), target }
 }
 
 /// Returns a frame of the transport, with what `id` shows elsewhere.
-pub fn frame<T: Transport>(id: u32, group: u32, link: Link, data: Data) -> Frame {
+pub fn frame<T: Grouped>(id: u32, group: u32, link: Link, data: Data) -> Frame {
     let id = put(put(id, T::SOURCE, link.source.into()), T::TARGET, link.target.into());
     let id = T::SENDS.iter().fold(with_group::<T>(id, group), |id, (bits, value)| put(id, *bits, *value));
     Frame::new_raw(id, T::Protocol::FRAME.is_extended(), data, 8)
@@ -59,7 +49,7 @@ pub struct Carried {
 
 impl Carried {
     /// Finds the message of a group whose packets have such an identifier.
-    pub fn find<T: Transport>(id: u32, group: u32) -> Option<Self> {
+    pub fn find<T: Grouped>(id: u32, group: u32) -> Option<Self> {
         let (shown, is_to_module) = (with_group::<T>(id, group), is_to_module::<T>(id));
         T::CARRIES.iter().find_map(|(exchange, kind)| {
             let filter = exchange.filter(*kind)?;
@@ -70,7 +60,7 @@ impl Carried {
 }
 
 /// Returns the identifier that a message would have as one frame between the nodes that `shown` shows.
-fn as_one_frame<T: Transport>(filter: &Filter, shown: u32) -> u32 {
+fn as_one_frame<T: Grouped>(filter: &Filter, shown: u32) -> u32 {
     let id = put(filter.sent_id(), T::SOURCE, T::SOURCE.of(shown));
     T::GROUP.iter().fold(id, |id, bits| put(id, *bits, bits.of(shown)))
 }

@@ -46,6 +46,8 @@ pub struct Transfer {
     pub sizes: Vec<u16>,
     /// The methods that send it to a module.
     pub requests: Vec<Request>,
+    /// Those that send it without values.
+    pub bare: Vec<Request>,
 }
 
 /// A number of data bytes that a message can have.

@@ -225,10 +225,12 @@ impl Planner<'_> {
         let Context { protocol, types, .. } = *self.context;
         let transport = protocol[long].transport()?;
         let to_module = protocol[long].frames.iter().filter(|frame| frame.is_to_module() && frame.set.is_none());
+        let (bare, carrying): (Vec<_>, Vec<_>) = to_module.partition(|frame| frame.signals.is_empty());
         Some(Transfer {
             transport: types.transports[transport].clone(),
             sizes: protocol[long].lengths.clone(),
-            requests: to_module.map(|frame| self.sending(host, ways, frame)).collect(),
+            requests: carrying.into_iter().map(|frame| self.sending(host, ways, frame)).collect(),
+            bare: bare.into_iter().map(|frame| self.sending_nothing(host, ways, frame)).collect(),
         })
     }
 
@@ -245,6 +247,13 @@ impl Planner<'_> {
                       buffer with too few bytes.";
         let comment = Comment::new([first, "# Errors".to_owned(), errors.to_owned()]);
         Request { comment, carries: true, ..self.request(host, ways, frame) }
+    }
+
+    /// Plans the method that sends what carries nothing by a transport.
+    fn sending_nothing(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
+        let mut comment = self.request_comment(frame, "", "");
+        comment[0] = comment[0].replacen("Builds", "Returns what sends", 1);
+        Request { comment: Comment::new(comment), ..self.request(host, ways, frame) }
     }
 
     fn request(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {

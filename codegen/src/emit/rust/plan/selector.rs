@@ -77,9 +77,10 @@ pub struct InData {
     pub normal: Option<TokenStream>,
 }
 
-/// Returns the selectors in the data that some frame has.
+/// Returns the selectors in the data that some frame or some long message has.
 pub fn in_data(protocol: &Protocol, selectors: &Selectors) -> Vec<InData> {
-    let is_used = |id: &SelectorId| protocol.frames.iter().any(|frame| frame.selectors.contains(id));
+    let layouts = || protocol.frames.iter().chain(protocol.long_messages.iter().flat_map(|long| &long.frames));
+    let is_used = |id: &SelectorId| layouts().any(|frame| frame.selectors.contains(id));
     let used = protocol.selectors.ids().filter(is_used);
     used.filter_map(|id| InData::new(protocol, &selectors[id], id)).collect()
 }
