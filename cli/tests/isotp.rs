@@ -90,10 +90,3 @@ fn a_call_makes_the_frames_of_the_sender_and_keeps_limits() {
     let reply = ["encode", "refused", "--kind", "reply", "--source", "3", "refused=write", "reason=locked"];
     assert_eq!(canspec(&reply, "").0, "7EB#037F2E3300000000\n");
 }
-
-#[test]
-fn what_cannot_be_made_yet_is_said() {
-    let (out, complaints) = canspec(&["export", "wireshark"], "");
-    let why = "canspec: a dissector cannot join the messages by `tp` yet, since it is ISO-TP\n";
-    assert_eq!((out.as_str(), complaints.as_str()), ("", why));
-}

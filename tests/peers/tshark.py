@@ -205,9 +205,8 @@ def alone(message, signals, dissector):
         for index in range(len(signal["raw"])):
             element = {key: item if key == "unit" else item[index] for key, item in signal.items()}
             found.append((f"{name}_{first + index}", element))
-    order = list(dissector.types)
-    is_array = len(found) > len(signals)
-    return sorted(found, key=lambda item: order.index(f"{message}.{item[0]}")) if is_array else found
+    order = {name: place for place, name in enumerate(dissector.types)}
+    return sorted(found, key=lambda item: order.get(f"{message}.{item[0]}", 0))
 
 
 # Rules of notes about the value of a signal.
@@ -221,8 +220,11 @@ def refusal(line):
     return f"{what}, {why[0]}" if what and why else None
 
 
-# The frames of J1939-21's transport by their control byte.
-CONTROLS = {16: "request_to_send", 17: "clear_to_send", 19: "end_of_message", 32: "broadcast", 255: "abort"}
+# The frames of J1939-21's transport by their control byte, and those of ISO-TP by their first four bits.
+KINDS = {
+    "control": {16: "request_to_send", 17: "clear_to_send", 19: "end_of_message", 32: "broadcast", 255: "abort"},
+    "pci": {0: "single_frame", 1: "first_frame", 2: "consecutive_frame", 3: "flow_control"},
+}
 
 
 def as_message(line):
@@ -231,10 +233,10 @@ def as_message(line):
     if not part:
         return line
     selectors = dict(line["selectors"])
-    control = {"control": selectors.pop("control")} if part == "control" else {}
-    name = f"{transport}_{CONTROLS[control['control']] if control else part}"
+    chosen = {name: selectors.pop(name) for name in KINDS if name in selectors}
+    kind = next((KINDS[name][value] for name, value in chosen.items()), part)
     numbers = {name: {"raw": number, "value": number} for name, number in selectors.items()}
-    return line | {"message": name, "selectors": control, "signals": numbers | line["signals"]}
+    return line | {"message": f"{transport}_{kind}", "selectors": chosen, "signals": numbers | line["signals"]}
 
 
 def expected(line, dissector):
@@ -262,18 +264,21 @@ def expected(line, dissector):
     fields = with_names(fields, dissector.types)
     for whole in line["wholes"]:
         info += f", {'part of' if 'incomplete' in whole else 'whole'} {whole['message']}"
-        add_whole(fields, whole, dissector)
+        add_whole(fields, whole, dissector, "pci" in line["selectors"])
     return fields, info
 
 
-def add_whole(fields, whole, dissector):
+def add_whole(fields, whole, dissector, is_isotp):
     """Adds what tshark shows of a long message. A field that the frame has, too, gets another value."""
     of, note = f"{dissector.protocol}.", dissector.groups["note"]
-    name = of + whole["message"]
+    name, refused = of + whole["message"], is_isotp and refusal(whole)
     more = {f"{of}whole": whole["message"]}
-    for signal, known in alone(name, whole["signals"], dissector):
+    if is_isotp:
+        more |= {of + key: whole[key] for key in ("access", "kind")}
+        more |= {f"{dissector.groups['selector']}.{key}": str(value) for key, value in whole["selectors"].items()}
+    for signal, known in [] if refused else alone(name, whole["signals"], dissector):
         more |= signal_fields(f"{name}.{signal}", known)[0] if known["raw"] is not None else {}
-    rules = [known["rule"] for known in whole["notes"] if known["rule"] in (*OF_VALUES, "model_dependent", "count")]
+    rules = [known["rule"] for known in whole["notes"] if known["rule"] in (*OF_VALUES, "model_dependent", "count") and not refused]
     rules += ["incomplete"] * ("incomplete" in whole)
     more = with_names(more, dissector.types) | {f"{note}.{rule}": ",".join("1" for known in rules if known == rule) for rule in rules}
     for field, value in more.items():
@@ -431,7 +436,8 @@ def compare_sessions(bench, protocols):
     wrong = 0
     for spec in protocols:
         name = os.path.basename(spec).removesuffix(".yaml")
-        for path in sorted(glob.glob(os.path.join(ROOT, "tests", "logs", f"{name}-*.log"))):
+        logs = [glob.glob(os.path.join(folder, f"{name}-*.log")) for folder in (os.path.join(ROOT, "tests", "logs"), PEERS)]
+        for path in sorted(sum(logs, [])):
             with open(path, encoding="utf-8") as file:
                 frames = [line.rstrip("\n") for line in file if "#" in line]
             chosen = random.Random(20)
@@ -530,7 +536,7 @@ def main():
         else:
             print("SKIPPED: there is no lua5.4, so the dissectors run in tshark's version of Lua alone;")
             print("SKIPPED: `apt-get install --no-install-recommends lua5.4` installs it.")
-        wrong += compare_sessions(bench, protocols)
+        wrong += compare_sessions(bench, protocols + features)
         wrong += compare_captures(bench) + compare_edges(bench) + compare_links(bench) + compare_taken_names(bench)
         wrong += find_mistakes(bench)
     return 1 if wrong else 0

@@ -1,5 +1,5 @@
-//! Transfers by ISO-TP of many units at once: whatever is lost, repeated or late, both engines report the same
-//! messages, and each one that is whole was sent.
+//! Transfers by ISO-TP of many units at once, where frames are lost, repeated and late. Both engines report the same
+//! messages, and each whole one was sent.
 
 use std::collections::VecDeque;
 
@@ -122,7 +122,7 @@ fn log(rng: &mut Rng) -> (Vec<Frame>, Vec<Transfer>) {
     (log, sent)
 }
 
-/// What an engine says of a message: who sends it, its message and kind if it is whole and right, and its data if all came.
+/// What an engine says of a message: who sends it, its name and kind if it is right, and its data if all came.
 type Told = (u32, Option<(String, Kind)>, Option<Vec<u8>>);
 
 fn of_interpreter(protocol: &Protocol, ended: &Assembled<()>) -> Told {

@@ -28,10 +28,6 @@ impl Wireshark {
     /// Writes the dissector.
     pub fn run(&self) -> Result<Finish, Failure> {
         let protocol = self.protocol.load()?;
-        if let Some(transport) = protocol.transports.iter().find(|known| !known.standard.has_plain_frames()) {
-            let why = format!("a dissector cannot join the messages by `{}` yet, since it is ISO-TP", transport.name);
-            return Err(Failure::Input(why));
-        }
         output()?.write_all(emit::wireshark(&protocol).as_bytes())?;
         Ok(Finish::Done)
     }

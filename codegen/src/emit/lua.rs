@@ -15,13 +15,14 @@ use table::Value;
 use crate::model::{FrameLayout, IdentifierField, Kind, Message, Protocol, Selector, SelectorPlace, Set};
 
 /// The Lua that is the same for every protocol. Each part needs those before it.
-const INTERPRETER: [&str; 7] = [
+const INTERPRETER: [&str; 8] = [
     include_str!("lua/values.lua"),
     include_str!("lua/decode.lua"),
     include_str!("lua/link.lua"),
     include_str!("lua/long.lua"),
     include_str!("lua/parts.lua"),
     include_str!("lua/transfers.lua"),
+    include_str!("lua/isotp.lua"),
     include_str!("lua/dissector.lua"),
 ];
 

@@ -241,12 +241,28 @@ local function show_message(frame, decoded, tvb, tree)
   return #texts > 0 and summary .. ": " .. table.concat(texts, ", ") or summary
 end
 
+-- Adds what joined data show before the signals. It returns what stands in place of these if an error is reported.
+local function show_joined(whole, tvb, tree)
+  local layout, noted = whole.layout, {}
+  local decoded = { layout = layout, notes = noted, selectors = selectors(whole.beginning, layout.selectors) }
+  error_notes(whole.beginning, decoded, function(rule, text) table.insert(noted, { rule = rule, text = text }) end)
+  tree:add(known.access, layout.access)
+  tree:add(known.kind, layout.kind)
+  add_selectors(tree, tvb, decoded)
+  return refusal(decoded)
+end
+
 -- Adds a message that several frames carry. The last of them shows it.
 local function show_whole(whole, model, tree)
   local name, data = whole.long.message.name, whole.data:gsub("%.", "0")
   local tvb = ByteArray.new(data):tvb("Joined data of " .. name)
   local subtree = tree:add(known.whole, tvb(), name)
+  local refused = whole.layout and show_joined(whole, tvb, subtree)
   local readings, found = readings_of(whole, model)
+  if refused then
+    subtree:append_text(", " .. refused)
+    readings, found = {}, {}
+  end
   for _, reading in ipairs(readings) do add_reading(subtree, tvb, reading) end
   for _, note in ipairs(found) do subtree:add_proto_expert_info(notes[note.rule], note.text) end
   if whole.incomplete then subtree:add_proto_expert_info(incomplete, whole.incomplete) end
@@ -259,6 +275,7 @@ proto.init = function()
   forget_links()
   forget_parts()
   forget_transfers()
+  forget_messages()
   wholes = {}
 end
 

@@ -14,10 +14,15 @@ local function is_among(signal, count)
   return not count or not signal.index or signal.index < count
 end
 
+-- Returns the signals of a long message. `layout` is the kind of frame, if constants stand in the joined data.
+local function signals_of(long, layout)
+  return layout and layout.bare and {} or long.signals
+end
+
 -- Returns how many bytes a long message has with some number of elements, or with all.
-local function bytes_with(long, count)
-  local bytes = 0
-  for _, signal in ipairs(long.signals) do
+local function bytes_with(long, count, layout)
+  local bytes = layout and layout.head or 0
+  for _, signal in ipairs(signals_of(long, layout)) do
     if is_among(signal, count) then bytes = math.max(bytes, reach(signal, count)) end
   end
   return bytes
@@ -27,22 +32,23 @@ local function longest(long)
   return long.lengths and long.lengths[#long.lengths] or bytes_with(long)
 end
 
-local function has_length(long, length)
+local function has_length(long, length, layout)
+  local is_bare = #signals_of(long, layout) == 0
+  if is_bare or not (long.lengths or long.elements) then return length == bytes_with(long, nil, layout) end
   for _, known in ipairs(long.lengths or {}) do
     if known == length then return true end
   end
   if long.lengths then return false end
-  if not long.elements then return length == longest(long) end
   for count = long.elements[1], long.elements[2] do
-    if bytes_with(long, count) == length then return true end
+    if bytes_with(long, count, layout) == length then return true end
   end
   return false
 end
 
 -- Returns how many elements an array of varying length has in some number of bytes.
-local function elements_in(long, length)
+local function elements_in(long, length, layout)
   for count = long.elements and long.elements[2] or -1, 0, -1 do
-    if bytes_with(long, count) <= length then return count end
+    if bytes_with(long, count, layout) <= length then return count end
   end
 end
 
@@ -87,7 +93,7 @@ end
 -- Returns what joined data say: the signals whose bytes all came, and notes.
 local function readings_of(whole, model)
   local found, notes = {}, {}
-  for _, signal in ipairs(whole.long.signals) do
+  for _, signal in ipairs(signals_of(whole.long, whole.layout)) do
     local known = is_among(signal, whole.count) and reading_of(whole, signal, model)
     if known then table.insert(found, known) end
     if known and known.rule then table.insert(notes, known) end
@@ -109,6 +115,9 @@ end
 for _, message in ipairs(protocol.messages) do
   local long = message.long
   if long then long.message = message end
+  for _, layout in ipairs(long and long.via and long.via.layouts or {}) do
+    layout.long, layout.message = long, message
+  end
   for _, signal in ipairs(long and long.signals or {}) do
     prepare_signal(signal)
   end

@@ -1,8 +1,8 @@
 //! Writes long messages: what their frames carry together, and how.
 
-use super::in_identifier;
 use super::signal::{signal, wide};
 use super::table::Value;
+use super::{in_data, in_identifier};
 use crate::model::{
     Carrier, Continuation, FrameLayout, Groups, LongMessage, Parts, Protocol, SelectorPlace, Signal, Standard,
     Transport, TransportId, Varying,
@@ -51,12 +51,30 @@ fn parts(parts: &Parts) -> Value {
         .maybe("count", count)
 }
 
-/// Returns what announces a message: the constants of its identifier, and who sends it.
+/// Returns what announces a message: the constants that it shows first, and who sends it.
 fn via(protocol: &Protocol, transport: TransportId, frames: &[FrameLayout]) -> Value {
+    let transport = &protocol[transport];
     let layout = |frame: &FrameLayout| {
-        Value::record().with("to_module", Value::flag(frame.is_to_module())).with("in_identifier", in_identifier(frame))
+        let record = Value::record()
+            .with("to_module", Value::flag(frame.is_to_module()))
+            .with("in_identifier", in_identifier(frame));
+        match transport.standard {
+            Standard::J1939(_) => record,
+            Standard::Isotp(_) => joined(protocol, frame, record),
+        }
     };
-    Value::record().with("name", Value::text(&protocol[transport].name)).with("layouts", Value::list(frames, layout))
+    Value::record().with("name", Value::text(&transport.name)).with("layouts", Value::list(frames, layout))
+}
+
+/// Adds what the joined data show of a message whose constants stand in them.
+fn joined(protocol: &Protocol, frame: &FrameLayout, record: Value) -> Value {
+    record
+        .with("access", Value::text(&protocol[frame.access].name))
+        .with("kind", Value::text(frame.kind.name()))
+        .with("selectors", Value::list(&frame.selectors, |id| Value::id(*id)))
+        .with("in_data", in_data(frame))
+        .with("head", Value::Plain(frame.head().to_string()))
+        .maybe("bare", frame.signals.is_empty().then(|| Value::flag(true)))
 }
 
 pub fn transport(transport: &Transport) -> Value {

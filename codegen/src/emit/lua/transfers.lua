@@ -1,4 +1,4 @@
--- Transfers: joins the packets of a transport of J1939.
+-- Transfers by J1939: joins the packets of a message.
 
 local PACKET, EVERYBODY = 7, 0xFF
 
