@@ -146,6 +146,35 @@ pub enum Error {
         /// The refused identifier.
         id: u32,
     },
+    /// The protocol has no message from which the quantity is read.
+    NotRead {
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
+    /// The protocol has no message that sets the quantity.
+    NotSet {
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
+    /// A message that sets several quantities lacks the value of one.
+    NotGiven {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
+    /// The quantity has two values.
+    SetTwice {
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
+    /// The quantity is a switch, and the value is neither 0 nor 1.
+    State {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The refused value.
+        value: i32,
+    },
 }
 
 impl fmt::Display for Error {
@@ -202,6 +231,13 @@ impl fmt::Display for Error {
                 write!(formatter, "`{address}` is {}, which has no name", Hexadecimal(number))
             }
             Self::Identifier { message, id } => write!(formatter, "the identifier 0x{id:X} is none of `{message}`"),
+            Self::NotRead { quantity } => write!(formatter, "no message reads `{quantity}`"),
+            Self::NotSet { quantity } => write!(formatter, "no message sets `{quantity}`"),
+            Self::NotGiven { message, quantity } => {
+                write!(formatter, "`{message}` sets `{quantity}` too, which has no value")
+            }
+            Self::SetTwice { quantity } => write!(formatter, "`{quantity}` has two values"),
+            Self::State { quantity, value } => write!(formatter, "`{quantity}` is 0 or 1, and not {value}"),
         }
     }
 }

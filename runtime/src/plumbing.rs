@@ -18,6 +18,7 @@ pub use crate::packed::{Piece, left_aligned, right_aligned};
 pub use crate::physical::{Physical, Scaled};
 pub use crate::place::ByteOrder;
 pub use crate::protocol::Headed;
+pub use crate::quantity::States;
 pub use crate::raw::{Integer, Raw};
 pub use crate::scale::{Scale, nearest};
 pub use crate::set::Continuation;
@@ -30,7 +31,7 @@ pub use crate::word::{Legend, Word};
 pub mod prelude {
     pub use super::{
         Address, Continuation, Decode, Encode, Headed, IdFilter, Incoming, Lack, Legend, LongPayload, Pattern, Piece,
-        Said, Shown, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
+        Said, Shown, States, Task, Way, Who, Word, left_aligned, milliseconds, nanoseconds, right_aligned,
     };
     pub use crate::{Addressed, Destination, Protocol};
 }

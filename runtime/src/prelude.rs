@@ -3,6 +3,6 @@
 pub use crate::{
     AddressType, AnySignal, Bcd, Bits, Bytes, Data, Elements, Entry, Error, Exchange, Failure, Filter, Frame, FrameSet,
     IdentifierFields, Kind, Layout, LongLayout, LongSignal, LongText, Meaning, Mode, Number, PackedText, Payload,
-    Place, Problem, Reading, Replies, Route, Selector, Severity, Signal, StatusBit, Text, Time, Timing, assembler,
-    embedded_can, parts, parts::Parted, transfers, transfers::Transferred,
+    Place, Problem, Quantities, Quantity, ReadPath, Reading, Replies, Route, Selector, SetPath, Severity, Signal,
+    StatusBit, Text, Time, Timing, assembler, embedded_can, parts, parts::Parted, transfers, transfers::Transferred,
 };

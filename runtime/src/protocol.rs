@@ -100,6 +100,16 @@ pub trait Protocol: Copy + Debug + 'static {
 pub trait Addressed: Protocol {
     /// Whom such frames address.
     type Target: Destination<Protocol = Self>;
+
+    /// Returns the target of one module by its number, as [`Received::node`] returns it.
+    ///
+    /// It is that of the first addressing mode in which a module is asked alone and answers. A request refuses a number
+    /// that the document does not name.
+    ///
+    /// It is `None` if no mode has modules with such numbers.
+    fn module(_number: i32) -> Option<Self::Target> {
+        None
+    }
 }
 
 /// The identifier of a protocol, split into its fields.

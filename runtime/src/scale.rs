@@ -122,6 +122,32 @@ impl Scale {
         Number::Fraction { numerator, denominator: self.denominator.wrapping_mul(self.factor) }
     }
 
+    /// Returns the number of parts nearest to the physical value of `raw`, with ties away from zero. A unit has `parts`
+    /// of them. It is `None` if 64 bits cannot hold what is calculated.
+    pub(crate) const fn parts_of(&self, raw: i64, parts: i64) -> Option<i64> {
+        match self.sum(raw).checked_mul(parts) {
+            Some(sum) => match divided(sum, self.common_denominator()) {
+                Some([_, nearest, _]) => Some(nearest),
+                None => None,
+            },
+            None => None,
+        }
+    }
+
+    /// Returns the raw values around a number of parts: the greatest below, the nearest, with ties away from zero, and
+    /// the least above. They are equal if a raw value meets it.
+    pub(crate) const fn raws_around(&self, count: i64, parts: i64) -> Option<[i64; 3]> {
+        let (Some(sum), Some(offset)) = (count.checked_mul(self.common_denominator()), self.offset.checked_mul(parts))
+        else {
+            return None;
+        };
+        let step = self.numerator.wrapping_mul(self.factor);
+        match (sum.checked_sub(offset), step.checked_mul(parts)) {
+            (Some(steps), Some(step)) => divided(steps, step),
+            _ => None,
+        }
+    }
+
     /// Returns the physical value of `raw` as numerator over the common denominator.
     #[inline(always)]
     const fn sum(self, raw: i64) -> i64 {
@@ -132,6 +158,21 @@ impl Scale {
     const fn common_denominator(self) -> i64 {
         self.denominator.wrapping_mul(self.factor)
     }
+}
+
+/// Divides whole numbers: the greatest below, the nearest, with ties away from zero, and the least above.
+const fn divided(numerator: i64, denominator: i64) -> Option<[i64; 3]> {
+    let (Some(cut), Some(rest)) = (numerator.checked_div(denominator), numerator.checked_rem(denominator)) else {
+        return None;
+    };
+    if rest == 0 {
+        return Some([cut; 3]);
+    }
+    let is_below_zero = (numerator < 0) != (denominator < 0);
+    let beyond = if is_below_zero { cut.wrapping_sub(1) } else { cut.wrapping_add(1) };
+    let left = denominator.unsigned_abs().wrapping_sub(rest.unsigned_abs());
+    let nearest = if rest.unsigned_abs() >= left { beyond } else { cut };
+    Some(if is_below_zero { [beyond, nearest, cut] } else { [cut, nearest, beyond] })
 }
 
 /// The largest number below a half.

@@ -2,6 +2,7 @@
 
 mod any;
 mod optional;
+mod quantity;
 mod scaled;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ use crate::raw::Raw;
 use crate::{Data, Error, Number, Payload, Place};
 
 pub use any::{AnySignal, Reading, WriteSignal};
+pub use quantity::{ReadNumber, SetNumber};
 
 /// A named bit range of a message's data.
 ///

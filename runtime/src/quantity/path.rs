@@ -1,0 +1,163 @@
+//! Where messages have quantities.
+
+use crate::{Error, Exchange, Frame, Kind, Payload, Place, Protocol, Quantity, ReadNumber, Received, SetNumber};
+
+/// Where a quantity is read.
+#[derive(Clone, Copy)]
+#[non_exhaustive]
+pub struct ReadPath {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// The unit, whose thousandths are counted.
+    pub unit: Option<&'static str>,
+    /// The frames that carry it.
+    pub frames: &'static [(Kind, &'static Exchange)],
+    /// What asks for it, unless devices only report it by themselves.
+    pub request: Option<&'static Exchange>,
+    pub(super) value: Value<&'static dyn ReadNumber>,
+}
+
+/// Where a quantity is set.
+#[derive(Clone, Copy)]
+#[non_exhaustive]
+pub struct SetPath {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// The unit, whose thousandths are counted.
+    pub unit: Option<&'static str>,
+    /// How the message travels that sets it.
+    pub request: &'static Exchange,
+    pub(super) value: Value<&'static dyn SetNumber>,
+    pub(super) others: &'static [(Place, u64)],
+}
+
+/// The value of a quantity in a frame.
+#[derive(Clone, Copy)]
+pub enum Value<N> {
+    /// A signal that is a number.
+    Number(N),
+    /// The states of a switch.
+    Switch(States),
+}
+
+/// The states of a switch, as bits.
+#[derive(Clone, Copy, Debug)]
+pub struct States {
+    /// Where the bits stand.
+    pub place: Place,
+    /// What they are if it is off.
+    pub inactive: u64,
+    /// What they are if it is on.
+    pub active: u64,
+}
+
+impl ReadPath {
+    /// Returns the path to a number. Generated code calls it.
+    #[doc(hidden)]
+    pub const fn number(
+        quantity: Quantity,
+        unit: Option<&'static str>,
+        frames: &'static [(Kind, &'static Exchange)],
+        signal: &'static dyn ReadNumber,
+    ) -> Self {
+        Self { quantity, unit, frames, request: None, value: Value::Number(signal) }
+    }
+
+    /// Returns the path to a switch. Generated code calls it.
+    #[doc(hidden)]
+    pub const fn switch(quantity: Quantity, frames: &'static [(Kind, &'static Exchange)], states: States) -> Self {
+        Self { quantity, unit: None, frames, request: None, value: Value::Switch(states) }
+    }
+
+    /// Adds what asks for it. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn asked_by(self, request: &'static Exchange) -> Self {
+        Self { request: Some(request), ..self }
+    }
+
+    /// Returns the name of the message.
+    pub const fn message(&self) -> &'static str {
+        match self.frames {
+            [(_, exchange), ..] => exchange.message(),
+            [] => "",
+        }
+    }
+
+    /// Tests whether a frame carries the quantity.
+    pub(super) fn is_in<P: Protocol>(&self, received: &Received<P>) -> bool {
+        let is_its =
+            |(kind, exchange): &(Kind, &Exchange)| *kind == received.kind() && exchange.is(received.exchange());
+        self.frames.iter().any(is_its)
+    }
+}
+
+impl SetPath {
+    /// Returns the path to a number. Generated code calls it.
+    #[doc(hidden)]
+    pub const fn number(
+        quantity: Quantity,
+        unit: Option<&'static str>,
+        request: &'static Exchange,
+        signal: &'static dyn SetNumber,
+    ) -> Self {
+        Self { quantity, unit, request, value: Value::Number(signal), others: &[] }
+    }
+
+    /// Returns the path to a switch. Generated code calls it.
+    #[doc(hidden)]
+    pub const fn switch(quantity: Quantity, request: &'static Exchange, states: States) -> Self {
+        Self { quantity, unit: None, request, value: Value::Switch(states), others: &[] }
+    }
+
+    /// Adds the bits that the message has elsewhere. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn with(self, others: &'static [(Place, u64)]) -> Self {
+        Self { others, ..self }
+    }
+
+    /// Returns the name of the message.
+    pub const fn message(&self) -> &'static str {
+        self.request.message()
+    }
+
+    /// Writes a value, and the bits that the message has elsewhere.
+    pub(super) fn write(&self, value: i32, payload: &mut Payload) -> Result<(), Error> {
+        match (self.value, value) {
+            (Value::Number(signal), _) => signal.set_number(value, payload)?,
+            (Value::Switch(states), 0) => put(states.place, states.inactive, payload),
+            (Value::Switch(states), 1) => put(states.place, states.active, payload),
+            (Value::Switch(_), _) => return Err(Error::State { quantity: self.quantity.name(), value }),
+        }
+        self.others.iter().for_each(|(place, bits)| put(*place, *bits, payload));
+        Ok(())
+    }
+}
+
+fn put(place: Place, bits: u64, payload: &mut Payload) {
+    let mut data = *payload.data();
+    place.put(&mut data, bits);
+    payload.replace(data);
+}
+
+impl Value<&'static dyn ReadNumber> {
+    /// Reads the value in a frame, if it shows one.
+    pub(super) fn read(&self, frame: &Frame) -> Option<i32> {
+        let data = frame.bytes();
+        match self {
+            Self::Number(signal) if signal.place().is_within(frame.length()) => signal.read_number(&data),
+            Self::Switch(states) if states.place.is_within(frame.length()) => states.read(states.place.get(&data)),
+            Self::Number(_) | Self::Switch(_) => None,
+        }
+    }
+}
+
+impl States {
+    fn read(&self, bits: u64) -> Option<i32> {
+        if bits == self.active {
+            return Some(1);
+        }
+        (bits == self.inactive).then_some(0)
+    }
+}

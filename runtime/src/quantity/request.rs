@@ -1,0 +1,97 @@
+//! Builds the requests that read and set quantities.
+
+use super::path::SetPath;
+use crate::layout::{Decode, Encode};
+use crate::{
+    AnySignal, Data, Destination, Error, Exchange, Layout, Payload, Quantities, Quantity, ReadPath, Request, Route,
+};
+
+/// Builds the requests that read quantities, each message once.
+pub fn read<P: Quantities, T: Destination<Protocol = P>>(
+    wanted: &[Quantity],
+    route: Route<T>,
+) -> Result<impl Iterator<Item = Request<P, ()>>, Error> {
+    let asked = |quantity: Quantity| path::<P>(quantity).and_then(|path| path.request);
+    wanted.iter().try_for_each(|quantity| match path::<P>(*quantity) {
+        Some(_) => Ok(()),
+        None => Err(Error::NotRead { quantity: quantity.name() }),
+    })?;
+    let requests = wanted.iter().enumerate().filter_map(move |(index, quantity)| {
+        let request = asked(*quantity)?;
+        let is_same = |earlier: &Quantity| asked(*earlier).is_some_and(|earlier| earlier.is(request));
+        (!wanted.iter().take(index).any(is_same)).then(|| request.request_to(route, &()))
+    });
+    all(requests)
+}
+
+/// Builds the requests that set quantities, each message once, for a device model if one is given.
+pub fn set<P: Quantities, T: Destination<Protocol = P>>(
+    model: Option<u8>,
+    values: &[(Quantity, i32)],
+    route: Route<T>,
+) -> Result<impl Iterator<Item = Request<P, ()>>, Error> {
+    values.iter().enumerate().try_for_each(|(index, (quantity, _))| {
+        let quantity = quantity.name();
+        if values.iter().take(index).any(|(earlier, _)| earlier.name() == quantity) {
+            return Err(Error::SetTwice { quantity });
+        }
+        settable::<P>(quantity).map(|_| ()).ok_or(Error::NotSet { quantity })
+    })?;
+    let exchange = |quantity: Quantity| settable::<P>(quantity.name()).map(|path| path.request);
+    let requests = values.iter().enumerate().filter_map(move |(index, (quantity, _))| {
+        let own = exchange(*quantity)?;
+        let is_same = |(earlier, _): &(Quantity, i32)| exchange(*earlier).is_some_and(|earlier| earlier.is(own));
+        (!values.iter().take(index).any(is_same)).then(|| setting::<P, T>(own, model, values, route))
+    });
+    all(requests)
+}
+
+/// Returns the requests, if none is refused.
+fn all<P: Quantities>(
+    requests: impl Iterator<Item = Result<Request<P, ()>, Error>> + Clone,
+) -> Result<impl Iterator<Item = Request<P, ()>>, Error> {
+    requests.clone().try_for_each(|request| request.map(|_| ()))?;
+    Ok(requests.filter_map(Result::ok))
+}
+
+/// Builds the request of one message, with all of its quantities.
+fn setting<P: Quantities, T: Destination<Protocol = P>>(
+    own: &'static Exchange,
+    model: Option<u8>,
+    values: &[(Quantity, i32)],
+    route: Route<T>,
+) -> Result<Request<P, ()>, Error> {
+    if !own.is_of(model) {
+        return Err(Error::Model { message: own.message() });
+    }
+    let mut payload = Payload::within_limits(own.message(), [0; 8]).for_model(model);
+    for path in P::SETS.iter().filter(|path| path.request.is(own)) {
+        let given = values.iter().find(|(quantity, _)| *quantity == path.quantity);
+        let Some((_, value)) = given else {
+            return Err(Error::NotGiven { message: own.message(), quantity: path.quantity.name() });
+        };
+        path.write(*value, &mut payload)?;
+    }
+    own.request_to(route, &Written(*payload.data()))
+}
+
+fn path<P: Quantities>(quantity: Quantity) -> Option<&'static ReadPath> {
+    P::READS.iter().find(|path| path.quantity == quantity)
+}
+
+fn settable<P: Quantities>(quantity: &str) -> Option<&'static SetPath> {
+    P::SETS.iter().find(|path| path.quantity.name() == quantity)
+}
+
+/// The bits of all signals of a message, written before.
+struct Written(Data);
+
+impl Layout for Written {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[];
+    const DECODE: Decode<Self> = |data| Self(*data);
+    const ENCODE: Encode<Self> = |written, payload| {
+        let constants = u64::from_be_bytes(*payload.data());
+        payload.replace((constants | u64::from_be_bytes(written.0)).to_be_bytes());
+        Ok(())
+    };
+}
