@@ -1,6 +1,7 @@
 //! `canspec list`.
 
 mod derivation;
+mod quantities;
 mod timing;
 
 use std::io::{self, BufWriter, Write};
@@ -102,6 +103,7 @@ fn messages(out: &mut impl Write, protocol: &Protocol) -> io::Result<()> {
         writeln!(out, "\nA message without signals below it has at most one, called `{VALUE}`.")?;
     }
     reports(out, protocol)?;
+    quantities::write(out, protocol)?;
     models(out, protocol)?;
     timing::write(out, protocol)
 }

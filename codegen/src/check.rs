@@ -16,6 +16,7 @@ mod no_unit;
 mod nobody_replies;
 mod outside_frame;
 mod overlap;
+mod quantity_path;
 mod range_step;
 mod range_width;
 mod read_only_range;
@@ -44,7 +45,7 @@ use crate::rule::Rule;
 pub(crate) type Check = fn(&Protocol, &mut Diagnostics);
 
 /// The rules on what is meant, in order, each with what looks for breaches; `None` of what examples are tested for.
-pub(crate) const RULES: [(&Rule, Option<Check>); 31] = [
+pub(crate) const RULES: [(&Rule, Option<Check>); 32] = [
     (&outside_frame::OUTSIDE_FRAME, Some(outside_frame::check)),
     (&overlap::OVERLAP, Some(overlap::check)),
     (&grid::GRID, Some(grid::check)),
@@ -65,6 +66,7 @@ pub(crate) const RULES: [(&Rule, Option<Check>); 31] = [
     (&no_match::NO_MATCH, Some(no_match::check)),
     (&refusal::REFUSAL, Some(refusal::check)),
     (&role::ROLE, Some(role::check)),
+    (&rules::QUANTITY_PATH, Some(quantity_path::check)),
     (&unreachable::UNREACHABLE, Some(unreachable::check)),
     (&nobody_replies::NOBODY_REPLIES, Some(nobody_replies::check)),
     (&rust_name::RUST_NAME, Some(rust_name::check)),

@@ -19,6 +19,7 @@ mod message;
 mod note;
 mod numeral;
 mod place;
+mod quantity;
 mod recognition;
 mod set;
 mod signal;
@@ -45,6 +46,7 @@ pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;
 pub use numeral::Numeral;
+pub use quantity::{Fixed, QuantityPaths, SignalPath};
 pub(crate) use recognition::Directions;
 pub use recognition::{Choice, Course, Group, Recognition, Scope};
 pub use set::{Continuation, Set};
@@ -102,6 +104,8 @@ pub struct Protocol {
     pub frames: Table<FrameId, FrameLayout>,
     /// How frames are recognised.
     pub recognition: Recognition,
+    /// Where quantities are read and set, by vendor-neutral names.
+    pub quantities: Vec<QuantityPaths>,
     /// Device models in the order of the spec.
     pub models: Table<ModelId, DeviceModel>,
     /// Times that the document states.

@@ -19,6 +19,7 @@ mod long;
 mod messages;
 mod patterns;
 mod printed;
+mod quantities;
 pub(crate) mod rules;
 mod runs;
 mod scales;
@@ -121,6 +122,7 @@ impl Resolver<'_> {
         let accesses = self.accesses(&modes, &timing);
         let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
         let foreign = self.foreign(&identifier);
+        let quantities = self.quantities(&messages);
         let examples = self.examples(&identifier, &messages);
         let value_examples = self.value_examples();
         let (sequences, types, documents) = (self.sequences(), self.type_docs(), self.documents());
@@ -141,6 +143,7 @@ impl Resolver<'_> {
             modes,
             accesses,
             foreign,
+            quantities,
             messages,
             transports: self.tables.transports,
             long_messages: self.tables.long_messages,

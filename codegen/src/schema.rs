@@ -11,7 +11,7 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use crate::syntax::ast::{ByModel, Field, Map, Means, NamedValue, Names, Spec, ValueOfModels};
+use crate::syntax::ast::{ByModel, Field, Map, Means, NamedValue, Names, SignalPath, Spec, States, ValueOfModels};
 
 /// Returns the schema as indented text that ends in a line feed.
 pub fn schema() -> String {
@@ -131,5 +131,20 @@ impl JsonSchema for ByModel {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (number, each) = (generator.subschema_for::<String>(), generator.subschema_for::<Map<String>>());
         json_schema!({ "anyOf": [number, each] })
+    }
+}
+
+impl JsonSchema for SignalPath {
+    fn schema_name() -> Cow<'static, str> {
+        "SignalPath".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let (path, states) = (generator.subschema_for::<String>(), generator.subschema_for::<States>());
+        json_schema!({ "anyOf": [path, states] })
     }
 }

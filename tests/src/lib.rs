@@ -47,6 +47,11 @@ struct Parts;
 #[doc = include_str!("../../docs/how-to/transport.md")]
 struct Transports;
 
+/// The Rust of the page on quantities compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/quantities.md")]
+struct QuantitiesOfVendors;
+
 /// Runs a test on each protocol.
 pub trait Visitor {
     /// Runs on the protocol whose generated code is `P` and whose spec stands at `path`.

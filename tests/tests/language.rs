@@ -14,7 +14,7 @@ const RULES: &str = "docs/rules.md";
 const HOW_TO: &str = "docs/how-to";
 
 /// Headings of the reference, each with a spec fragment in which `nothing` stands where the keys below that heading may.
-const PLACES: [(&str, &str); 23] = [
+const PLACES: [(&str, &str); 25] = [
     ("The top level", "nothing: x"),
     ("`document`", "document: {title: t, version: v, nothing: x}"),
     ("Fields", "identifier:\n  command: {bits: 28..16, nothing: x}"),
@@ -34,6 +34,8 @@ const PLACES: [(&str, &str); 23] = [
     ("Examples of frames", "examples:\n  start: {frames: [{nothing: x}]}"),
     ("`examples`", "examples:\n  start: {frames: [], nothing: x}"),
     ("`models`", "models:\n  small: {nothing: x}"),
+    ("`quantities`", "quantities:\n  voltage: {nothing: x}"),
+    ("Paths", "quantities:\n  voltage: {read: {signal: a.b, nothing: x}}"),
     ("`timing`", "timing:\n  pause: {time: 1 s, nothing: x}"),
     ("`procedures`", "procedures:\n  start: {steps: [], nothing: x}"),
     ("`errata`", "errata:\n  E1: {kind: note, prints: a, uses: b, because: c, nothing: x}"),

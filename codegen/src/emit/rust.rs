@@ -17,6 +17,7 @@ mod model;
 mod parts;
 mod plan;
 mod protocol;
+mod quantity;
 mod scales;
 mod set;
 mod timing;
@@ -85,8 +86,15 @@ fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
     let types = enumerations.chain(status_words).chain(packed);
     let transports = plan.transports.iter().map(transport::transport);
     let protocol = iter::once_with(move || protocol::protocol(plan, derives)).flatten();
+    let quantities = plan.quantities.iter().map(quantity::quantities);
     let entries = iter::once_with(|| entries::entries(&plan.messages));
-    iter::once(head(plan, derives)).chain(types).chain(messages).chain(transports).chain(protocol).chain(entries)
+    iter::once(head(plan, derives))
+        .chain(types)
+        .chain(messages)
+        .chain(transports)
+        .chain(protocol)
+        .chain(quantities)
+        .chain(entries)
 }
 
 /// Emits what comes before the types and messages: imports, identifier, addresses, accesses and device models.

@@ -27,6 +27,7 @@ rules! {
     MATCH "match" Resolve ERROR;
     MODEL_RANGE "model_range" Check EITHER;
     SET "set" Check ERROR;
+    QUANTITY_PATH "quantity_path" Check ERROR;
     EXAMPLE "example" Check ERROR;
 }
 

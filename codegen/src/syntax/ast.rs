@@ -2,10 +2,12 @@
 
 mod field;
 mod message;
+mod quantity;
 mod reading;
 
 pub use field::{Field, Key};
 pub use message::{Example, Means, Message, Parts, Sequence};
+pub use quantity::{Quantity, SignalPath, States};
 
 use indexmap::IndexMap;
 use serde::Deserialize;
@@ -93,6 +95,10 @@ pub struct Spec {
     /// none if absent.
     #[serde(default)]
     pub messages: Map<Message>,
+    /// Where a program reads and sets what devices of any vendor have, by vendor-neutral names:
+    /// `{output_voltage: {read: output.voltage, set: set_output.voltage}}`; none if absent.
+    #[serde(default)]
+    pub quantities: Map<Quantity>,
     /// Device models by name, and what is different for each:
     /// `{SM75030: {max_parallel: 60, types: {volts: {range: 50..750}}}}`; none if absent.
     #[serde(default)]

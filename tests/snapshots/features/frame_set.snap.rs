@@ -88,6 +88,10 @@ pub enum Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Oven(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {

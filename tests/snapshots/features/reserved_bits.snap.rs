@@ -96,6 +96,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Vehicle(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {

@@ -105,6 +105,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Battery(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -1563,6 +1567,61 @@ impl Protocol for Message {
             _ => task.run(&()),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("battery_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &PackValues::READ)],
+            &PackValues::CUMULATIVE_VOLTAGE,
+        )
+        .asked_by(&PackValues::READ),
+        ReadPath::number(
+            Quantity::new("battery_current"),
+            Some("A"),
+            &[(Kind::Reply, &PackValues::READ)],
+            &PackValues::CURRENT,
+        )
+        .asked_by(&PackValues::READ),
+        ReadPath::number(
+            Quantity::new("state_of_charge"),
+            Some("%"),
+            &[(Kind::Reply, &PackValues::READ)],
+            &PackValues::STATE_OF_CHARGE,
+        )
+        .asked_by(&PackValues::READ),
+        ReadPath::number(
+            Quantity::new("maximum_cell_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &CellVoltageExtremes::READ)],
+            &CellVoltageExtremes::MAXIMUM_VOLTAGE,
+        )
+        .asked_by(&CellVoltageExtremes::READ),
+        ReadPath::number(
+            Quantity::new("minimum_cell_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &CellVoltageExtremes::READ)],
+            &CellVoltageExtremes::MINIMUM_VOLTAGE,
+        )
+        .asked_by(&CellVoltageExtremes::READ),
+        ReadPath::number(
+            Quantity::new("maximum_cell_temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &TemperatureExtremes::READ)],
+            &TemperatureExtremes::MAXIMUM_TEMPERATURE,
+        )
+        .asked_by(&TemperatureExtremes::READ),
+        ReadPath::number(
+            Quantity::new("minimum_cell_temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &TemperatureExtremes::READ)],
+            &TemperatureExtremes::MINIMUM_TEMPERATURE,
+        )
+        .asked_by(&TemperatureExtremes::READ),
+    ];
+    const SETS: &'static [SetPath] = &[];
 }
 
 /// Every message, for programs that go through them without naming one.

@@ -133,6 +133,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Module(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -2052,6 +2056,49 @@ impl Protocol for Message {
             _ => task.run(&()),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &ModuleOutput::READ)],
+            &ModuleOutput::VOLTAGE,
+        )
+        .asked_by(&ModuleOutput::READ),
+        ReadPath::number(
+            Quantity::new("output_current"),
+            Some("A"),
+            &[(Kind::Reply, &ModuleOutput::READ)],
+            &ModuleOutput::CURRENT,
+        )
+        .asked_by(&ModuleOutput::READ),
+        ReadPath::switch(
+            Quantity::new("delivering"),
+            &[(Kind::Reply, &ModuleStatus::READ)],
+            States { place: Place::byte(6).bit(0), inactive: 0x1, active: 0x0 },
+        )
+        .asked_by(&ModuleStatus::READ),
+        ReadPath::number(
+            Quantity::new("temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &ModuleStatus::READ)],
+            &ModuleStatus::TEMPERATURE,
+        )
+        .asked_by(&ModuleStatus::READ),
+        ReadPath::number(Quantity::new("group"), None, &[(Kind::Reply, &ModuleStatus::READ)], &ModuleStatus::GROUP)
+            .asked_by(&ModuleStatus::READ),
+    ];
+    const SETS: &'static [SetPath] = &[
+        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetModuleOutput::SET, &SetModuleOutput::VOLTAGE),
+        SetPath::number(Quantity::new("output_current"), Some("A"), &SetModuleOutput::SET, &SetModuleOutput::CURRENT),
+        SetPath::switch(
+            Quantity::new("delivering"),
+            &SwitchModules::SET,
+            States { place: Place::byte(0), inactive: 0x01, active: 0x00 },
+        ),
+    ];
 }
 
 /// Every message, for programs that go through them without naming one.

@@ -150,6 +150,10 @@ pub enum Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Psu(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -3474,6 +3478,80 @@ impl Protocol for Message {
             _ => task.run(&()),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &OutputVoltage::GET), (Kind::Reply, &OutputVoltage::READ_ALL_MEASURED_DATA)],
+            &OutputVoltage::VALUE,
+        )
+        .asked_by(&OutputVoltage::GET),
+        ReadPath::number(
+            Quantity::new("output_current"),
+            Some("A"),
+            &[(Kind::Reply, &OutputCurrent2::GET), (Kind::Reply, &OutputCurrent2::READ_ALL_MEASURED_DATA)],
+            &OutputCurrent2::VALUE,
+        )
+        .asked_by(&OutputCurrent2::GET),
+        ReadPath::number(
+            Quantity::new("output_power"),
+            Some("W"),
+            &[(Kind::Reply, &OutputPower::GET), (Kind::Reply, &OutputPower::READ_ALL_MEASURED_DATA)],
+            &OutputPower::VALUE,
+        )
+        .asked_by(&OutputPower::GET),
+        ReadPath::number(
+            Quantity::new("temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &OutputTemperature::GET), (Kind::Reply, &OutputTemperature::READ_ALL_MEASURED_DATA)],
+            &OutputTemperature::VALUE,
+        )
+        .asked_by(&OutputTemperature::GET),
+        ReadPath::number(
+            Quantity::new("input_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &InputVoltage::GET), (Kind::Reply, &InputVoltage::READ_ALL_MEASURED_DATA)],
+            &InputVoltage::VALUE,
+        )
+        .asked_by(&InputVoltage::GET),
+        ReadPath::number(
+            Quantity::new("input_current"),
+            Some("A"),
+            &[(Kind::Reply, &InputCurrent::GET), (Kind::Reply, &InputCurrent::READ_ALL_MEASURED_DATA)],
+            &InputCurrent::VALUE,
+        )
+        .asked_by(&InputCurrent::GET),
+        ReadPath::number(
+            Quantity::new("input_power"),
+            Some("W"),
+            &[(Kind::Reply, &InputPower::GET), (Kind::Reply, &InputPower::READ_ALL_MEASURED_DATA)],
+            &InputPower::VALUE,
+        )
+        .asked_by(&InputPower::GET),
+        ReadPath::number(
+            Quantity::new("input_frequency"),
+            Some("Hz"),
+            &[(Kind::Reply, &InputFrequency::GET), (Kind::Reply, &InputFrequency::READ_ALL_MEASURED_DATA)],
+            &InputFrequency::VALUE,
+        )
+        .asked_by(&InputFrequency::GET),
+    ];
+    const SETS: &'static [SetPath] = &[
+        SetPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &OutputVoltageSetting::SET,
+            &OutputVoltageSetting::VALUE,
+        ),
+        SetPath::switch(
+            Quantity::new("delivering"),
+            &Standby::SET,
+            States { place: Place::byte(3), inactive: 0x01, active: 0x00 },
+        ),
+    ];
 }
 
 /// Every message, for programs that go through them without naming one.

@@ -123,6 +123,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Module(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -2228,6 +2232,78 @@ impl Protocol for Message {
             _ => task.run(&()),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &ModuleOutput::READ)],
+            &ModuleOutput::VOLTAGE,
+        )
+        .asked_by(&ModuleOutput::READ),
+        ReadPath::number(
+            Quantity::new("output_current"),
+            Some("A"),
+            &[(Kind::Reply, &ModuleOutput::READ)],
+            &ModuleOutput::CURRENT,
+        )
+        .asked_by(&ModuleOutput::READ),
+        ReadPath::switch(
+            Quantity::new("delivering"),
+            &[(Kind::Reply, &ModuleStatus::READ)],
+            States { place: Place::byte(6).bit(0), inactive: 0x1, active: 0x0 },
+        )
+        .asked_by(&ModuleStatus::READ),
+        ReadPath::number(
+            Quantity::new("temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &ModuleStatus::READ)],
+            &ModuleStatus::TEMPERATURE,
+        )
+        .asked_by(&ModuleStatus::READ),
+        ReadPath::number(Quantity::new("group"), None, &[(Kind::Reply, &ModuleStatus::READ)], &ModuleStatus::GROUP)
+            .asked_by(&ModuleStatus::READ),
+        ReadPath::number(
+            Quantity::new("minimum_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &ModuleLimits::READ)],
+            &ModuleLimits::MINIMUM_VOLTAGE,
+        )
+        .asked_by(&ModuleLimits::READ),
+        ReadPath::number(
+            Quantity::new("maximum_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &ModuleLimits::READ)],
+            &ModuleLimits::MAXIMUM_VOLTAGE,
+        )
+        .asked_by(&ModuleLimits::READ),
+        ReadPath::number(
+            Quantity::new("maximum_current"),
+            Some("A"),
+            &[(Kind::Reply, &ModuleLimits::READ)],
+            &ModuleLimits::MAXIMUM_CURRENT,
+        )
+        .asked_by(&ModuleLimits::READ),
+        ReadPath::number(
+            Quantity::new("rated_power"),
+            Some("W"),
+            &[(Kind::Reply, &ModuleLimits::READ)],
+            &ModuleLimits::RATED_POWER,
+        )
+        .asked_by(&ModuleLimits::READ),
+    ];
+    const SETS: &'static [SetPath] = &[
+        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetModuleOutput::SET, &SetModuleOutput::VOLTAGE),
+        SetPath::number(Quantity::new("output_current"), Some("A"), &SetModuleOutput::SET, &SetModuleOutput::CURRENT),
+        SetPath::switch(
+            Quantity::new("delivering"),
+            &SwitchModules::SET,
+            States { place: Place::byte(0), inactive: 0x01, active: 0x00 },
+        ),
+        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP),
+    ];
 }
 
 /// Every message, for programs that go through them without naming one.

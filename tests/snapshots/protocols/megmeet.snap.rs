@@ -131,6 +131,10 @@ pub enum Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Module(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -5765,6 +5769,93 @@ impl Protocol for Message {
             _ => task.run(&()),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &OutputVoltage::READ), (Kind::Reply, &OutputVoltage::READ_ALL_REAL_TIME_DATA)],
+            &OutputVoltage::VALUE,
+        )
+        .asked_by(&OutputVoltage::READ),
+        ReadPath::number(
+            Quantity::new("output_current"),
+            Some("A"),
+            &[(Kind::Reply, &OutputCurrent::READ), (Kind::Reply, &OutputCurrent::READ_ALL_REAL_TIME_DATA)],
+            &OutputCurrent::VALUE,
+        )
+        .asked_by(&OutputCurrent::READ),
+        ReadPath::number(
+            Quantity::new("output_power"),
+            Some("W"),
+            &[(Kind::Reply, &OutputPower::READ), (Kind::Reply, &OutputPower::READ_ALL_REAL_TIME_DATA)],
+            &OutputPower::VALUE,
+        )
+        .asked_by(&OutputPower::READ),
+        ReadPath::switch(
+            Quantity::new("delivering"),
+            &[(Kind::Reply, &ModuleStatus::READ), (Kind::Reply, &ModuleStatus::READ_ALL_REAL_TIME_DATA)],
+            States { place: Place::byte(6).bit(1), inactive: 0x1, active: 0x0 },
+        )
+        .asked_by(&ModuleStatus::READ),
+        ReadPath::number(
+            Quantity::new("temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &AmbientTemperature::READ), (Kind::Reply, &AmbientTemperature::READ_ALL_REAL_TIME_DATA)],
+            &AmbientTemperature::VALUE,
+        )
+        .asked_by(&AmbientTemperature::READ),
+        ReadPath::number(
+            Quantity::new("input_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &InputVoltage::READ), (Kind::Reply, &InputVoltage::READ_ALL_REAL_TIME_DATA)],
+            &InputVoltage::VALUE,
+        )
+        .asked_by(&InputVoltage::READ),
+        ReadPath::number(
+            Quantity::new("input_current"),
+            Some("A"),
+            &[(Kind::Reply, &InputCurrent::READ), (Kind::Reply, &InputCurrent::READ_ALL_REAL_TIME_DATA)],
+            &InputCurrent::VALUE,
+        )
+        .asked_by(&InputCurrent::READ),
+        ReadPath::number(
+            Quantity::new("input_power"),
+            Some("W"),
+            &[(Kind::Reply, &InputPower::READ), (Kind::Reply, &InputPower::READ_ALL_REAL_TIME_DATA)],
+            &InputPower::VALUE,
+        )
+        .asked_by(&InputPower::READ),
+        ReadPath::number(
+            Quantity::new("input_frequency"),
+            Some("Hz"),
+            &[(Kind::Reply, &InputFrequency::READ), (Kind::Reply, &InputFrequency::READ_ALL_REAL_TIME_DATA)],
+            &InputFrequency::VALUE,
+        )
+        .asked_by(&InputFrequency::READ),
+        ReadPath::number(
+            Quantity::new("rated_current"),
+            Some("A"),
+            &[(Kind::Reply, &RatedCurrent::READ)],
+            &RatedCurrent::VALUE,
+        )
+        .asked_by(&RatedCurrent::READ),
+    ];
+    const SETS: &'static [SetPath] = &[
+        SetPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &OutputVoltageSetting::SET,
+            &OutputVoltageSetting::VALUE,
+        ),
+        SetPath::switch(
+            Quantity::new("delivering"),
+            &SwitchModules::SET,
+            States { place: Place::byte(3), inactive: 0x01, active: 0x00 },
+        ),
+    ];
 }
 
 /// Every message, for programs that go through them without naming one.

@@ -156,6 +156,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Module(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -2613,6 +2617,83 @@ impl Protocol for Message {
             _ => task.run(&()),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &OutputVoltage::READ)],
+            &OutputVoltage::VALUE,
+        )
+        .asked_by(&OutputVoltage::READ),
+        ReadPath::number(
+            Quantity::new("output_current"),
+            Some("A"),
+            &[(Kind::Reply, &OutputCurrent::READ)],
+            &OutputCurrent::VALUE,
+        )
+        .asked_by(&OutputCurrent::READ),
+        ReadPath::switch(
+            Quantity::new("delivering"),
+            &[(Kind::Reply, &ModuleStatus::READ)],
+            States { place: Place::byte(5).bit(6), inactive: 0x1, active: 0x0 },
+        )
+        .asked_by(&ModuleStatus::READ),
+        ReadPath::number(
+            Quantity::new("temperature"),
+            Some("°C"),
+            &[(Kind::Reply, &AmbientTemperature::READ)],
+            &AmbientTemperature::VALUE,
+        )
+        .asked_by(&AmbientTemperature::READ),
+        ReadPath::number(
+            Quantity::new("input_voltage"),
+            Some("V"),
+            &[(Kind::Reply, &InputVoltage::READ)],
+            &InputVoltage::VALUE,
+        )
+        .asked_by(&InputVoltage::READ),
+        ReadPath::number(
+            Quantity::new("input_power"),
+            Some("W"),
+            &[(Kind::Reply, &InputPower::READ)],
+            &InputPower::VALUE,
+        )
+        .asked_by(&InputPower::READ),
+        ReadPath::number(
+            Quantity::new("rated_current"),
+            Some("A"),
+            &[(Kind::Reply, &RatedCurrent::READ)],
+            &RatedCurrent::VALUE,
+        )
+        .asked_by(&RatedCurrent::READ),
+        ReadPath::number(
+            Quantity::new("rated_power"),
+            Some("W"),
+            &[(Kind::Reply, &RatedPower::READ)],
+            &RatedPower::VALUE,
+        )
+        .asked_by(&RatedPower::READ),
+        ReadPath::number(
+            Quantity::new("group"),
+            None,
+            &[(Kind::Reply, &GroupAndAddress::READ)],
+            &GroupAndAddress::GROUP,
+        )
+        .asked_by(&GroupAndAddress::READ),
+    ];
+    const SETS: &'static [SetPath] = &[
+        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetOutputVoltage::SET, &SetOutputVoltage::VALUE),
+        SetPath::number(Quantity::new("output_current"), Some("A"), &SetOutputCurrent::SET, &SetOutputCurrent::VALUE),
+        SetPath::switch(
+            Quantity::new("delivering"),
+            &SwitchModules::SET,
+            States { place: Place::bytes(4, 7), inactive: 0x0001_0000, active: 0x0000_0000 },
+        ),
+        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP),
+    ];
 }
 
 /// Every message, for programs that go through them without naming one.

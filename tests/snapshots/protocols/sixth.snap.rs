@@ -93,6 +93,10 @@ pub enum Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Rectifier(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {

@@ -118,6 +118,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Module(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -1069,6 +1073,61 @@ impl Protocol for Message {
             Self::SetAddress(message) => task.run(message),
         }
     }
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[
+        ReadPath::number(
+            Quantity::new("output_voltage"),
+            Some("V"),
+            &[(Kind::Report, &OutputValues::REPORT)],
+            &OutputValues::VOLTAGE,
+        ),
+        ReadPath::number(
+            Quantity::new("output_current"),
+            Some("A"),
+            &[(Kind::Report, &OutputValues::REPORT)],
+            &OutputValues::CURRENT,
+        ),
+        ReadPath::number(
+            Quantity::new("output_power"),
+            Some("W"),
+            &[(Kind::Report, &OutputValues::REPORT)],
+            &OutputValues::POWER,
+        ),
+        ReadPath::switch(
+            Quantity::new("delivering"),
+            &[(Kind::Report, &ReferenceValues::REPORT)],
+            States { place: Place::byte(1), inactive: 0x00, active: 0x80 },
+        ),
+        ReadPath::number(
+            Quantity::new("temperature"),
+            Some("°C"),
+            &[(Kind::Report, &TemperatureValues::REPORT)],
+            &TemperatureValues::TEMPERATURE,
+        ),
+        ReadPath::number(
+            Quantity::new("minimum_voltage"),
+            Some("V"),
+            &[(Kind::Report, &ReferenceValues::REPORT)],
+            &ReferenceValues::MINIMUM_VOLTAGE,
+        ),
+        ReadPath::number(
+            Quantity::new("maximum_voltage"),
+            Some("V"),
+            &[(Kind::Report, &ReferenceValues::REPORT)],
+            &ReferenceValues::MAXIMUM_VOLTAGE,
+        ),
+    ];
+    const SETS: &'static [SetPath] = &[
+        SetPath::number(Quantity::new("output_voltage"), Some("V"), &Control::SET, &Control::VOLTAGE)
+            .with(&[(Place::byte(0), 0x01)]),
+        SetPath::switch(
+            Quantity::new("delivering"),
+            &Control::SET,
+            States { place: Place::byte(1), inactive: 0x00, active: 0x80 },
+        ),
+    ];
 }
 
 /// Every message, for programs that go through them without naming one.

@@ -121,6 +121,16 @@ fn sent_by(Sender { argument, number, comment }: &Sender) -> TokenStream {
     }
 }
 
+/// Emits the function that returns the target of one module.
+fn module(Target { variant, number, .. }: &Target) -> TokenStream {
+    let number = if *number == Some(Number::I32) { quote!(number) } else { quote!(number.try_into().ok()?) };
+    quote! {
+        fn module(number: i32) -> Option<Target> {
+            Some(Target::#variant(#number))
+        }
+    }
+}
+
 fn destination(variants: &[Target], ways: &[Way]) -> TokenStream {
     let modes = variants.iter().map(|Target { variant, mode, number, .. }| {
         let (index, number) = (Literal::usize_unsuffixed(mode.place()), number.map(|_| quote!((_))));
@@ -129,9 +139,12 @@ fn destination(variants: &[Target], ways: &[Way]) -> TokenStream {
     let request = request(variants);
     let replies = replies(variants);
     let route = route(ways);
+    let module = variants.iter().find(|target| target.is_module).map(module);
     quote! {
         impl Addressed for Message {
             type Target = Target;
+
+            #module
         }
 
         impl Destination for Target {

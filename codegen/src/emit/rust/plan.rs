@@ -15,6 +15,7 @@ pub mod message;
 pub mod models;
 pub mod naming;
 pub mod place;
+pub mod quantity;
 pub mod recognition;
 pub mod rows;
 pub mod scales;
@@ -41,6 +42,7 @@ use identifier::{Base, Identifier};
 use message::Message;
 use models::Models;
 use naming::Pool;
+use quantity::Quantities;
 use recognition::Direction;
 use selector::{InData, Selectors, Source};
 use set::Set;
@@ -100,6 +102,8 @@ pub struct Plan {
     pub replies: Option<Direction>,
     /// How frames are recognised whose identifier does not show the direction, if there are any.
     pub either: Option<Direction>,
+    /// Where quantities are read and set, if there are any.
+    pub quantities: Option<Quantities>,
     /// Whether foreign identifiers can show what chooses a message.
     pub foreign_like_own: bool,
 }
@@ -151,6 +155,7 @@ impl Plan {
             replies: planner.direction(&course.replies),
             either: planner.direction(&course.either),
             foreign_like_own: identifier::foreign_like_own(protocol),
+            quantities: Quantities::new(protocol, &messages),
             accesses: accesses.shared,
             models,
             messages,

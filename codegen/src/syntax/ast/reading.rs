@@ -1,5 +1,5 @@
 //! Reads what can be written in several ways: one name or a list, a place or a field, a value or a
-//! map. A number can be one for each model.
+//! map. A number can be one for each model, and a path can have states.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::{ByModel, Field, IdentifierEntry, Map, Means, NamedValue, Names, ValueOfModels};
+use super::{ByModel, Field, IdentifierEntry, Map, Means, NamedValue, Names, SignalPath, States, ValueOfModels};
 
 impl<'de> Deserialize<'de> for Names {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -121,5 +121,29 @@ impl<'de> Deserialize<'de> for ByModel {
             }
         }
         deserializer.deserialize_any(ByModelVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for SignalPath {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PathVisitor;
+        impl<'de> Visitor<'de> for PathVisitor {
+            type Value = SignalPath;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a message and its signal such as `output.voltage`, or a map with `signal`")
+            }
+
+            fn visit_str<E>(self, signal: &str) -> Result<SignalPath, E> {
+                Ok(SignalPath { signal: signal.to_owned(), states: None, with: Map::new(), is_map: false })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<SignalPath, A::Error> {
+                let States { signal, active, inactive, with } = States::deserialize(MapAccessDeserializer::new(map))?;
+                let states = (active.is_some() || inactive.is_some()).then_some([inactive, active]);
+                Ok(SignalPath { signal, states, with, is_map: true })
+            }
+        }
+        deserializer.deserialize_any(PathVisitor)
     }
 }

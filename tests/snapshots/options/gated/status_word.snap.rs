@@ -91,6 +91,10 @@ pub enum Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Heater(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {

@@ -6,7 +6,7 @@ use super::doc::{self, Comment};
 use super::identifier::field_place;
 use super::literal::{decimal, hexadecimal};
 use super::naming::{Pool, camel_case, ident, screaming};
-use crate::model::{self, AddressPattern, AddressTypeId, Doc, ModeId, Protocol, Table};
+use crate::model::{self, AddressPattern, AddressTypeId, Doc, ModeId, Protocol, Table, Who};
 
 /// A kind of address.
 pub struct AddressType {
@@ -96,6 +96,8 @@ pub struct Target {
     pub mode: ModeId,
     /// Type of its number, if it has one.
     pub number: Option<Number>,
+    /// Whether its number is that of a module, which answers alone.
+    pub is_module: bool,
     /// What the identifier of a request shows.
     pub request: Vec<Shown>,
     /// Who answers, and what the identifiers of these replies show, as far as the request says it.
@@ -281,6 +283,7 @@ impl Target {
             comment: Comment::item(protocol, &errata_elsewhere, &sentence, None),
             mode: id,
             number: address.map(Number::of),
+            is_module: mode.target.is_some() && protocol.node(mode, Some(Who::One)) == mode.target,
             request: shown(request),
             replies: replies.collect(),
         }

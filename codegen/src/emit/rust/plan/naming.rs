@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 93] = [
+const TAKEN: [&str; 98] = [
     "Address",
     "AddressType",
     "Addressed",
@@ -74,7 +74,10 @@ const TAKEN: [&str; 93] = [
     "Place",
     "Problem",
     "Protocol",
+    "Quantities",
+    "Quantity",
     "Raw",
+    "ReadPath",
     "Reading",
     "Received",
     "Replies",
@@ -87,10 +90,12 @@ const TAKEN: [&str; 93] = [
     "Selector",
     "Self",
     "Send",
+    "SetPath",
     "Severity",
     "Shown",
     "Signal",
     "Some",
+    "States",
     "StatusBit",
     "String",
     "Sync",

@@ -1,0 +1,41 @@
+//! Where quantities are read and set.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::plan::quantity::{Quantities, Read, Set, States, Value};
+
+/// Emits where quantities are read and set.
+pub fn quantities(Quantities { reads, sets }: &Quantities) -> TokenStream {
+    let (reads, sets) = (reads.iter().map(read), sets.iter().map(set));
+    quote! {
+        impl Quantities for Message {
+            const READS: &'static [ReadPath] = &[#(#reads),*];
+            const SETS: &'static [SetPath] = &[#(#sets),*];
+        }
+    }
+}
+
+fn read(Read { value, frames, request }: &Read) -> TokenStream {
+    let frames = frames.iter().map(|(kind, exchange)| quote!((Kind::#kind, #exchange)));
+    let path = path(&quote!(ReadPath), value, &quote!(&[#(#frames),*]));
+    let asked = request.as_ref().map(|request| quote!(.asked_by(#request)));
+    quote!(#path #asked)
+}
+
+fn set(Set { value, request, others }: &Set) -> TokenStream {
+    let path = path(&quote!(SetPath), value, request);
+    let rows = others.iter().map(|(place, bits)| quote!((#place, #bits)));
+    let with = (!others.is_empty()).then(|| quote!(.with(&[#(#rows),*])));
+    quote!(#path #with)
+}
+
+fn path(kind: &TokenStream, Value { name, unit, states }: &Value, frames: &TokenStream) -> TokenStream {
+    let unit = unit.as_ref().map_or_else(|| quote!(None), |unit| quote!(Some(#unit)));
+    match states {
+        Ok(signal) => quote!(#kind::number(Quantity::new(#name), #unit, #frames, #signal)),
+        Err(States { place, inactive, active }) => {
+            quote!(#kind::switch(Quantity::new(#name), #frames, States { place: #place, inactive: #inactive, active: #active }))
+        }
+    }
+}

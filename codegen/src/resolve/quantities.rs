@@ -1,0 +1,161 @@
+//! Resolves quantities: vendor-neutral names to signals.
+
+use super::Resolver;
+use crate::diagnostic::At;
+use crate::encoding::said;
+use crate::model::{Fixed, Message, MessageId, QuantityPaths, Said, Signal, SignalId, SignalPath, Table};
+use crate::resolve::rules;
+use crate::syntax::ast;
+use crate::syntax::tree::Path;
+
+/// How a path is written.
+const FORM: &str = "write the message and its signal, as in `output.voltage`, and a status bit behind its word";
+
+impl Resolver<'_> {
+    pub fn quantities(&mut self, messages: &Table<MessageId, Message>) -> Vec<QuantityPaths> {
+        let root = Path::default().key("quantities");
+        let entries = self.spec.quantities.iter();
+        entries.map(|(name, written)| self.quantity_paths(&root.key(name), name, written, messages)).collect()
+    }
+
+    fn quantity_paths(
+        &mut self,
+        path: &Path,
+        name: &str,
+        written: &ast::Quantity,
+        messages: &Table<MessageId, Message>,
+    ) -> QuantityPaths {
+        self.check_name(path, name);
+        if written.read.is_none() && written.set.is_none() {
+            let text = format!("`{name}` is neither read nor set");
+            self.error_with_help(
+                &rules::QUANTITY_PATH,
+                path.at_key(),
+                text,
+                "write its `read` or its `set`, or take it out",
+            );
+        }
+        let mut at = |key: &str, known: &Option<ast::SignalPath>| {
+            known.as_ref().and_then(|known| self.signal_path(&path.key(key), known, messages))
+        };
+        let (read, set) = (at("read", &written.read), at("set", &written.set));
+        if let Some(fixed) = written.read.as_ref().filter(|read| !read.with.is_empty()) {
+            let first = fixed.with.keys().next().map_or("", String::as_str);
+            let text = format!("nothing is sent with what is read, so `{first}` has no meaning here");
+            let help = "write `with` at `set`, or take it out";
+            self.error_with_help(&rules::MISPLACED_KEY, path.key("read").key("with").at_key(), text, help);
+        }
+        QuantityPaths { name: name.to_owned(), read, set, path: path.clone() }
+    }
+
+    fn signal_path(
+        &mut self,
+        path: &Path,
+        written: &ast::SignalPath,
+        messages: &Table<MessageId, Message>,
+    ) -> Option<SignalPath> {
+        let at = if written.is_map { path.key("signal") } else { path.clone() };
+        let parts: Vec<_> = written.signal.split('.').collect();
+        let ([message, signal] | [message, signal, _]) = parts[..] else {
+            let text = format!("`{}` is no path to a signal", written.signal);
+            self.error_with_help(&rules::QUANTITY_PATH, at.at_value(), text, FORM);
+            return None;
+        };
+        let known = self.spec.messages.keys().map(String::as_str);
+        self.lookup(&at, "message", message, known)?;
+        // A message with an error of its own is none.
+        let id = messages.position(|known| known.name == message)?;
+        let message = &messages[id];
+        if message.long.is_some() {
+            let text = format!("`{}` travels in several frames", message.name);
+            let help = "a quantity is a signal of one frame; leave it out";
+            self.error_with_help(&rules::QUANTITY_PATH, at.at_value(), text, help);
+            return None;
+        }
+        let found = self.signal_of(at.at_value(), signal, message)?;
+        let known = &message[found];
+        let place = match parts.get(2) {
+            Some(bit) => known.place.bit(self.status_bit_of(&at, known, bit)?),
+            None => known.place,
+        };
+        let states = match &written.states {
+            Some(states) => Some(self.states(path, known, parts.len() > 2, states)?),
+            None => None,
+        };
+        let with = written.with.iter();
+        let with = with.filter_map(|(name, text)| self.fixed_value(&path.key("with").key(name), name, text, message));
+        let bit = parts.get(2).map(|name| (*name).to_owned());
+        Some(SignalPath { message: id, signal: found, bit, place, states, with: with.collect(), path: at })
+    }
+
+    /// Finds a signal by its name, unless its field has an error of its own.
+    fn signal_of(&mut self, at: At, name: &str, message: &Message) -> Option<SignalId> {
+        let found = message.signals.position(|signal| signal.name == name);
+        let given_up = self.tables.given_up.get(&message.name).is_some_and(|names| names.contains(name));
+        if found.is_none() && !given_up {
+            let names: Vec<_> = message.signals.iter().map(|signal| signal.name.as_str()).collect();
+            self.report_name(at, "signal", name, &names, None);
+        }
+        found
+    }
+
+    fn status_bit_of(&mut self, path: &Path, signal: &Signal, name: &str) -> Option<u8> {
+        let Some(word) = signal.encoding.status_word() else {
+            let text = format!("`{}` is no status word, so it has no bit `{name}`", signal.name);
+            self.error_with_help(&rules::QUANTITY_PATH, path.at_value(), text, "name the signal alone");
+            return None;
+        };
+        let bits = self.tables.status_words[word].bits.clone();
+        let names = bits.iter().map(|bit| bit.name.as_str());
+        self.lookup(path, "status bit", name, names).map(|index| bits[index].bit)
+    }
+
+    /// Reads the states of a switch, the one that is off first.
+    fn states(&mut self, path: &Path, signal: &Signal, is_bit: bool, states: &[Option<String>; 2]) -> Option<[u64; 2]> {
+        let [Some(inactive), Some(active)] = states else {
+            let missing = if states[0].is_none() { "inactive" } else { "active" };
+            let text = format!("this switch has no state `{missing}`");
+            let help = "write both states, as in `active: 0, inactive: 1`; a number has none";
+            self.error_with_help(&rules::QUANTITY_PATH, path.at_key(), text, help);
+            return None;
+        };
+        let (inactive, active) = (
+            self.state(&path.key("inactive"), signal, is_bit, inactive),
+            self.state(&path.key("active"), signal, is_bit, active),
+        );
+        let (inactive, active) = (inactive?, active?);
+        if inactive == active {
+            let text = "both states of this switch are the same".to_owned();
+            let help = "write the values as the document prints them, one for each state";
+            self.error_with_help(&rules::QUANTITY_PATH, path.key("inactive").at_value(), text, help);
+            return None;
+        }
+        Some([inactive, active])
+    }
+
+    /// Reads the bits of a state: a named value, or a raw one.
+    fn state(&mut self, path: &Path, signal: &Signal, is_bit: bool, text: &str) -> Option<u64> {
+        let known = signal.encoding.enumeration().map(|id| self.tables.enumerations[id].values.clone());
+        let known = known.filter(|_| !text.starts_with(|first: char| first.is_ascii_digit()));
+        if let Some(values) = known {
+            let names = values.iter().map(|value| value.name.as_str());
+            let index = self.lookup(path, "named value", text, names)?;
+            return signal.bits_of(values[index].raw);
+        }
+        let last = if is_bit { 1 } else { signal.place.max() };
+        self.integer(path, text, 0, last)
+    }
+
+    /// Reads the value that another signal of the request always has.
+    fn fixed_value(&mut self, path: &Path, name: &str, text: &str, message: &Message) -> Option<Fixed> {
+        let signal = self.signal_of(path.at_key(), name, message)?;
+        let misfit = match said(self.words(), &message[signal], text) {
+            Ok(Said::Bits(bits)) => return Some(Fixed { signal, bits, path: path.clone() }),
+            Ok(Said::Rounded(_) | Said::Text(_)) => format!("`{text}` is no exact value of `{name}`").into(),
+            Err(misfit) => misfit,
+        };
+        let help = misfit.help.unwrap_or_else(|| "write a value of the signal, as in `means`".to_owned());
+        self.error_with_help(&rules::VALUE, path.at_value(), misfit.why, help);
+        None
+    }
+}
