@@ -12,6 +12,7 @@ pub mod keys;
 mod messages;
 mod names;
 mod numbers;
+mod quantities;
 pub mod run;
 pub mod yaml;
 
@@ -43,6 +44,7 @@ impl Spec {
         let mut root = draft.spec();
         if let Ok(protocol) = protocol(&written(&root)) {
             draft.add_examples(&mut root, &protocol);
+            draft.add_quantities(&mut root, &protocol);
         }
         Self { seed, text: written(&root), tree: root }
     }

@@ -10,8 +10,8 @@ use canspec_runtime::plumbing::{Physical, Raw};
 use canspec_runtime::sim::{Answer, Bench, Device, Faults, Random, Rules};
 use canspec_runtime::transfers::{self, Filled, Grouped, Transferred, Transport};
 use canspec_runtime::{
-    Addressed, AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Reading,
-    Received, Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
+    Addressed, AnySignal, Destination, Error, FrameSet, Layout, LongLayout, Meaning, Problem, Protocol, Quantities,
+    Quantity, Reading, Received, Request, Route, Signal, WriteSignal, embedded_can::Frame as _, isotp, tp,
 };
 
 use crate::unknown::{Unknown, unknown};
@@ -46,6 +46,23 @@ pub fn echo<P: Protocol + Unknown>() {
     if let Ok(received) = Received::<P>::decode(&unknown_frame()) {
         sink(received.content());
         sink(received.with_content(unknown()).encode());
+    }
+}
+
+/// Reads and sets quantities.
+pub fn quantities<P: Quantities + Addressed<Target: Unknown>>() {
+    if let Ok(received) = Received::<P>::decode(&unknown_frame()) {
+        P::READS.iter().for_each(|path| sink(received.quantity(path.quantity)));
+    }
+    let values = [(Quantity::OUTPUT_VOLTAGE, unknown()), (Quantity::DELIVERING, unknown())];
+    if let Ok(requests) = P::read(&values.map(|(quantity, _)| quantity), unknown::<P::Target>()) {
+        requests.for_each(sink);
+    }
+    if let Ok(requests) = P::set(&values, unknown::<P::Target>()) {
+        requests.for_each(sink);
+    }
+    if let Ok(requests) = P::set_within(unknown::<u8>(), &values, unknown::<P::Target>()) {
+        requests.for_each(sink);
     }
 }
 

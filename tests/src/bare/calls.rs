@@ -179,6 +179,7 @@ fn provided(block: &ItemImpl) -> TokenStream {
         Some("Transferred") => quote!(calls::transferred::<#owner>();),
         Some("Destination") => quote!(calls::questions::<#owner>(); calls::client::<#owner>();),
         Some("Protocol") => quote!(calls::received::<#owner>(); calls::entries::<#owner>();),
+        Some("Quantities") => quote!(calls::quantities::<#owner>();),
         Some("FrameSet") => quote!(calls::assembler::<#owner>();),
         Some("Display") => quote!(calls::text(&unknown::<#owner>());),
         _ => TokenStream::new(),

@@ -1,0 +1,119 @@
+//! Quantities of a random spec: names for some of its signals.
+
+use canspec_codegen::model::{Encoding, FrameLayout, Kind, Message, Protocol, Signal};
+use serde_yaml::Value;
+
+use super::draft::Draft;
+use super::names::Scope;
+use super::yaml::Map;
+
+impl Draft {
+    /// Gives names to some signals of replies, reports and requests.
+    pub fn add_quantities(&mut self, root: &mut Value, protocol: &Protocol) {
+        if self.chance(40) {
+            return;
+        }
+        let (mut quantities, mut scope) = (Map::default(), Scope::default());
+        let messages = protocol.messages.iter().filter(|message| message.long.is_none() && message.set.is_none());
+        for message in messages.take(6) {
+            let frames = || protocol.frames_of(message).filter(|frame| frame.long.is_none());
+            if let Some(frame) = frames().find(|frame| !frame.is_to_module()) {
+                self.read_quantities(protocol, message, frame, (&mut quantities, &mut scope));
+            }
+            let asks = |frame: &&FrameLayout| frame.kind == Kind::Request && frame.set.is_none();
+            if let Some(frame) = frames().filter(asks).find(|frame| !frame.signals.is_empty()) {
+                self.set_quantities(protocol, message, frame, (&mut quantities, &mut scope));
+            }
+        }
+        if let (false, Some(root)) = (quantities.is_empty(), root.as_mapping_mut()) {
+            root.insert("quantities".into(), quantities.into());
+        }
+    }
+
+    fn read_quantities(
+        &mut self,
+        protocol: &Protocol,
+        message: &Message,
+        frame: &FrameLayout,
+        (quantities, scope): (&mut Map, &mut Scope),
+    ) {
+        for id in frame.signals.iter().take(3) {
+            if let Some(path) = self.quantity_path(protocol, message, &message[*id]) {
+                let name = self.names.plain(scope);
+                quantities.put(name, Map::of([("read", path)]));
+            }
+        }
+    }
+
+    /// Sets all fields of a request: the first ones by quantities, the others by what they always are.
+    fn set_quantities(
+        &mut self,
+        protocol: &Protocol,
+        message: &Message,
+        frame: &FrameLayout,
+        (quantities, scope): (&mut Map, &mut Scope),
+    ) {
+        if frame.lengths.len() > 1 {
+            return;
+        }
+        let signals: Vec<&Signal> = frame.signals.iter().map(|id| &message[*id]).collect();
+        let count = 1 + self.random.usize(..signals.len());
+        let (set, fixed) = signals.split_at(count);
+        let paths: Option<Vec<_>> = set.iter().map(|signal| self.quantity_path(protocol, message, signal)).collect();
+        let fixed: Option<Vec<_>> =
+            fixed.iter().map(|signal| Some((signal.name.clone(), first_name(protocol, signal)?))).collect();
+        let (Some(paths), Some(fixed)) = (paths, fixed) else { return };
+        for (index, path) in paths.into_iter().enumerate() {
+            let path = if index == 0 && !fixed.is_empty() { with(path, &fixed) } else { path };
+            let name = self.names.plain(scope);
+            quantities.put(name, Map::of([("set", path)]));
+        }
+    }
+
+    /// Returns the path to a signal, if it is a number with a unit or has states.
+    fn quantity_path(&mut self, protocol: &Protocol, message: &Message, signal: &Signal) -> Option<Value> {
+        let path = format!("{}.{}", message.name, signal.name);
+        let (path, states) = match signal.encoding {
+            Encoding::Number { .. } | Encoding::Float => {
+                signal.unit?;
+                return Some(if self.chance(80) { path.into() } else { Map::of([("signal", path)]).into() });
+            }
+            Encoding::Named(id) => {
+                let [first, second, ..] = protocol[id].values.as_slice() else { return None };
+                (path, [first.name.clone(), second.name.clone()])
+            }
+            Encoding::Status(id) => {
+                let bit = protocol[id].bits.first()?;
+                (format!("{path}.{}", bit.name), ["0".to_owned(), "1".to_owned()])
+            }
+            Encoding::ByModel { .. } | Encoding::Text(_) | Encoding::Packed { .. } => return None,
+        };
+        let [active, inactive] = states;
+        Some(Map::of([("signal", path), ("active", active), ("inactive", inactive)]).into())
+    }
+}
+
+/// Adds what other fields always are.
+fn with(path: Value, fixed: &[(String, String)]) -> Value {
+    let fixed = Value::from(Map::of(fixed.iter().cloned()));
+    match path {
+        Value::Mapping(mut path) => {
+            path.insert("with".into(), fixed);
+            path.into()
+        }
+        path => Map::of([("signal", path), ("with", fixed)]).into(),
+    }
+}
+
+/// Returns the first name of a signal's values.
+fn first_name(protocol: &Protocol, signal: &Signal) -> Option<String> {
+    match signal.encoding {
+        Encoding::Named(id) => protocol[id].values.first().map(|value| value.name.clone()),
+        Encoding::Number { .. } => signal.specials.first().map(|special| special.name.clone()),
+        Encoding::Float
+        | Encoding::ByModel { .. }
+        | Encoding::Status(_)
+        | Encoding::Text(_)
+        | Encoding::Packed { .. } => None,
+    }
+}
