@@ -7,7 +7,7 @@ use canspec_codegen::interpret::{Assembled, Assembly, Form, Frame, decode};
 use canspec_codegen::model::Protocol;
 use canspec_runtime::isotp;
 use canspec_runtime::transfers::{Assembler, Event, Transport};
-use canspec_runtime::{Exchange, Kind, LongLayout};
+use canspec_runtime::{Exchange, Kind};
 use canspec_tests::devices_units::{Calibration, IdleSpeed, Message, Refused, Tp};
 use canspec_tests::{received, specs};
 use fastrand::Rng;
@@ -143,11 +143,11 @@ const BARE: [(&Exchange, Kind); 4] = [
     (&IdleSpeed::WRITE, Kind::Reply),
 ];
 
-fn of_generated(event: Event<Tp, Room>) -> Vec<Told> {
+fn of_generated(event: &Event<Tp, Room>) -> Vec<Told> {
     let Event { whole, broken, refused, .. } = event;
     assert!(refused.is_none(), "there is room for all");
-    let broken = broken.map(|broken| (broken.transfer.link.id(), None, None));
-    let whole = whole.map(|whole| {
+    let broken = broken.as_ref().map(|broken| (broken.transfer.link.id(), None, None));
+    let whole = whole.as_ref().map(|whole| {
         let values = [
             whole.values::<Calibration>().is_some(),
             whole.values::<IdleSpeed>().is_some(),
@@ -189,7 +189,7 @@ fn both_engines_report_the_same_messages_and_each_whole_one_was_sent() {
             check_answer(frame, event.answer);
             answers += usize::from(event.answer.is_some());
             let expected: Vec<_> = ended.iter().map(|ended| of_interpreter(&protocol, ended)).collect();
-            let told = of_generated(event);
+            let told = of_generated(&event);
             assert_eq!(told, expected, "seed {seed}: {frame:X?}");
             for (id, _, data) in told {
                 let Some(data) = data else {
@@ -259,7 +259,7 @@ mod by_hand {
         assert_eq!(tester.receive(&answer), Answer::Allowed(Separation(0)));
         let rest: Vec<_> = tester.collect();
         assert_eq!(texts(rest.iter().copied()), ["7E0#2164012C01F40000", "7E0#2209000000000000"]);
-        let whole = rest.iter().filter_map(|frame| unit.receive(frame, 0).whole).next().expect("all came");
+        let whole = rest.iter().find_map(|frame| unit.receive(frame, 0).whole).expect("all came");
         assert_eq!((whole.values(), whole.values::<IdleSpeed>()), (Some(calibration()), None));
         assert_eq!((whole.exchange().access(), whole.kind()), ("write", Kind::Request));
         let blank = Calibration::WRITE.filter(Kind::Reply).expect("it is answered");

@@ -13,7 +13,9 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let carried: Vec<&LongMessage> = carried.collect();
         for (index, long) in carried.iter().enumerate() {
             let earlier = &carried[..index];
-            partial(long).into_iter().for_each(|flaw| diagnostics.push(flaw));
+            if let Some(flaw) = partial(long) {
+                diagnostics.push(flaw);
+            }
             match &transport.standard {
                 Standard::J1939(groups) => j1939::check(protocol, groups, long, earlier, diagnostics),
                 Standard::Isotp(_) => isotp::check(protocol, long, earlier, diagnostics),
