@@ -38,18 +38,17 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        Self::SENDER.of(id) == 0x0
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::SENDER.of(id) == 0x1
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::SENDER.of(id) {
+            0x0 => frame.to_module(),
+            _ => frame.to_controller(),
+        }
     }
 
     #[inline]
@@ -208,6 +207,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }

@@ -66,22 +66,26 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        (Self::FORMAT.of(id) == 0x0DB
-            && !(0x00..=0x32).contains(&Self::TARGET.of(id))
-            && !(0x34..=0x7F).contains(&Self::TARGET.of(id))
-            && (0xF0..=0xF9).contains(&Self::SOURCE.of(id)))
-            || ((0x00..=0x7F).contains(&Self::TARGET.of(id)) && (0xF0..=0xF9).contains(&Self::SOURCE.of(id)))
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        (0x00..=0x7F).contains(&Self::SOURCE.of(id))
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match (
+            (Self::FORMAT.of(id) == 0x0DB
+                && !(0x00..=0x32).contains(&Self::TARGET.of(id))
+                && !(0x34..=0x7F).contains(&Self::TARGET.of(id))
+                && (0xF0..=0xF9).contains(&Self::SOURCE.of(id)))
+                || ((0x00..=0x7F).contains(&Self::TARGET.of(id)) && (0xF0..=0xF9).contains(&Self::SOURCE.of(id))),
+            (0x00..=0x7F).contains(&Self::SOURCE.of(id)),
+        ) {
+            (true, true) => frame.to_either(),
+            (true, false) => frame.to_module(),
+            (false, true) => frame.to_controller(),
+            (false, false) => frame.to_neither(),
+        }
     }
 
     #[inline]
@@ -113,6 +117,10 @@ impl Target {
 
 impl Addressed for Message {
     type Target = Target;
+
+    fn module(number: i32) -> Option<Target> {
+        Some(Target::Unit(number.try_into().ok()?))
+    }
 }
 
 impl Destination for Target {
@@ -742,6 +750,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }

@@ -42,18 +42,17 @@ impl Identifier {
     }
 }
 
+#[expect(clippy::inline_always, reason = "only decoding calls it")]
 impl IdentifierFields for Identifier {
     const FROM_RAW: fn(u32) -> Self = Self::from_raw;
     const TO_RAW: fn(Self) -> u32 = Self::to_raw;
 
-    #[inline]
-    fn is_to_module(id: u32) -> bool {
-        Self::DIRECTION.of(id) == 0x0
-    }
-
-    #[inline]
-    fn is_to_controller(id: u32) -> bool {
-        Self::DIRECTION.of(id) == 0x1
+    #[inline(always)]
+    fn head<H: Headed>(id: u32, frame: H) -> H::Output {
+        match Self::DIRECTION.of(id) {
+            0x0 => frame.to_module(),
+            _ => frame.to_controller(),
+        }
     }
 
     #[inline]
@@ -312,6 +311,7 @@ impl Message {
     ///
     /// # Errors
     /// Says why the frame is not recognised.
+    #[inline]
     pub fn decode(frame: &impl embedded_can::Frame) -> Result<Received, Problem> {
         Received::decode(frame)
     }
