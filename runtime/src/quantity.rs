@@ -13,7 +13,7 @@ pub use path::{ReadPath, SetPath, States};
 
 use crate::{Destination, Error, Protocol, Received, Request, Route};
 
-/// The name of what a device measures or takes, whoever made it.
+/// The name of what a device measures or takes. It is the same for every vendor.
 ///
 /// Its value is an integer:
 /// - thousandths of its unit, such as millivolts, if it has one,

@@ -36,8 +36,8 @@ const WRITTEN_OUT: [(&str, &str); 9] = [
     ("means: 100 A, origin: ours, note: \"the 100 A module of 2.2.2\", erratum: M16}", "means: 1000 A}"),
     ("  barcode_4:", "  # barcode_4:"),
     (
-        "\nmodels:\n",
-        "\n  own_word: {section: megmeet 2.2.2, match: {signal: 0xFFE}, access: [read], value: {type: III}}\nmodels:\n",
+        "\nquantities:\n",
+        "\n  own_word: {section: megmeet 2.2.2, match: {signal: 0xFFE}, access: [read], value: {type: III}}\nquantities:\n",
     ),
 ];
 

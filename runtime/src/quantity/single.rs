@@ -35,7 +35,7 @@ const fn rounded(product: u64, bits: u32) -> u64 {
 /// Returns the single nearest to a number of parts, with ties to even, as all singles are rounded.
 pub fn of_parts(value: i32, parts: u16) -> f32 {
     let size = u64::from(value.unsigned_abs());
-    // With the first bit at the top, the quotient has at least 54 bits, of which 24 are kept.
+    // With the first bit at the top, the quotient has at least 54 bits, and 24 of them are kept.
     let up = size.leading_zeros();
     let top = size.wrapping_shl(up);
     let (Some(quotient), Some(rest)) = (top.checked_div(parts.into()), top.checked_rem(parts.into())) else {

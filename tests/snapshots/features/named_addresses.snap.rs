@@ -53,11 +53,11 @@ impl IdentifierFields for Identifier {
             0x20 | 0x40 => match Self::SOURCE.of(id) {
                 0x20 | 0x40 => frame.to_neither(),
                 _ => frame.to_controller(),
-            }
+            },
             _ => match Self::SOURCE.of(id) {
                 0x20 | 0x40 => frame.to_module(),
                 _ => frame.to_neither(),
-            }
+            },
         }
     }
 

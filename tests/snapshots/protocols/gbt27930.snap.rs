@@ -89,11 +89,11 @@ impl IdentifierFields for Identifier {
             0x56 => match Self::TARGET.of(id) {
                 0x56 => frame.to_neither(),
                 _ => frame.to_module(),
-            }
+            },
             0xF4 => match Self::TARGET.of(id) {
                 0xF4 => frame.to_neither(),
                 _ => frame.to_controller(),
-            }
+            },
             _ => frame.to_neither(),
         }
     }

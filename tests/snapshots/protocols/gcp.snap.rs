@@ -90,11 +90,11 @@ impl IdentifierFields for Identifier {
             0xF0..=0xF8 => match Self::SOURCE.of(id) {
                 0xF0..=0xF8 => frame.to_neither(),
                 _ => frame.to_controller(),
-            }
+            },
             _ => match Self::SOURCE.of(id) {
                 0xF0..=0xF8 => frame.to_module(),
                 _ => frame.to_neither(),
-            }
+            },
         }
     }
 

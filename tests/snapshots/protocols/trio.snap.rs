@@ -87,11 +87,11 @@ impl IdentifierFields for Identifier {
             0xF3 => match Self::SOURCE.of(id) {
                 0xF3 => frame.to_neither(),
                 _ => frame.to_controller(),
-            }
+            },
             _ => match Self::SOURCE.of(id) {
                 0xF3 => frame.to_module(),
                 _ => frame.to_neither(),
-            }
+            },
         }
     }
 

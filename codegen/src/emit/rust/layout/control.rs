@@ -102,8 +102,7 @@ fn arm(known: &Arm, shape: Shape) -> Option<String> {
     let below = shape.nested().rewrite(&known.body);
     match (same, below) {
         (Some(same), Some(below)) if can_open(&known.body) && !is_better_below(&same, &below) => {
-            let end = if matches!(*known.body, Expr::Match(_)) { "" } else { "," };
-            Some(format!("{pattern} => {same}{end}"))
+            Some(format!("{pattern} => {same},"))
         }
         (_, Some(below)) => {
             Some(format!("{pattern} => {{{}{below}{}}}", line_break(shape.indent + STEP), line_break(shape.indent)))
