@@ -9,7 +9,7 @@ use canspec_benches::frame::Frame;
 use canspec_benches::frames;
 use canspec_benches::generated::Generated;
 use canspec_benches::processor_time::ProcessorTime;
-use canspec_benches::work::{Inputs, Work};
+use canspec_benches::work::{Prepared, Work};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const SECOND: Duration = Duration::from_secs(1);
@@ -23,9 +23,9 @@ fn codecs(criterion: &mut Criterion<ProcessorTime>) {
 }
 
 fn all<C: Codec>(criterion: &mut Criterion<ProcessorTime>, name: &str, frames: &[Frame]) {
-    let inputs = Inputs::<C>::new(frames.to_vec());
-    for work in Work::ALL.into_iter().filter(|work| inputs.count(*work) > 0) {
-        one(criterion, &format!("{} {name}", work.name()), C::NAME, inputs.count(work), || inputs.run(work));
+    let works = Work::ALL.into_iter().map(|work| (work, Prepared::new::<C>(work, frames)));
+    for (work, prepared) in works.filter(|(_, prepared)| prepared.count() > 0) {
+        one(criterion, &format!("{} {name}", work.name()), C::NAME, prepared.count(), || prepared.run());
     }
 }
 

@@ -9,6 +9,8 @@ use crate::frame::Frame;
 
 /// How many distinct frames are measured.
 pub const MANY: usize = 1_000_000;
+/// How many of them valgrind sees.
+pub const COUNTED: usize = 20_000;
 
 /// Returns `count` different frames in a random order.
 ///

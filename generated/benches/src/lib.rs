@@ -20,17 +20,17 @@ use std::hint::black_box;
 use frame::Frame;
 
 /// A codec under measurement.
-pub trait Codec {
+pub trait Codec: 'static {
     /// Name in the table.
     const NAME: &'static str;
     /// A decoded frame, as the codec itself has it.
-    type Received;
+    type Received: 'static;
     /// What a frame is encoded from.
-    type Values;
+    type Values: 'static;
     /// The values of a request, and whom it addresses.
-    type Request;
+    type Request: 'static;
     /// A request that waits for its reply.
-    type Asked;
+    type Asked: 'static;
 
     /// Decodes a frame.
     ///

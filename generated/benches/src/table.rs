@@ -11,70 +11,47 @@ use canspec_benches::by_hand::Hand;
 use canspec_benches::dbc::Dbc;
 use canspec_benches::frames;
 use canspec_benches::generated::Generated;
-use canspec_benches::work::{Inputs, Work};
+use canspec_benches::work::Work;
 
-/// How many distinct frames valgrind sees.
-const COUNTED: usize = 20_000;
-const CODECS: [&str; 3] = [Generated::NAME, Hand::NAME, Dbc::NAME];
+/// The codecs, with the words by which `count` is compiled for them.
+const CODECS: [(&str, &str); 3] = [(Generated::NAME, "canspec"), (Hand::NAME, "by_hand"), (Dbc::NAME, "dbc")];
 /// The profiles of cargo, with the names that people know.
 const PROFILES: [(&str, &str); 2] = [("lto", "LTO"), ("release", "release")];
 
 fn main() {
-    let arguments: Vec<String> = env::args().skip(1).collect();
-    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        [] => {
-            instructions();
-            println!();
-            times();
-        }
-        [codec, work, passes] => {
-            let work = Work::ALL.into_iter().find(|known| known.name() == work).expect("a work");
-            let passes = passes.parse().expect("a number of passes");
-            match codec {
-                Generated::NAME => run::<Generated>(work, passes),
-                Hand::NAME => run::<Hand>(work, passes),
-                _ => run::<Dbc>(work, passes),
-            }
-        }
-        _ => eprintln!("usage: table [CODEC WORK PASSES]"),
-    }
-}
-
-/// Works `passes` times through the frames, so that valgrind can count, and prints how often a pass does the work.
-fn run<C: Codec>(work: Work, passes: usize) {
-    let inputs = Inputs::<C>::new(frames::distinct(COUNTED));
-    println!("{}", inputs.count(work));
-    for _ in 0..passes {
-        inputs.run(work);
-    }
+    instructions();
+    println!();
+    times();
 }
 
 fn instructions() {
-    let programs = PROFILES.map(|(profile, _)| built(profile));
-    let codecs = CODECS.map(|codec| (codec, programs.each_ref().map(|program| vec![program.clone(), codec.into()])));
-    let mut columns = codecs.to_vec();
-    match cantools::programs(&target().join("cantools"), &frames::distinct(COUNTED)) {
-        Ok(programs) => columns.push(("cantools' C", programs)),
-        Err(missing) => println!("SKIPPED: cantools' C, which needs {missing}\n"),
+    let names = CODECS.iter().map(|(name, _)| *name);
+    let cantools = cantools::programs(&target().join("cantools"), &frames::distinct(frames::COUNTED));
+    if let Err(missing) = &cantools {
+        println!("SKIPPED: cantools' C, which needs {missing}\n");
     }
-    let headings = columns.iter().flat_map(|(codec, _)| PROFILES.map(|(_, name)| format!("{codec}, {name}")));
+    let columns: Vec<_> = names.chain(cantools.is_ok().then_some("cantools' C")).collect();
+    let headings = columns.iter().flat_map(|codec| PROFILES.map(|(_, name)| format!("{codec}, {name}")));
     println!("| instructions | {} |", headings.collect::<Vec<_>>().join(" | "));
     println!("|---|{}", "--:|".repeat(columns.len() * PROFILES.len()));
     for work in Work::ALL {
-        let cells = columns.iter().flat_map(|(_, commands)| commands).map(|command| counted(command, work));
-        println!("| {} | {} |", work.name(), cells.collect::<Vec<_>>().join(" | "));
+        let ours = CODECS.iter().flat_map(|(_, codec)| PROFILES.map(|(profile, _)| vec![built(profile, codec, work)]));
+        let commands = ours.chain(cantools.iter().flatten().cloned());
+        let cells: Vec<_> = commands.map(|command| counted(&command, work)).collect();
+        println!("| {} | {} |", work.name(), cells.join(" | "));
     }
 }
 
-/// Builds this program in a profile, and returns its path.
-fn built(profile: &str) -> PathBuf {
+/// Compiles `count` for a work of a codec in a profile, and returns its path.
+fn built(profile: &str, codec: &str, work: Work) -> PathBuf {
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .args(["build", "--quiet", "--bin", "table", "--profile", profile, "--target-dir"])
+        .args(["rustc", "--quiet", "--bin", "count", "--profile", profile, "--target-dir"])
         .arg(target())
+        .args(["--", "--cfg", &format!("codec=\"{codec}\""), "--cfg", &format!("work=\"{}\"", work.word())])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .status();
-    assert!(status.is_ok_and(|status| status.success()), "this program is built in the profile `{profile}`");
-    target().join(profile).join("table")
+    assert!(status.is_ok_and(|status| status.success()), "`count` is built in the profile `{profile}`");
+    target().join(profile).join("count")
 }
 
 /// Returns the instructions of one work: what three passes take more than one.
@@ -104,11 +81,11 @@ fn valgrind(command: &[PathBuf], work: Work, passes: usize) -> Option<(f64, usiz
 fn times() {
     let groups =
         Work::ALL.iter().flat_map(|work| ["distinct", "loop"].map(|frames| format!("{} {frames}", work.name())));
-    let rows: Vec<_> = groups.map(|group| (CODECS.map(|codec| time(&group, codec)), group)).collect();
+    let rows: Vec<_> = groups.map(|group| (CODECS.map(|(codec, _)| time(&group, codec)), group)).collect();
     if rows.iter().flat_map(|(times, _)| times).all(Option::is_none) {
         return println!("Processor time: not measured; `cargo bench` measures it.");
     }
-    println!("| processor time | {} |", CODECS.join(" | "));
+    println!("| processor time | {} |", CODECS.map(|(codec, _)| codec).join(" | "));
     println!("|---|{}", "--:|".repeat(CODECS.len()));
     for (times, group) in rows {
         println!("| {group} | {} |", times.map(|time| time.unwrap_or_else(|| "-".into())).join(" | "));

@@ -12,7 +12,7 @@ use crate::{Codec, each};
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// Decodes frames in the loop that takes the values.
+    /// Decodes frames in the loop that takes the values, the only place that decodes.
     Decode,
     /// Decodes frames by a function that is not inlined, as in a program that decodes in several places.
     DecodeByCall,
@@ -42,77 +42,126 @@ impl Work {
             Self::Reply => "reply to a request",
         }
     }
+
+    /// Returns the word by which `count` is compiled for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Decode => "decode",
+            Self::DecodeByCall => "decode_by_call",
+            Self::Payload => "payload",
+            Self::Request => "request",
+            Self::Encode => "encode",
+            Self::Reply => "reply",
+        }
+    }
 }
 
-/// Inputs of a codec.
-pub struct Inputs<C: Codec> {
-    frames: Vec<Frame>,
-    payloads: BTreeMap<u8, Vec<[u8; 8]>>,
-    values: Vec<C::Values>,
-    requests: Vec<C::Request>,
-    replies: Vec<(C::Asked, Frame)>,
+/// A work with its inputs.
+pub struct Prepared {
+    count: usize,
+    pass: Box<dyn Fn()>,
 }
 
-impl<C: Codec> Inputs<C> {
-    /// Makes all inputs of these frames.
+impl Prepared {
+    /// Prepares work on each input. A pass does it once with each.
+    fn each<T: 'static>(inputs: Vec<T>, work: impl Fn(&T) + 'static) -> Self {
+        Self { count: inputs.len(), pass: Box::new(move || each(&inputs, &work)) }
+    }
+
+    /// Prepares any work.
     ///
     /// # Panics
     ///
-    /// If the codec refuses one.
-    pub fn new(frames: Vec<Frame>) -> Self {
-        let values: Vec<_> = frames.iter().map(|frame| C::to_values(&received::<C>(frame))).collect();
-        let requests = values.iter().filter_map(C::to_request).collect();
-        let mut payloads = BTreeMap::<_, Vec<_>>::new();
-        for frame in &frames {
-            let Received { id, message } = received::<Hand>(frame);
-            if !matches!(message, Message::Read(_)) {
-                let [_, command, ..] = id.to_be_bytes();
-                payloads.entry(command & 0x3F).or_default().push(frame.bytes());
-            }
-        }
-        let replies = replies::<C>(&frames);
-        Self { frames, payloads, values, requests, replies }
+    /// If the codec refuses a frame.
+    pub fn new<C: Codec>(work: Work, frames: &[Frame]) -> Self {
+        let prepare = match work {
+            Work::Decode => decode::<C>,
+            Work::DecodeByCall => decode_by_call::<C>,
+            Work::Payload => payload::<C>,
+            Work::Request => request::<C>,
+            Work::Encode => encode::<C>,
+            Work::Reply => reply::<C>,
+        };
+        prepare(frames)
     }
 
-    /// Returns how often a work is done.
-    pub fn count(&self, work: Work) -> usize {
-        match work {
-            Work::Decode | Work::DecodeByCall => self.frames.len(),
-            Work::Payload => self.payloads.values().map(Vec::len).sum(),
-            Work::Request => self.requests.len(),
-            Work::Encode => self.values.len(),
-            Work::Reply => self.replies.len(),
-        }
+    /// Returns how often a pass does the work.
+    pub const fn count(&self) -> usize {
+        self.count
     }
 
-    /// Returns how many of the frames for [`Work::Reply`] answer with values.
-    pub fn answers(&self) -> usize {
-        self.replies.iter().filter(|(asked, frame)| matches!(C::reply(asked, frame), Some(Ok(_)))).count()
+    /// Does the work once with each input.
+    pub fn run(&self) {
+        (self.pass)();
     }
+}
 
-    /// Does a work once with each input.
-    pub fn run(&self, work: Work) {
-        match work {
-            Work::Decode => each(&self.frames, |frame| {
-                C::decode(frame).as_ref().map(C::take).ok();
-            }),
-            Work::DecodeByCall => each(&self.frames, |frame| {
-                called::<C>(frame).as_ref().map(C::take).ok();
-            }),
-            Work::Payload => self.payloads.iter().for_each(|(command, payloads)| C::payloads(*command, payloads)),
-            Work::Request => each(&self.requests, |request| {
-                black_box(&C::request(request));
-            }),
-            Work::Encode => each(&self.values, |values| {
-                black_box(&C::encode(values));
-            }),
-            Work::Reply => each(&self.replies, |(asked, frame)| {
-                if let Some(Ok((voltage, current))) = C::reply(asked, frame) {
-                    take!(voltage, current);
-                }
-            }),
+/// Prepares [`Work::Decode`].
+pub fn decode<C: Codec>(frames: &[Frame]) -> Prepared {
+    Prepared::each(frames.to_vec(), |frame| {
+        C::decode(frame).as_ref().map(C::take).ok();
+    })
+}
+
+/// Prepares [`Work::DecodeByCall`].
+pub fn decode_by_call<C: Codec>(frames: &[Frame]) -> Prepared {
+    Prepared::each(frames.to_vec(), |frame| {
+        called::<C>(frame).as_ref().map(C::take).ok();
+    })
+}
+
+/// Prepares [`Work::Payload`].
+///
+/// # Panics
+///
+/// If the codec written by hand refuses a frame.
+pub fn payload<C: Codec>(frames: &[Frame]) -> Prepared {
+    let mut payloads = BTreeMap::<_, Vec<_>>::new();
+    for frame in frames {
+        let Received { id, message } = received::<Hand>(frame);
+        if !matches!(message, Message::Read(_)) {
+            let [_, command, ..] = id.to_be_bytes();
+            payloads.entry(command & 0x3F).or_default().push(frame.bytes());
         }
     }
+    let count = payloads.values().map(Vec::len).sum();
+    let pass = move || payloads.iter().for_each(|(command, payloads)| C::payloads(*command, payloads));
+    Prepared { count, pass: Box::new(pass) }
+}
+
+/// Prepares [`Work::Request`].
+///
+/// # Panics
+///
+/// If the codec refuses a frame.
+pub fn request<C: Codec>(frames: &[Frame]) -> Prepared {
+    Prepared::each(values::<C>(frames).iter().filter_map(C::to_request).collect(), |request| {
+        black_box(&C::request(request));
+    })
+}
+
+/// Prepares [`Work::Encode`].
+///
+/// # Panics
+///
+/// If the codec refuses a frame.
+pub fn encode<C: Codec>(frames: &[Frame]) -> Prepared {
+    Prepared::each(values::<C>(frames), |values| {
+        black_box(&C::encode(values));
+    })
+}
+
+/// Prepares [`Work::Reply`].
+///
+/// # Panics
+///
+/// If the codec written by hand refuses a frame.
+pub fn reply<C: Codec>(frames: &[Frame]) -> Prepared {
+    Prepared::each(replies::<C>(frames), |(asked, frame)| {
+        if let Some(Ok((voltage, current))) = C::reply(asked, frame) {
+            take!(voltage, current);
+        }
+    })
 }
 
 #[inline(never)]
@@ -124,8 +173,16 @@ fn received<C: Codec>(frame: &Frame) -> C::Received {
     called::<C>(frame).expect("a frame of the protocol")
 }
 
+fn values<C: Codec>(frames: &[Frame]) -> Vec<C::Values> {
+    frames.iter().map(|frame| C::to_values(&received::<C>(frame))).collect()
+}
+
 /// Pairs each output of a module with two requests: one that it answers, and one to another module.
-fn replies<C: Codec>(frames: &[Frame]) -> Vec<(C::Asked, Frame)> {
+///
+/// # Panics
+///
+/// If the codec written by hand refuses a frame.
+pub fn replies<C: Codec>(frames: &[Frame]) -> Vec<(C::Asked, Frame)> {
     let outputs = frames.iter().filter(|frame| matches!(received::<Hand>(frame).message, Message::ModuleOutput { .. }));
     let pairs = outputs.flat_map(|frame| {
         let [.., controller, module] = frame.raw_id().to_be_bytes();
