@@ -136,6 +136,7 @@ fn take(message: &Message) {
     }
 }
 
+#[inline(always)]
 fn request(route: Route<Target>, message: &Message) -> Result<canspec_runtime::Frame, Error> {
     fn frame<R>(request: Request<R>) -> canspec_runtime::Frame {
         *request.frame()

@@ -395,7 +395,7 @@ pub struct Request {
 }
 
 /// Builds the frame of a request, unless it has no such target, an address is none, or a value is outside its limits.
-#[inline]
+#[inline(always)]
 pub fn request(Request { message, target, controller }: &Request) -> Option<Frame> {
     let Content { command, modes, word } = content(message)?;
     let (mode, id) = target.shown()?;
