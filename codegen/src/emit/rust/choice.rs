@@ -1,5 +1,8 @@
 //! A choice by the values of selectors: a `match`, or less if less is enough.
 
+use std::mem;
+
+use indexmap::IndexMap;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -47,22 +50,46 @@ pub fn split(selectors: &Selectors, arms: Vec<Arm<TokenStream>>) -> Vec<Vec<Arm<
 }
 
 fn written(selectors: &Selectors, columns: &[SelectorId], Arm { sets, outcome }: &Arm<TokenStream>) -> TokenStream {
-    let patterns = match columns {
-        [column] => ranges(&selectors[*column], sets.iter().filter_map(|constants| constants.get(column).copied())),
-        _ => sets.iter().map(|constants| pattern(selectors, columns, constants)).collect(),
-    };
+    let patterns = rows(columns, sets).into_iter().flat_map(|row| {
+        let mut parts: Vec<_> =
+            columns.iter().zip(row).map(|(column, values)| ranges(&selectors[*column], values)).collect();
+        if parts.len() == 1 { parts.remove(0) } else { vec![tuple(parts.into_iter().map(either).collect())] }
+    });
     quote!(#(#patterns)|* => #outcome,)
 }
 
-fn pattern(selectors: &Selectors, columns: &[SelectorId], constants: &Constants) -> TokenStream {
-    let fixed = |id: &SelectorId| Some(selectors[*id].value(*constants.get(id)?));
-    tuple(columns.iter().map(|selector| fixed(selector).unwrap_or_else(|| quote!(_))).collect())
+/// The values of each column in a pattern. Any value will do if there is none.
+type Row = Vec<Vec<u64>>;
+
+/// Joins sets of constants that differ in one column.
+fn rows(columns: &[SelectorId], sets: &[Constants]) -> Vec<Row> {
+    let row = |constants: &Constants| {
+        columns.iter().map(|column| constants.get(column).copied().into_iter().collect()).collect()
+    };
+    let rows: Vec<Row> = sets.iter().map(row).collect();
+    (0..columns.len()).rev().fold(rows, |rows, column| {
+        let mut joined: IndexMap<(Row, bool), Vec<u64>> = IndexMap::new();
+        for mut row in rows {
+            let own = mem::take(&mut row[column]);
+            joined.entry((row, own.is_empty())).or_default().extend(own);
+        }
+        let put_back = |((mut row, _), own): ((Row, bool), Vec<u64>)| {
+            row[column] = own;
+            row
+        };
+        joined.into_iter().map(put_back).collect()
+    })
+}
+
+/// Writes patterns of one value as one pattern.
+fn either(patterns: Vec<TokenStream>) -> TokenStream {
+    if patterns.is_empty() { quote!(_) } else { quote!(#(#patterns)|*) }
 }
 
 /// Writes values of one selector, and three or more in a row as a range.
-fn ranges(selector: &Selector, values: impl Iterator<Item = u64>) -> Vec<TokenStream> {
-    let mut values: Vec<_> = values.collect();
+fn ranges(selector: &Selector, mut values: Vec<u64>) -> Vec<TokenStream> {
     values.sort_unstable();
+    values.dedup();
     let runs = values.chunk_by(|value, next| next - value == 1).flat_map(|run| match run {
         [first, _, .., last] => {
             let (first, last) = (selector.value(*first), selector.value(*last));
