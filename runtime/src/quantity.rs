@@ -11,7 +11,7 @@ mod tests;
 
 pub use path::{ReadPath, SetPath, States};
 
-use crate::{Destination, Error, Protocol, Received, Request, Route};
+use crate::{Destination, Error, Kind, Protocol, Received, Request, Route};
 
 /// The name of what a device measures or takes. It is the same for every vendor.
 ///
@@ -171,5 +171,19 @@ impl<P: Quantities> Received<P> {
     pub fn quantity(&self, quantity: Quantity) -> Option<i32> {
         let path = P::READS.iter().find(|path| path.quantity == quantity && path.is_in(self))?;
         if self.is_error_reply() { None } else { path.value.read(self.frame()) }
+    }
+
+    /// Returns the value of a quantity that a request sets, or that its reply says is in effect. It counts as
+    /// [`quantity`](Self::quantity) does.
+    ///
+    /// It is `None` if
+    /// - the frame is neither a request that sets the quantity nor a reply to one,
+    /// - the bits mean something else than a number, or no state of the switch,
+    /// - the frame is an error reply, or an `i32` cannot hold the value.
+    pub fn setting(&self, quantity: Quantity) -> Option<i32> {
+        let is_set = matches!(self.kind(), Kind::Request | Kind::Reply) && !self.is_error_reply();
+        let mut paths = P::SETS.iter().filter(|_| is_set);
+        let path = paths.find(|path| path.quantity == quantity && path.request.is(self.exchange()))?;
+        path.read(self.frame())
     }
 }

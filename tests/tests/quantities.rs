@@ -178,6 +178,27 @@ fn a_request_reads_all_quantities_of_its_message() {
 }
 
 #[test]
+fn what_a_request_sets_and_its_reply_says_is_shown() {
+    fn setting<P: Quantities>(id: u32, data: u64) -> [Option<i32>; 3] {
+        let received = Received::<P>::decode(&frame(id, data)).expect("a frame of the document");
+        [VOLTAGE, CURRENT, DELIVERING].map(|quantity| received.setting(quantity))
+    }
+    let infy = setting::<infy::Message>;
+    // Section 2.4, 0x1C and 0x1A: the module says 199.985 V to 200 V.
+    assert_eq!(infy(0x029C_00F0, 0x0003_0D40_0000_1388), [Some(200_000), Some(5000), None]);
+    assert_eq!(infy(0x029C_F000, 0x0003_0D31_0000_1388), [Some(199_985), Some(5000), None]);
+    assert_eq!(infy(0x029A_3FF0, 0x0100_0000_0000_0000), [None, None, Some(0)]);
+    assert_eq!(infy(0x029A_F000, 0), [None, None, Some(1)]);
+    assert_eq!(infy(0x029A_F000, 0x0200_0000_0000_0000), [None; 3], "2 is no state of the switch");
+    assert_eq!(infy(0x1E9A_F000, 0x0100_0000_0000_0000), [None; 3], "it is an error reply");
+    assert_eq!(infy(0x0283_F000, 0x43FA_0000_4060_0000), [None; 3], "it is read, not set");
+    let mxr = setting::<mxr::Message>;
+    // Section 2.3.1.
+    assert_eq!(mxr(0x0608_0F80, 0x0300_0021_442F_0000), [Some(700_000), None, None]);
+    assert_eq!(mxr(0x0608_0F80, 0x0300_0030_0001_0000), [None, None, Some(0)]);
+}
+
+#[test]
 fn nothing_is_sent_if_one_value_is_refused() {
     let set = sets::<infy::Message>;
     let module = infy::Target::Module(0);

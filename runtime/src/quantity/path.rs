@@ -122,6 +122,14 @@ impl SetPath {
         self.request.message()
     }
 
+    /// Reads the value in a request or in its reply.
+    pub(super) fn read(&self, frame: &Frame) -> Option<i32> {
+        match self.value {
+            Value::Number(signal) => signal.set_in(&frame.bytes(), frame.length()),
+            Value::Switch(states) => states.shown(frame),
+        }
+    }
+
     /// Writes a value, and the bits that the message has elsewhere.
     pub(super) fn write(&self, value: i32, payload: &mut Payload) -> Result<(), Error> {
         match (self.value, value) {
@@ -144,17 +152,21 @@ fn put(place: Place, bits: u64, payload: &mut Payload) {
 impl Value<&'static dyn ReadNumber> {
     /// Reads the value in a frame, if it shows one.
     pub(super) fn read(&self, frame: &Frame) -> Option<i32> {
-        let data = frame.bytes();
         match self {
-            Self::Number(signal) if signal.place().is_within(frame.length()) => signal.read_number(&data),
-            Self::Switch(states) if states.place.is_within(frame.length()) => states.read(states.place.get(&data)),
-            Self::Number(_) | Self::Switch(_) => None,
+            Self::Number(signal) if signal.place().is_within(frame.length()) => signal.read_number(&frame.bytes()),
+            Self::Number(_) => None,
+            Self::Switch(states) => states.shown(frame),
         }
     }
 }
 
 impl States {
-    fn read(&self, bits: u64) -> Option<i32> {
+    /// Reads the state in a frame, if it shows one.
+    fn shown(&self, frame: &Frame) -> Option<i32> {
+        if !self.place.is_within(frame.length()) {
+            return None;
+        }
+        let bits = self.place.get(&frame.bytes());
         if bits == self.active {
             return Some(1);
         }

@@ -18,6 +18,10 @@ pub trait ReadNumber: AnySignal {
 
 /// A signal that is a number, for code that sets a quantity without knowing its type.
 pub trait SetNumber {
+    /// Returns what a frame with so many data bytes sets: thousandths of the unit, or the number itself if there is
+    /// none. It is `None` if the frame does not have the signal, and where [`ReadNumber::read_number`] is.
+    fn set_in(&self, data: &Data, length: usize) -> Option<i32>;
+
     /// Writes thousandths of the unit, or the number itself if there is none.
     ///
     /// # Errors
@@ -45,6 +49,10 @@ impl<R: Raw, F: Physical<R>> ReadNumber for Signal<R, F> {
 }
 
 impl<R: Raw, F: Physical<R>> SetNumber for Signal<R, F> {
+    fn set_in(&self, data: &Data, length: usize) -> Option<i32> {
+        if self.place().is_within(length) { self.read_number(data) } else { None }
+    }
+
     fn set_number(&self, value: i32, payload: &mut Payload) -> Result<(), Error> {
         let parts = self.parts();
         let asked = asked(value, parts);
