@@ -1,0 +1,158 @@
+//! A bus of simulated modules with a station.
+
+use canspec_runtime::client::Pace;
+use canspec_runtime::sim::{Answer, Bench, Complaint, Device, Event, Faults, Rules};
+use canspec_runtime::{Addressed, Frame, Protocol, Quantities, Quantity, Received};
+use canspec_station::{Settings, State, Station};
+
+/// A module of any protocol: it keeps what is set, and tells it.
+#[derive(Clone, Copy)]
+pub struct Charger<P: Addressed> {
+    /// Its group, by number and by address.
+    pub group: (u8, P::Target),
+    /// Builds what it says to a request that reads.
+    pub tell: fn(&Received<P>, &Charger<P>) -> Option<P>,
+    /// What it was set to since it started, in mV and mA.
+    pub voltage_mv: Option<i32>,
+    pub current_ma: Option<i32>,
+    pub is_on: bool,
+    /// Whether it was ever switched on without a set-point.
+    pub was_bare: bool,
+    /// How often it was switched on while it was off.
+    pub switched_on: u32,
+    /// The most by which its current was raised at once.
+    pub steepest_ma: i32,
+    /// When a set-point or a switch-on came last.
+    pub told: u32,
+}
+
+impl<P: Addressed> Charger<P> {
+    pub fn new(group: (u8, P::Target), tell: fn(&Received<P>, &Self) -> Option<P>) -> Self {
+        let (voltage_mv, current_ma, is_on, was_bare) = (None, None, false, false);
+        Self { group, tell, voltage_mv, current_ma, is_on, was_bare, switched_on: 0, steepest_ma: 0, told: 0 }
+    }
+
+    pub fn volts(&self) -> f32 {
+        if self.is_on { thousandths(self.voltage_mv) } else { 0.0 }
+    }
+
+    pub fn amperes(&self) -> f32 {
+        if self.is_on { thousandths(self.current_ma) } else { 0.0 }
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "what is set has few digits")]
+fn thousandths(value: Option<i32>) -> f32 {
+    value.unwrap_or_default() as f32 / 1000.0
+}
+
+impl<P: Quantities + Addressed> Device<P> for Charger<P>
+where
+    P::Target: PartialEq,
+{
+    fn answer(&mut self, request: &Received<P>, now: u32) -> Answer<P> {
+        let [voltage_mv, current_ma, is_on] =
+            [Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT, Quantity::DELIVERING]
+                .map(|quantity| request.setting(quantity));
+        if let Some(current_ma) = current_ma {
+            self.steepest_ma = self.steepest_ma.max(current_ma - self.current_ma.unwrap_or_default());
+        }
+        (self.voltage_mv, self.current_ma) = (voltage_mv.or(self.voltage_mv), current_ma.or(self.current_ma));
+        if let Some(is_on) = is_on {
+            self.switched_on += u32::from(is_on == 1 && !self.is_on);
+            self.is_on = is_on == 1;
+            self.was_bare |= self.is_on && (self.voltage_mv.is_none() || self.current_ma.is_none());
+        }
+        if voltage_mv.is_none() && current_ma.is_none() && is_on.is_none() {
+            return (self.tell)(request, self).map_or(Answer::Silence, Answer::Values);
+        }
+        if is_on != Some(0) {
+            self.told = now;
+        }
+        Answer::Values(*request.content())
+    }
+
+    fn is_asked(&self, request: &Received<P>) -> bool {
+        request.target() == Some(self.group.1)
+    }
+
+    fn silence(&mut self, _now: u32) {
+        self.is_on = false;
+    }
+
+    fn power_on(&mut self, _now: u32) {
+        (self.voltage_mv, self.current_ma, self.is_on) = (None, None, false);
+    }
+}
+
+/// A station, and the bus with its `N` modules.
+pub struct Bus<P: Quantities + Addressed, const N: usize, const G: usize> {
+    pub station: Station<P, 16, G, 40>,
+    pub bench: Bench<P, Charger<P>, N, 64>,
+    pub now: u32,
+    /// What the station has sent.
+    pub sent: Vec<(u32, Frame)>,
+}
+
+impl<P: Quantities + Addressed, const N: usize, const G: usize> Bus<P, N, G>
+where
+    P::Target: PartialEq,
+{
+    pub fn new(
+        groups: [(u8, P::Target); G],
+        modules: [(u8, Charger<P>); N],
+        pace: Pace,
+        rules: Rules,
+        seed: u64,
+    ) -> Self {
+        let settings = Settings { pace, round: 2000, rise_ma: RISE_MA };
+        Self {
+            station: Station::new(settings, core::array::from_fn(|node| u8::try_from(node).expect("below 16")), groups),
+            bench: Bench::new(modules, Rules { gap: pace.gap, ..rules }, seed),
+            now: 0,
+            sent: Vec::new(),
+        }
+    }
+
+    /// Lets time pass. The station must keep to the rules, and no module may be worse off than it says.
+    pub fn run(&mut self, until: u32) {
+        while self.now < until {
+            while let Some(event) = self.bench.poll(self.now) {
+                match event {
+                    Event::Frame(frame) => self.station.handle(&frame, self.now),
+                    // What it has not found yet, it cannot feed.
+                    Event::Complaint(Complaint::Unfed { node }) if self.state(node).is_none() => {}
+                    Event::Complaint(complaint) => panic!("at {} ms: {complaint}", self.now),
+                }
+            }
+            while let Some(frame) = self.station.poll(self.now) {
+                self.sent.push((self.now, frame));
+                self.bench.send(&frame, self.now);
+            }
+            self.now += 1;
+        }
+    }
+
+    /// Returns what the station says of a module, if it has found it.
+    pub fn state(&self, node: u8) -> Option<State> {
+        self.station.modules().find(|module| module.node == node).map(|module| module.state)
+    }
+
+    pub fn device(&mut self, node: u8) -> &mut Charger<P> {
+        self.bench.device(node).expect("a module of the bus")
+    }
+
+    pub fn faults(&mut self, node: u8) -> &mut Faults {
+        self.bench.faults(node).expect("a module of the bus")
+    }
+}
+
+/// How far the current rises in a round.
+pub const RISE_MA: i32 = 4000;
+
+/// The pace of the document, with the wait that it does not state.
+pub fn pace<P: Protocol>(gap: u32) -> Pace {
+    let timing = P::TIMING;
+    let stated = timing.request_gap.map_or(gap, |gap| u32::try_from(gap.shortest.as_millis()).expect("it is short"));
+    Pace { gap: stated, wait: 100, tries: 3, late: 100 }
+}

@@ -1,0 +1,329 @@
+//! A station on buses whose modules fail, over hundreds of seeds.
+
+mod bus;
+
+use std::collections::HashMap;
+
+use bus::{Bus, Charger, RISE_MA, pace};
+use canspec_protocols::{infy, mxr};
+use canspec_runtime::client::{Client, Heard, Pace, Step};
+use canspec_runtime::sim::{Event, Faults, Random, Rules};
+use canspec_runtime::{Addressed, Quantities, Quantity, Received, Severity};
+use canspec_station::{Refused, State};
+
+/// The voltage in mV, and the current in mA.
+const FULL: (i32, i32) = (500_000, 10_000);
+/// The watchdog of INFY. Maxwell states none.
+const RULES: Rules = Rules { gap: 0, watchdog: Some(10_000), boot: 1500, starting_up: None };
+
+fn infy_tells(request: &Received<infy::Message>, module: &Charger<infy::Message>) -> Option<infy::Message> {
+    use infy::{Message, ModuleOutput, ModuleStatus, Status0, Status1, Status2};
+    Some(match request.content() {
+        Message::ReadModuleOutput => {
+            Message::ModuleOutput(ModuleOutput { voltage_v: module.volts(), current_a: module.amperes() })
+        }
+        Message::ReadModuleStatus => Message::ModuleStatus(ModuleStatus {
+            group: module.group.0,
+            temperature_c: 30,
+            status_2: Status2::default(),
+            status_1: if module.is_on { Status1::default() } else { Status1::DC_OFF },
+            status_0: Status0::default(),
+        }),
+        _ => return None,
+    })
+}
+
+fn mxr_tells(request: &Received<mxr::Message>, module: &Charger<mxr::Message>) -> Option<mxr::Message> {
+    use mxr::{Alarms, GroupAndAddress, Message, ModuleStatus, OutputCurrent, OutputVoltage};
+    let value = if module.is_on { Alarms::default() } else { Alarms::DCDC_OFF };
+    Some(match request.content() {
+        Message::ReadOutputVoltage => Message::OutputVoltage(OutputVoltage { value_v: module.volts() }),
+        Message::ReadOutputCurrent => Message::OutputCurrent(OutputCurrent { value_a: module.amperes() }),
+        Message::ReadModuleStatus => Message::ModuleStatus(ModuleStatus { value }),
+        Message::ReadGroupAndAddress => {
+            Message::GroupAndAddress(GroupAndAddress { group: module.group.0.into(), address: 0 })
+        }
+        _ => return None,
+    })
+}
+
+/// Eight modules in the groups 1 and 2.
+fn infies(seed: u64) -> Bus<infy::Message, 8, 2> {
+    let group = |number| (number, infy::Target::Group(number));
+    let modules = [0, 1, 2, 3, 4, 5, 6, 7].map(|node| (node, Charger::new(group(1 + node / 4), infy_tells)));
+    Bus::new([group(1), group(2)], modules, pace::<infy::Message>(0), Rules { starting_up: Some(7), ..RULES }, seed)
+}
+
+/// Four modules in the group 5.
+fn maxwells(seed: u64) -> Bus<mxr::Message, 4, 1> {
+    let group = (5, mxr::Target::Group(5));
+    let modules = [3, 4, 5, 6].map(|node| (node, Charger::new(group, mxr_tells)));
+    Bus::new([group], modules, pace::<mxr::Message>(20), RULES, seed)
+}
+
+/// Lets the groups deliver and stop while modules fail, and then not.
+fn endure<P: Quantities + Addressed, const N: usize, const G: usize>(
+    mut bus: Bus<P, N, G>,
+    groups: [u8; G],
+    nodes: [u8; N],
+    code: u64,
+    seed: u64,
+) where
+    P::Target: PartialEq,
+{
+    const STOP: u32 = 24_000;
+    let mut random = Random::new(seed);
+    for node in nodes {
+        let drawn = Faults::random(&mut random, 12, STOP);
+        // A reply under another address says of one module what is true of another. Nothing shows that.
+        *bus.faults(node) = Faults { disguised: 0, code, slowest: 1 + random.below(200), ..drawn };
+    }
+    bus.run(3000);
+    for group in groups {
+        bus.station.deliver(group, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    }
+    bus.run(STOP);
+    for group in groups {
+        bus.station.stop(group, bus.now).expect("the group is known");
+    }
+    while bus.now < STOP + 8000 {
+        bus.run(bus.now + 10);
+        for node in nodes {
+            assert!(bus.state(node) != Some(State::Off) || !bus.device(node).is_on, "seed {seed}, module {node}");
+        }
+    }
+    for node in nodes {
+        let Faults { dies, .. } = *bus.faults(node);
+        *bus.faults(node) = Faults { dies, ..Faults::NONE };
+    }
+    bus.run(STOP + 16_000);
+    for node in nodes {
+        let (state, is_dead, device) = (bus.state(node), bus.faults(node).dies.is_some(), *bus.device(node));
+        assert!(!device.was_bare, "seed {seed}: module {node} was switched on without its set-point");
+        assert!(is_dead || !device.is_on, "seed {seed}: module {node} is on");
+        let expected = if is_dead { State::Unknown } else { State::Off };
+        assert!(state == Some(expected) || is_dead && state.is_none(), "seed {seed}, module {node}: {state:?}");
+    }
+}
+
+#[test]
+fn infy_modules_are_fed_and_stopped_whatever_fails() {
+    for seed in 0..150 {
+        endure(infies(seed), [1, 2], [0, 1, 2, 3, 4, 5, 6, 7], 4, seed);
+    }
+}
+
+#[test]
+fn maxwell_modules_are_fed_and_stopped_whatever_fails() {
+    for seed in 0..150 {
+        endure(maxwells(seed), [5], [3, 4, 5, 6], 0xF2, seed);
+    }
+}
+
+#[test]
+fn modules_are_found_and_the_current_rises_step_by_step() {
+    let mut bus = infies(1);
+    bus.run(3000);
+    let found: Vec<_> = bus.station.modules().map(|module| (module.node, module.group)).collect();
+    assert_eq!(found, [0, 1, 2, 3, 4, 5, 6, 7].map(|node| (node, Some(1 + node / 4))));
+    bus.station.deliver(1, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    bus.run(14_000);
+    for node in 0..8 {
+        let is_told = node < 4;
+        let device = *bus.device(node);
+        let output = is_told.then_some(FULL);
+        assert_eq!((device.is_on, device.voltage_mv.zip(device.current_ma)), (is_told, output), "module {node}");
+        assert_eq!(device.steepest_ma, if is_told { RISE_MA } else { 0 });
+        let module = bus.station.modules().find(|module| module.node == node).expect("it is found");
+        assert_eq!(module.state, if is_told { State::On } else { State::Off });
+        let shown = if is_told { (500_000, 10_000) } else { (0, 0) };
+        assert_eq!(module.voltage_mv.zip(module.current_ma), Some(shown));
+        assert_eq!(module.severity(), if is_told { None } else { Some(Severity::State) });
+    }
+}
+
+#[test]
+fn a_module_that_restarts_gets_its_set_point_before_its_switch_on_whenever_that_happens() {
+    for restart in (0..4000).step_by(13) {
+        let (mut infies, mut maxwells) = (infies(7), maxwells(7));
+        for (bus, group) in [(&mut infies as &mut dyn Restarts, 1), (&mut maxwells, 5)] {
+            assert_eq!(bus.after_restart(group, 12_000 + restart), (true, false, 2), "at {restart} ms");
+        }
+    }
+}
+
+/// A bus of any protocol.
+trait Restarts {
+    /// Returns of a module that has restarted whether it is on, whether it ever was without a set-point, and how often
+    /// it was switched on.
+    fn after_restart(&mut self, group: u8, restart: u32) -> (bool, bool, u32);
+}
+
+impl<P: Quantities + Addressed, const N: usize, const G: usize> Restarts for Bus<P, N, G>
+where
+    P::Target: PartialEq,
+{
+    fn after_restart(&mut self, group: u8, restart: u32) -> (bool, bool, u32) {
+        self.run(3000);
+        self.station.deliver(group, FULL.0, FULL.1, self.now).expect("the document allows it");
+        self.run(restart);
+        self.bench.restart(3, self.now);
+        self.run(restart + 8000);
+        let device = self.device(3);
+        (device.is_on, device.was_bare, device.switched_on)
+    }
+}
+
+#[test]
+fn a_switch_on_that_is_lost_in_a_restart_comes_again_after_its_set_point() {
+    let mut bus = infies(3);
+    bus.run(3000);
+    bus.station.deliver(1, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    // It restarts when its set-point has come, and before its switch-on.
+    while bus.device(3).voltage_mv.is_none() {
+        bus.run(bus.now + 1);
+    }
+    assert_eq!(bus.device(3).switched_on, 0);
+    bus.bench.restart(3, bus.now);
+    bus.run(bus.now + 1000);
+    let is_switched_on = |(_, frame): &(u32, canspec_runtime::Frame)| {
+        let received = Received::<infy::Message>::decode(frame).expect("the station sent it");
+        received.node() == Some(3) && received.setting(Quantity::DELIVERING) == Some(1)
+    };
+    assert_eq!(bus.sent.iter().filter(|sent| is_switched_on(sent)).count(), 1, "one was lost");
+    assert_eq!(bus.device(3).switched_on, 0);
+    bus.run(bus.now + 6000);
+    let device = bus.device(3);
+    assert_eq!((device.is_on, device.was_bare, device.voltage_mv), (true, false, Some(FULL.0)));
+}
+
+#[test]
+fn a_stopped_group_from_which_nobody_was_awaited_is_not_off() {
+    let mut bus = maxwells(5);
+    for node in [3, 4, 5, 6] {
+        bus.faults(node).lost = 100;
+        *bus.device(node) = Charger { is_on: true, ..*bus.device(node) };
+    }
+    bus.run(2000);
+    assert_eq!(bus.station.modules().count(), 0);
+    bus.station.stop(5, bus.now).expect("the group is known");
+    bus.run(9000);
+    assert!(!bus.station.is_off(5));
+    // It was told all the same, and again and again.
+    assert!([3, 4, 5, 6].into_iter().all(|node| !bus.device(node).is_on));
+    let offs = bus.sent.iter().filter(|(_, frame)| {
+        let received = Received::<mxr::Message>::decode(frame).expect("the station sent it");
+        received.target() == Some(mxr::Target::Group(5)) && received.setting(Quantity::DELIVERING) == Some(0)
+    });
+    assert_eq!(offs.count(), 4);
+    assert_eq!(bus.station.stop(6, bus.now), Err(Refused::Group));
+}
+
+#[test]
+fn a_stop_is_the_next_frame_and_a_silent_module_is_unknown() {
+    let mut bus = infies(9);
+    bus.run(3000);
+    for group in [1, 2] {
+        bus.station.deliver(group, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    }
+    bus.run(15_000);
+    bus.faults(2).lost = 100;
+    bus.station.stop(1, bus.now).expect("the group is known");
+    let stopped = bus.now;
+    bus.run(stopped + 60);
+    let &(at, first) = bus.sent.iter().find(|(at, _)| *at >= stopped).expect("the station sends");
+    assert_eq!((at - stopped < 50, first.to_string()), (true, "02DA01F0#0100000000000000".to_owned()));
+    bus.run(stopped + 5000);
+    assert_eq!([0, 1, 2, 3, 4].map(|node| bus.device(node).is_on), [false, false, false, false, true]);
+    let states = [0, 1, 2, 3, 4].map(|node| bus.state(node).expect("it is found"));
+    assert_eq!(states, [State::Off, State::Off, State::Unknown, State::Off, State::On]);
+    assert_eq!([1, 2].map(|group| bus.station.is_off(group)), [false, false]);
+    bus.faults(2).lost = 0;
+    bus.run(stopped + 10_000);
+    assert_eq!([1, 2].map(|group| bus.station.is_off(group)), [true, false]);
+}
+
+#[test]
+fn the_station_gives_way_to_another_controller_and_still_stops() {
+    let mut bus = infies(11);
+    bus.run(3000);
+    bus.station.deliver(1, FULL.0, FULL.1, bus.now).expect("the document allows it");
+    bus.run(12_000);
+    assert!(!bus.station.has_rival());
+    let route = canspec_runtime::Route::new(infy::Target::Module(0), 0xF1);
+    let request = infy::SetModuleOutput { voltage_v: 300.0, current_a: 2.0 }.set(route).expect("it is legal");
+    bus.bench.another_controller(*request.frame(), 1000, 12_100);
+    bus.run(20_000);
+    assert!(bus.station.has_rival());
+    let settings = |bus: &Bus<infy::Message, 8, 2>, from: u32| {
+        let later = bus.sent.iter().filter(|(at, _)| *at > from);
+        let received = later.map(|(_, frame)| Received::<infy::Message>::decode(frame).expect("the station sent it"));
+        received.filter(|received| received.setting(Quantity::OUTPUT_VOLTAGE).is_some()).count()
+    };
+    assert_eq!(settings(&bus, 12_101), 0);
+    assert_eq!([0, 1].map(|node| bus.device(node).voltage_mv), [Some(300_000), Some(500_000)]);
+    bus.station.stop(1, bus.now).expect("the group is known");
+    bus.run(26_000);
+    assert_eq!((settings(&bus, 12_101), bus.device(1).is_on, bus.station.is_off(1)), (0, false, true));
+}
+
+/// Asks modules at random while they fail, and counts how each request ends.
+fn count_endings<P: Quantities + Addressed, const N: usize, const G: usize>(
+    mut bus: Bus<P, N, G>,
+    nodes: [u8; N],
+    pace: Pace,
+    code: u64,
+    seed: u64,
+) where
+    P::Target: PartialEq,
+{
+    let mut random = Random::new(seed);
+    for node in nodes {
+        let drawn = Faults::random(&mut random, 20, 8000);
+        *bus.faults(node) = Faults { code, slowest: 1 + random.below(2 * pace.wait), ..drawn };
+    }
+    let mut client: Client<P, 12> = Client::new(pace);
+    let mut endings = HashMap::new();
+    for now in 0..20_000 {
+        while let Some(event) = bus.bench.poll(now) {
+            let Event::Frame(frame) = event else { continue };
+            match client.handle(&frame) {
+                Heard::Answer { ticket, .. } | Heard::Refusal { ticket, .. } | Heard::ShortRefusal(ticket) => {
+                    *endings.get_mut(&ticket).expect("it was asked") += 1;
+                }
+                _ => {}
+            }
+        }
+        loop {
+            match client.poll(now) {
+                Step::Send(frame) => bus.bench.send(&frame, now),
+                Step::Lost(ticket) | Step::Done(ticket) | Step::Missing { ticket, .. } => {
+                    *endings.get_mut(&ticket).expect("it was asked") += 1;
+                }
+                Step::Silent(_) | Step::Back(_) => {}
+                Step::Wait(_) => break,
+            }
+        }
+        if now < 8000 && random.chance(5) {
+            let target = P::module(nodes[usize::try_from(random.below(4)).expect("below 4")].into()).expect("a module");
+            let (off, state) = ([(Quantity::DELIVERING, 0)], [Quantity::DELIVERING]);
+            let request = if random.chance(50) {
+                P::set(&off, target).expect("it is legal").next()
+            } else {
+                P::read(&state, target).expect("it is legal").next()
+            };
+            if let Ok(ticket) = client.ask(request.expect("one message has it"), now) {
+                assert_eq!(endings.insert(ticket, 0), None);
+            }
+        }
+    }
+    assert!(endings.len() > 50 && endings.values().all(|count| *count == 1), "seed {seed}: {endings:?}");
+}
+
+#[test]
+fn each_request_ends_once_whatever_fails() {
+    for seed in 0..200 {
+        count_endings(infies(seed), [0, 1, 2, 3, 4, 5, 6, 7], pace::<infy::Message>(0), 4, seed);
+        count_endings(maxwells(seed), [3, 4, 5, 6], pace::<mxr::Message>(20), 0xF2, seed);
+    }
+}
