@@ -11,7 +11,7 @@ mod tests;
 
 pub use path::{ReadPath, SetPath, States};
 
-use crate::{Destination, Error, Kind, Protocol, Received, Request, Route};
+use crate::{Destination, Error, Protocol, Received, Request, Route};
 
 /// The name of what a device measures or takes. It is the same for every vendor.
 ///
@@ -181,9 +181,8 @@ impl<P: Quantities> Received<P> {
     /// - the bits mean something else than a number, or no state of the switch,
     /// - the frame is an error reply, or an `i32` cannot hold the value.
     pub fn setting(&self, quantity: Quantity) -> Option<i32> {
-        let is_set = matches!(self.kind(), Kind::Request | Kind::Reply) && !self.is_error_reply();
-        let mut paths = P::SETS.iter().filter(|_| is_set);
+        let mut paths = P::SETS.iter();
         let path = paths.find(|path| path.quantity == quantity && path.request.is(self.exchange()))?;
-        path.read(self.frame())
+        if self.is_error_reply() { None } else { path.read(self.frame()) }
     }
 }

@@ -1,8 +1,11 @@
 use std::string::ToString;
 
 use super::single;
+use crate::tests::heaters::{Heat, Message};
 use crate::tests::random::Random;
-use crate::{Error, Payload, Place, ReadNumber, SetNumber, Signal};
+use crate::{
+    Error, Frame, Payload, Place, Quantities, Quantity, ReadNumber, ReadPath, Received, SetNumber, SetPath, Signal,
+};
 
 const TENTHS: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10).limits(100, 5000);
 const HALVES: Signal<i8> = Signal::new("temperature", Place::byte(2)).unit("°C").scale(-1, 2).offset(-40, 1);
@@ -52,6 +55,28 @@ fn what_lies_beyond_a_limit_is_refused_by_its_own_value() {
     assert_eq!(refused(-1), "`voltage` of `set` is -0.001 V, but its limits are 0 and 6553.5 V");
     assert_eq!([-103_500, -103_501].map(|value| set(&HALVES, value).is_ok()), [true, false]);
     assert_eq!([24_000, 24_001].map(|value| set(&HALVES, value).is_ok()), [true, false]);
+}
+
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[];
+    const SETS: &'static [SetPath] = &[SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER)];
+}
+
+#[test]
+fn a_request_and_its_reply_show_what_is_set() {
+    let setting = |id, data: [u8; 4], quantity| {
+        let [first, second, third, fourth] = data;
+        let frame = Frame::new_raw(id, true, [first, second, third, fourth, 0, 0, 0, 0], 4);
+        Received::<Message>::decode(&frame).expect("a frame of heaters").setting(quantity)
+    };
+    // 150 steps of 10 W.
+    assert_eq!(setting(0x0107_03F0, [1, 0, 0, 150], Quantity::OUTPUT_POWER), Some(1_500_000));
+    assert_eq!(setting(0x0107_F003, [2, 0xF0, 0, 150], Quantity::OUTPUT_POWER), Some(1_500_000));
+    assert_eq!(setting(0x0107_F003, [2, 0xF0, 0, 150], Quantity::INPUT_POWER), None, "nothing sets it");
+    assert_eq!(setting(0x0108_F05D, [2, 0xF0, 0, 150], Quantity::OUTPUT_POWER), None, "it is read");
+    assert_eq!(setting(0x1D07_F003, [2, 0xF0, 0, 150], Quantity::OUTPUT_POWER), None, "it is an error reply");
+    let data = 0x1388_0000_0000_0000_u64.to_be_bytes();
+    assert_eq!([1, 2].map(|length| TENTHS.set_in(&data, length)), [None, Some(500_000)]);
 }
 
 #[test]
