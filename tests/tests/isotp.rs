@@ -72,6 +72,16 @@ impl Transfer {
         std::iter::once(first).chain(others.collect::<Vec<_>>()).collect()
     }
 
+    /// The first frame of a message whose size stands in four bytes, and others. It is too long, or a receiver ignores
+    /// the first frame, and there are no others.
+    fn too_long(&self, rng: &mut Rng) -> Vec<Frame> {
+        let size = rng.u32(4090..4110);
+        let first = [&[0x10, 0], &size.to_be_bytes()[..], &self.data[..2]].concat();
+        let count = if size > 4095 { rng.u8(0..4) } else { 0 };
+        let others = (1..=count).map(|number| [vec![0x20 | number], vec![number; 7]].concat());
+        std::iter::once(first).chain(others).map(|data| self.frame(self.is_to_unit, data)).collect()
+    }
+
     /// What the nodes put on the bus, and whether some of it is lost. Some frames are late or repeated. The receiver
     /// answers, or does not.
     ///
@@ -109,6 +119,10 @@ fn log(rng: &mut Rng) -> (Vec<Frame>, Vec<Transfer>) {
             let (frames, is_spoiled) = transfer.frames(spoiled[direction], rng);
             spoiled[direction] = is_spoiled;
             queue.extend(frames);
+            if rng.u8(..8) == 0 {
+                queue.extend(transfer.too_long(rng));
+                spoiled[direction] = true;
+            }
             sent.push(transfer);
         }
         queues.push(queue);
@@ -145,7 +159,7 @@ const BARE: [(&Exchange, Kind); 4] = [
 
 fn of_generated(event: &Event<Tp, Room>) -> Vec<Told> {
     let Event { whole, broken, refused, .. } = event;
-    assert!(refused.is_none(), "there is room for all");
+    assert!(refused.as_ref().is_none_or(|refused| refused.transfer.size() > 4095), "there is room for all others");
     let broken = broken.as_ref().map(|broken| (broken.transfer.link.id(), None, None));
     let whole = whole.as_ref().map(|whole| {
         let values = [
@@ -162,12 +176,13 @@ fn of_generated(event: &Event<Tp, Room>) -> Vec<Told> {
     broken.into_iter().chain(whole).collect()
 }
 
-/// Tests that an answer lets all frames come, and comes from the receiver.
+/// Tests that an answer lets all frames come unless they are too many, and comes from the receiver.
 fn check_answer(frame: &Frame, answer: Option<canspec_runtime::Frame>) {
     let is_announced = frame.data[0] >> 4 == 1;
     let Some(answer) = answer else { return };
     assert!(is_announced, "only a first frame is answered: {frame:X?}");
-    assert_eq!(answer, canspec_runtime::Frame::new_raw(frame.id ^ 8, false, [0x30, 0, 0, 0, 0, 0, 0, 0], 8));
+    let status = if frame.data[..2] == [0x10, 0] { 0x32 } else { 0x30 };
+    assert_eq!(answer, canspec_runtime::Frame::new_raw(frame.id ^ 8, false, [status, 0, 0, 0, 0, 0, 0, 0], 8));
 }
 
 #[test]
@@ -322,11 +337,33 @@ mod by_hand {
         assert_eq!(answers, [answer.clone(), answer, None]);
     }
 
+    /// A size of more than twelve bits stands in four bytes of its own; here 0x1000.
     #[test]
-    fn a_size_that_the_standard_does_not_have_here_changes_nothing() {
+    fn a_message_that_is_too_long_ends_the_one_before_it_and_overflows() {
+        let mut units = Assembler::<Tp, 1>::new();
+        let _ = units.receive(&frame("7E8#100E62F19003E800"), 0);
+        let event = units.receive(&frame("7E8#10000000100062F1"), 0);
+        assert_eq!(event.broken.map(|broken| broken.cause), Some(Cause::Restarted));
+        assert_eq!(event.refused.map(|refused| (refused.cause, refused.transfer.size())), Some((Cause::Full, 0x1000)));
+        assert_eq!(event.answer.map(|answer| answer.to_string()).as_deref(), Some("7E0#3200000000000000"));
+        let event = units.receive(&frame("7E8#2164012C01F40000"), 0);
+        assert!(event.whole.is_none() && event.broken.is_none(), "nothing is on its way");
+    }
+
+    #[test]
+    fn what_is_too_long_and_of_no_message_ends_the_one_before_it_without_an_answer() {
         let mut units = Assembler::<Tp, 1>::new();
         let _ = units.receive(&frame("7E8#100E62F19003E800"), 0);
         let event = units.receive(&frame("7E8#100000001000AABB"), 0);
+        assert_eq!(event.broken.map(|broken| broken.cause), Some(Cause::Restarted));
+        assert!(event.refused.is_none() && event.answer.is_none());
+    }
+
+    #[test]
+    fn a_size_that_twelve_bits_have_room_for_changes_nothing_in_four_bytes() {
+        let mut units = Assembler::<Tp, 1>::new();
+        let _ = units.receive(&frame("7E8#100E62F19003E800"), 0);
+        let event = units.receive(&frame("7E8#100000000FFF62F1"), 0);
         assert!(event.broken.is_none() && event.refused.is_none() && event.answer.is_none());
         assert!(units.receive(&frame("7E8#2164012C01F40000"), 0).broken.is_none(), "it goes on");
     }

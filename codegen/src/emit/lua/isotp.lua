@@ -1,6 +1,6 @@
 -- Transfers by ISO-TP: joins a single frame, or a first frame and consecutive ones, of each sender.
 
-local SINGLE, OVERFLOW = 7, 2
+local SINGLE, LONGEST, OVERFLOW = 7, 4095, 2
 
 local open_messages
 
@@ -119,9 +119,18 @@ function take.single_frame(frame, decoded, transport, ended)
   if layout then add_message({ frame = frame, layout = layout, size = size, data = data }, nil, ended) end
 end
 
+-- Tests whether a first frame announces a message that is too long for twelve bits of size. Then the size stands in four
+-- bytes of its own.
+local function is_too_long(frame, size)
+  local own_size = data_behind(frame, 2):sub(1, 8)
+  return size == 0 and #own_size == 8 and tonumber(own_size, 16) > LONGEST
+end
+
 function take.first_frame(frame, decoded, transport, ended)
   local size, data = number(frame, decoded, "size"), data_behind(frame, 2)
-  if not size or size <= SINGLE then return end
+  if not size then return end
+  if is_too_long(frame, size) then return restart(ends_of(frame, decoded, transport), ended) end
+  if size <= SINGLE then return end
   local ends = ends_of(frame, decoded, transport)
   restart(ends, ended)
   local layout = message_of(frame, decoded, transport, data, size)

@@ -8,9 +8,10 @@ use crate::model::{
     FrameLayout, Isotp, LongMessage, ModeId, ModelId, Protocol, Side, Transport, TransportFrame, TransportId,
 };
 
-/// Data bytes of a single and of a consecutive frame, and of a first one.
+/// Data bytes of a single and of a consecutive frame, of a first one, and of the longest message.
 const SINGLE: usize = 7;
 const FIRST: usize = 6;
+const LONGEST: usize = 4095;
 
 /// How a receiver says that it has no room for a message.
 const OVERFLOW: usize = 2;
@@ -114,11 +115,10 @@ impl<M: Clone> Transfers<M> {
     }
 
     fn first(&mut self, part: &Part, mark: M) -> Taken<M> {
-        let size = part.number("size").filter(|size| *size > SINGLE);
-        let (Some(size), Some(data)) = (size, part.frame.data.get(2..)) else { return Taken::NOTHING };
+        let Some((size, data)) = announced(part) else { return Taken::NOTHING };
         let link = Link::of(part);
         let ended = self.restarted(part, &link);
-        let started = message(part, data, size);
+        let started = message(part, data, size).filter(|_| size <= LONGEST);
         let is_part = started.is_some();
         let begun = started.map(|started| Transfer { link, started, data: data.to_vec(), marks: vec![mark] });
         self.0.extend(begun);
@@ -174,6 +174,18 @@ impl<M: Clone> Transfer<M> {
         let what = format!("{came} of {size} bytes came");
         Some([Some(what), why].into_iter().flatten().collect::<Vec<_>>().join("; "))
     }
+}
+
+/// Returns how many data bytes a first frame announces, and the first of them. A size of more than twelve bits stands in
+/// four bytes of its own.
+fn announced<'a>(part: &Part<'a>) -> Option<(usize, &'a [u8])> {
+    let (size, data) = (part.number("size")?, part.frame.data.get(2..)?);
+    if size > 0 {
+        return (size > SINGLE).then_some((size, data));
+    }
+    let (size, data) = data.split_first_chunk()?;
+    let size = usize::try_from(u32::from_be_bytes(*size)).ok()?;
+    (size > LONGEST).then_some((size, data))
 }
 
 /// Finds the message whose data begin so.

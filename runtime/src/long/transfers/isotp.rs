@@ -93,13 +93,13 @@ impl<T: Filled, M: Memory, const N: usize> Sessions<T, M> for Open<M, N> {
                 Some(_) => self.single(ends, data),
                 None => self.restarted(ends),
             },
-            Some(Pdu::First { size, data }) => match usize::try_from(size).ok().filter(|size| SIZES.contains(size)) {
-                Some(size) => match carried(data, size) {
+            Some(Pdu::First { size, data }) => {
+                let size = usize::try_from(size).unwrap_or(usize::MAX);
+                match carried(data, size) {
                     Some(carried) => self.first(ends.answered_by(carried.answer::<T>(&ends)), size, data, now),
                     None => self.restarted(ends),
-                },
-                None => return Event::NONE,
-            },
+                }
+            }
             Some(Pdu::Consecutive { number, data }) => self.consecutive(ends, number, data, now),
             Some(Pdu::Flow(flow)) => self.flow(|sender| ends.answers(sender), flow, now),
             None => return Event::NONE,

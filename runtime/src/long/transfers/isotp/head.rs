@@ -42,7 +42,7 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// Finds the message whose `size` data bytes begin so. `id` is the identifier of its frames, and says whether they
+    /// Finds the message whose `size` data bytes begin so, as far as they came. `id` is the identifier of its frames, and says whether they
     /// go to a module. It is one of the device model, if there is one.
     pub fn find<T: Filled>(
         (id, is_to_module): (u32, bool),
@@ -50,12 +50,11 @@ impl Carried {
         size: usize,
         model: Option<u8>,
     ) -> Option<Self> {
-        let head = crate::frame::padded(data);
         let mut shown = T::CARRIES.iter().filter_map(|(exchange, kind)| {
             let filter = exchange.filter(*kind)?;
             let is_shown = exchange.is_to_module::<T::Protocol>(*kind) == is_to_module
                 && filter.matches_id(id)
-                && filter.matches_data(&head);
+                && begins(&filter, data);
             let known = Self { exchange, kind: *kind, head: Head::of(&filter), filter };
             (is_shown && known.head.length() <= size).then_some(known)
         });
@@ -83,4 +82,11 @@ impl Carried {
         let filter = others.find_map(|kind| self.exchange.filter(kind)).unwrap_or(self.filter);
         ends.answer_in(T::Protocol::MODES, filter.sent_id())
     }
+}
+
+/// Tests whether data bytes are those of a frame. What did not come is as it has to be.
+fn begins(filter: &Filter, data: &[u8]) -> bool {
+    let mut head = filter.data_value();
+    head.iter_mut().zip(data).for_each(|(place, byte)| *place = *byte);
+    filter.matches_data(&head)
 }
