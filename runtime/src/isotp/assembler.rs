@@ -165,10 +165,9 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
     }
 
     /// Gives up a message whose sender has been silent for too long. Call this until it returns
-    /// `None`.
+    /// `None`. A frame that comes too late gives its message up, too.
     pub fn timed_out(&mut self, now: u32) -> Option<Event<M, L>> {
-        let is_silent =
-            |session: &Session<M, L>| elapsed(session.since, now).is_some_and(|silence| silence >= PATIENCE);
+        let is_silent = |session: &Session<M, L>| is_silent(session.since, now);
         let slot = self.sessions.iter_mut().find(|slot| slot.as_ref().is_some_and(is_silent))?;
         Some(Event::broken(slot.take()?.transfer, Cause::Silent))
     }
@@ -192,6 +191,9 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
 
     pub(crate) fn consecutive(&mut self, link: L, number: u8, data: &[u8], now: u32) -> Event<M, L> {
         let Some(Session { mut transfer, since }) = self.take(link) else { return Event::NONE };
+        if is_silent(since, now) {
+            return Event::broken(transfer, Cause::Silent);
+        }
         if transfer.frames() & 0xF != number.into() {
             return Event::broken(transfer, Cause::Number(number));
         }
@@ -248,4 +250,9 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
             *slot = Some(session);
         }
     }
+}
+
+/// Tests whether a sender has been silent for too long.
+fn is_silent(since: u32, now: u32) -> bool {
+    elapsed(since, now).is_some_and(|silence| silence >= PATIENCE)
 }

@@ -213,6 +213,17 @@ fn a_silent_sender_is_given_up() {
 }
 
 #[test]
+fn a_frame_that_comes_too_late_gives_its_message_up() {
+    let mut assembler = assembler();
+    _ = assembler.receive(engine(), &bytes(VIN[0]), 10);
+    assert!(assembler.receive(engine(), &bytes(VIN[1]), 1009).broken.is_none(), "999 ms");
+    let event = assembler.receive(engine(), &bytes(VIN[2]), 2009);
+    let broken = event.broken.expect("a message");
+    assert_eq!((broken.cause, broken.transfer.data().len()), (Cause::Silent, 13));
+    assert!(event.whole.is_none() && event.answer.is_none() && assembler.timed_out(9999).is_none());
+}
+
+#[test]
 fn a_listener_hears_that_the_receiver_has_no_room() {
     let mut assembler = assembler();
     assert!(assembler.receive(engine(), &bytes(VIN[0]), 0).broken.is_none());
