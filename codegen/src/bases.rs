@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use indexmap::IndexMap;
@@ -96,7 +97,7 @@ impl Bases {
     /// Finds a spec in a folder, or else among these.
     fn find(&self, name: &str, folder: Option<&Path>) -> Result<Option<Source>, Diagnostics> {
         let file = format!("{name}.yaml");
-        let beside = folder.map(|folder| folder.join(&file)).filter(|path| path.exists());
+        let beside = folder.map(|folder| folder.join(&file)).filter(|path| is_there(path));
         let known = || self.0.get(name).map(|text| Source::new(file, text.as_bytes().to_vec()));
         beside.map(Source::read).or_else(known).transpose()
     }
@@ -163,6 +164,11 @@ fn is_name(name: &str) -> bool {
 
 fn is_of_name(letter: char) -> bool {
     letter.is_ascii_alphanumeric() || letter == '_'
+}
+
+/// Tests whether something has the name of a file, though it may be no file that can be read.
+fn is_there(path: &Path) -> bool {
+    fs::symlink_metadata(path).map_or_else(|error| error.kind() != ErrorKind::NotFound, |_| true)
 }
 
 /// Returns the name of a file without folders and ending.

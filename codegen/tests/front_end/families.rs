@@ -200,6 +200,23 @@ fn a_file_beside_a_spec_comes_before_a_spec_of_the_same_name() {
     assert!(ring.ends_with("error[based_on]: a spec is based on itself: own → base → base"), "{ring}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_file_that_cannot_be_read_is_not_passed_over() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let path = |name: &str| folder.path().join(name);
+    let bases: Bases = [("base", WHOLE)].into_iter().collect();
+    fs::write(path("own.yaml"), DERIVED).expect("the folder is there");
+    let read = || bases.read(path("own.yaml")).map(|_| ()).map_err(|refused| refused.concise());
+    assert_eq!(read(), Ok(()), "no file has the name");
+    for target in ["nowhere.yaml", "base.yaml"] {
+        std::os::unix::fs::symlink(path(target), path("base.yaml")).expect("the folder is there");
+        let said = read().expect_err("the link leads nowhere");
+        assert!(said.starts_with(&format!("{}: error[file]: ", path("base.yaml").display())), "{said}");
+        fs::remove_file(path("base.yaml")).expect("the link is there");
+    }
+}
+
 #[test]
 fn many_conflicts_are_reported_up_to_a_limit() {
     let types = |value: &str| format!("types:\n{}", lines(300, |number| format!("  t{number}: {{note: {value}}}\n")));
