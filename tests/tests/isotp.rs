@@ -285,6 +285,28 @@ mod by_hand {
     }
 
     #[test]
+    fn a_sender_says_whether_it_waits_or_is_done() {
+        let mut buffer = [0; Calibration::LONGEST];
+        let mut tester = calibration().write(Target::Unit(0), &mut buffer).expect("all is allowed");
+        assert_eq!((tester.is_waiting(), tester.is_done()), (false, false), "it has not begun");
+        assert_eq!((&mut tester).count(), 1);
+        assert_eq!((tester.is_waiting(), tester.is_done()), (true, false));
+        let mut refused = tester.clone();
+        assert_eq!(refused.receive(&frame("7E8#3200000000000000")), Answer::Overflow);
+        assert_eq!((refused.next(), refused.is_waiting(), refused.is_done()), (None, false, false), "it is refused");
+        let _ = tester.receive(&frame("7E8#3001000000000000"));
+        assert_eq!((tester.is_waiting(), tester.is_done()), (false, false), "a block of one frame");
+        assert_eq!((&mut tester).count(), 1);
+        assert_eq!((tester.is_waiting(), tester.is_done()), (true, false), "it asks for the next block");
+        let _ = tester.receive(&frame("7E8#3000000000000000"));
+        assert_eq!((&mut tester).count(), 1);
+        assert_eq!((tester.is_waiting(), tester.is_done()), (false, true));
+        let mut bare = Calibration::read(Target::Unit(2)).expect("it is allowed");
+        assert_eq!((bare.is_waiting(), bare.is_done()), (false, false));
+        assert_eq!((bare.next().is_some(), bare.is_waiting(), bare.is_done()), (true, false, true));
+    }
+
+    #[test]
     fn what_is_asked_is_told_from_what_is_answered_by_its_constants() {
         let asked = texts(Calibration::read(Target::Unit(2)).expect("it is allowed"));
         assert_eq!(asked, ["7E2#0322F19000000000"]);

@@ -155,6 +155,26 @@ impl<T: Filled> Sender<'static, T> {
     }
 }
 
+impl<T: Filled> Sender<'_, T> {
+    /// Tests whether a flow control is awaited. If none comes in [`PATIENCE`](isotp::PATIENCE), the
+    /// message comes to nothing.
+    pub const fn is_waiting(&self) -> bool {
+        match &self.frames {
+            Packets::One(_) => false,
+            Packets::Several { packets, .. } => packets.is_waiting(),
+        }
+    }
+
+    /// Tests whether all data bytes are sent. If not, and no flow control is awaited, the iterator
+    /// gives more frames, or the receiver has refused the message.
+    pub const fn is_done(&self) -> bool {
+        match &self.frames {
+            Packets::One(frame) => frame.is_none(),
+            Packets::Several { packets, .. } => packets.is_done(),
+        }
+    }
+}
+
 impl<T: Filled, const N: usize, M: Memory> Assembler<T, N, M> {
     /// Asks senders to wait for an answer after a block of frames, unless it is 0, and to leave time
     /// between frames.
