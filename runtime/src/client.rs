@@ -201,29 +201,36 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Asks once.
     ///
+    /// What is [held](Self::hold) of the same message by the same access ends, if the request goes to one
+    /// of its modules or may do so. Its ticket ends without an event. So no renewal undoes a stop of all
+    /// modules. To read something ends nothing that is set.
+    ///
+    /// The request waits until no answer to what was held can be taken for one to it. To hold the new value
+    /// instead is faster.
+    ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it.
+    /// Refuses a request if there is no room for it. Then nothing ends.
     pub fn ask<R>(&mut self, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
         self.ask_at(self.pace, request, now)
     }
 
-    /// Asks once, at a pace of its own.
+    /// Asks once, at a pace of its own. It ends what [`ask`](Self::ask) would end.
     ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it.
+    /// Refuses a request if there is no room for it. Then nothing ends.
     pub fn ask_at<R>(&mut self, pace: Pace, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
-        self.add(Entry::new(self.ticket(), request.untyped(), pace, now))
+        self.add_instead(Entry::new(self.ticket(), request.untyped(), pace, now))
     }
 
     /// Asks again and again, until it is [cancelled](Self::cancel). Each round ends like a request. A
     /// round that comes too late is left out. The period is at least 1 ms. One of more than 24 days
-    /// counts as 2^31 - 1 ms, which is somewhat more than that.
+    /// counts as 2^31 - 1 ms, which is somewhat more than that. It ends what [`ask`](Self::ask) would end.
     ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it.
+    /// Refuses a request if there is no room for it. Then nothing ends.
     pub fn every<R>(&mut self, period: u32, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
         self.repeat(period, false, request, now)
     }
@@ -236,16 +243,22 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// starts anew when that request was sent. If the request goes to more than one module, it is sent in
     /// each period.
     ///
+    /// A round that has waited for a gap goes before all others but hurried ones. So it is at most two gaps
+    /// late, and one more for each other module whose round is due. It is later while an answer to another
+    /// request could be taken for one to it, and while the frames of its last round are sent again.
+    ///
+    /// It ends what [`ask`](Self::ask) would end.
+    ///
     /// # Errors
     ///
-    /// Refuses a request if there is no room for it.
+    /// Refuses a request if there is no room for it. Then nothing ends.
     pub fn keep_alive<R>(&mut self, request: Request<P, R>, period: u32, now: u32) -> Result<Ticket, Full> {
         self.repeat(period, true, request, now)
     }
 
     fn repeat<R>(&mut self, period: u32, is_spare: bool, request: Request<P, R>, now: u32) -> Result<Ticket, Full> {
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        self.add(Entry { period: NonZeroU32::new(period.clamp(1, LONGEST)), is_spare, ..entry })
+        self.add_instead(Entry { period: NonZeroU32::new(period.clamp(1, LONGEST)), is_spare, ..entry })
     }
 
     /// Returns the modules that are silent.
@@ -255,11 +268,15 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     }
 
     /// Sends a request before all others that are due, if it is due: a stop, for instance. It keeps the gap
-    /// between requests. It also waits until no answer to another request could be taken for one to it.
+    /// between requests. It also waits until no answer to another request could be taken for one to it, but
+    /// not for answers to what it replaced. Of a group whose members are known, it waits until the round of
+    /// another request to that group has ended.
+    ///
+    /// An older request that is still due is sent after it. [Cancel](Self::cancel) one that would undo a stop.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
         let due = self.entries.iter_mut().flatten().find(|entry| entry.ticket == ticket && entry.due(now).is_some());
         if let Some(entry) = due {
-            entry.state = State::Due { from: now.wrapping_sub(LONGEST / 2) };
+            entry.is_hurried = true;
         }
     }
 
@@ -267,7 +284,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     pub fn cancel(&mut self, ticket: Ticket) {
         let entries = self.entries.iter_mut();
         for slot in entries.filter(|slot| slot.is_some_and(|entry| entry.ticket == ticket)) {
-            *slot = slot.filter(Entry::is_under_way).map(Entry::cancelled);
+            *slot = slot.and_then(Entry::cancelled);
         }
     }
 
@@ -305,6 +322,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         if let Some(node) = node {
             self.health.heard(node);
             self.groups.heard(node);
+            let entries = self.entries.iter_mut().flatten();
+            entries.filter(|entry| entry.node == Some(node)).for_each(|entry| entry.is_heard = true);
         }
         if let Some(entry) = awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
             let is_refusal = entry.request.refuses(frame) == Some(true);
@@ -360,14 +379,22 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         Ok(entry.ticket)
     }
 
-    /// Sends the request that has waited longest, if the bus is free.
+    /// Adds a request, and ends what is held that it contradicts.
+    fn add_instead(&mut self, entry: Entry<P>) -> Result<Ticket, Full> {
+        let ticket = self.add(entry)?;
+        self.release(&entry);
+        Ok(ticket)
+    }
+
+    /// Sends the request that is to be sent first, if the bus is free.
     fn send(&mut self, now: u32) -> Option<Step> {
         if self.free.is_some() {
             return None;
         }
-        let ready = self.entries.iter().enumerate().filter_map(|(place, slot)| Some((place, slot.as_ref()?.due(now)?)));
-        let ready = ready.filter(|(place, _)| !self.is_blocked(*place, now));
-        let (place, _) = ready.reduce(|one, other| if earlier(other.1, one.1, now) { other } else { one })?;
+        let due = |slot: &Option<Entry<P>>| slot.filter(|entry| entry.due(now).is_some());
+        let ready = self.entries.iter().enumerate().filter_map(|(place, slot)| Some((place, due(slot)?)));
+        let ready = ready.filter(|(_, entry)| !self.is_blocked(entry, now));
+        let (place, _) = ready.reduce(|one, other| if other.1.is_before(&one.1, now) { other } else { one })?;
         let entry = self.entries.get_mut(place)?.as_mut()?;
         entry.start(now, self.groups.answering(&entry.request));
         self.free = Some(now.wrapping_add(entry.pace.gap)).filter(|free| !has_come(*free, now));
@@ -375,15 +402,14 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     }
 
     /// Tests whether an answer to another request could be taken for one to this, and the other one is under
-    /// way or has waited longer. Otherwise the one that has waited longest might never be sent.
-    fn is_blocked(&self, place: usize, now: u32) -> bool {
-        let Some(own) = self.entries.get(place).and_then(Option::as_ref) else { return true };
+    /// way or is to go first. Otherwise the one that has waited longest might never be sent.
+    fn is_blocked(&self, own: &Entry<P>, now: u32) -> bool {
         let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
         others.any(|other| {
             let is_like = self.groups.is_like(own, other);
             let is_shared = self.groups.is_shared(&own.request, &other.request);
             is_like && other.is_open(now)
-                || is_shared && other.awaits()
+                || is_shared && other.awaits() && other.deaf().is_none()
                 || (is_like || is_shared) && other.is_to_go_before(own, now)
         })
     }
@@ -395,8 +421,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             State::Due { from } if earlier(from, free, now) => free,
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => entry.until(),
         });
+        let deaf = self.entries.iter().flatten().filter_map(Entry::deaf);
         // What is due and not sent waits for another entry.
-        let times = times.filter(|time| !has_come(*time, now));
+        let times = times.chain(deaf).filter(|time| !has_come(*time, now));
         times.reduce(|one, other| if earlier(other, one, now) { other } else { one })
     }
 }

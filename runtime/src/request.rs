@@ -197,18 +197,18 @@ impl<P: Protocol, R> Request<P, R> {
         })
     }
 
-    /// Returns the number of the one module that it goes to, if it is below 256.
-    pub(crate) fn node(&self) -> Option<u8> {
-        self.node_of(Kind::Request, self.frame.raw_id())
+    /// Returns the number of the one module that it goes to.
+    pub(crate) fn module(&self) -> Option<i32> {
+        self.module_of(Kind::Request, self.frame.raw_id())
     }
 
     /// Returns the number of the module that sends an answer, if it is below 256.
     pub(crate) fn sender(&self, answer: &impl embedded_can::Frame) -> Option<u8> {
-        self.node_of(Kind::Reply, own_id::<P>(answer)?)
+        u8::try_from(self.module_of(Kind::Reply, own_id::<P>(answer)?)?).ok()
     }
 
-    fn node_of(&self, kind: Kind, id: u32) -> Option<u8> {
-        u8::try_from(P::node(&self.exchange.way::<P>(kind, id)?)?).ok()
+    fn module_of(&self, kind: Kind, id: u32) -> Option<i32> {
+        P::node(&self.exchange.way::<P>(kind, id)?)
     }
 
     /// Copies a frame that answers this request, and says how. Most frames on a bus fail at the identifier, which is

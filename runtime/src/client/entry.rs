@@ -25,17 +25,23 @@ pub struct Entry<P> {
     pub period: Option<NonZeroU32>,
     /// Whether a round is left out if the module has heard something else.
     pub is_spare: bool,
+    /// Whether it is sent before all others that are due.
+    pub is_hurried: bool,
     /// How it is held, if it is.
     pub hold: Option<Hold<P>>,
     pub state: State,
     /// When this round was due.
     pub round: u32,
-    /// When it was sent first in this round.
+    /// When it, or what it replaced, was sent first since this round began or a module answered.
     pub begun: u32,
     /// How often it was sent in this round.
     pub sent: u8,
     /// How many modules have answered in this round.
     pub answers: u8,
+    /// How often it, and what it replaced, was sent since then.
+    pub unheard: u8,
+    /// Whether the module that it goes to has sent anything since then.
+    pub is_heard: bool,
 }
 
 /// What an entry waits for.
@@ -65,16 +71,19 @@ impl<P: Protocol> Entry<P> {
         Self {
             ticket,
             request,
-            node: request.node(),
+            node: request.module().and_then(|number| u8::try_from(number).ok()),
             pace,
             period: None,
             is_spare: false,
+            is_hurried: false,
             hold: None,
             state: State::Due { from: now },
             round: now,
             begun: now,
             sent: 0,
             answers: 0,
+            unheard: 0,
+            is_heard: false,
         }
     }
 
@@ -86,10 +95,22 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
-    /// Tests whether this has waited longer than another one, and neither is under way.
+    /// Tests whether both are due, and this is to be sent first: what is hurried, then what keeps a module
+    /// alive and has waited for a gap, then what has waited longest.
+    pub fn is_before(&self, other: &Self, now: u32) -> bool {
+        let Some((own, others)) = self.due(now).zip(other.due(now)) else { return false };
+        let [rank, other_rank] = [self, other].map(|entry| (entry.is_hurried, entry.is_overdue(now)));
+        rank > other_rank || rank == other_rank && earlier(own, others, now)
+    }
+
+    /// Tests whether it keeps a module alive, and has waited for the time from one request to the next.
+    fn is_overdue(&self, now: u32) -> bool {
+        self.is_spare && self.due(now.wrapping_sub(self.pace.gap)).is_some()
+    }
+
+    /// Tests whether this is to be sent before another one, which waits for its first answer that counts.
     pub fn is_to_go_before(&self, other: &Self, now: u32) -> bool {
-        let times = self.due(now).zip(other.due(now));
-        !self.is_under_way() && !other.is_under_way() && times.is_some_and(|(own, other)| earlier(own, other, now))
+        (other.sent == 0 || other.deaf().is_some()) && self.is_before(other, now)
     }
 
     /// Tests whether the entry would take a frame for its answer, now or later.
@@ -119,13 +140,17 @@ impl<P: Protocol> Entry<P> {
     /// Notes that the request is sent.
     pub fn start(&mut self, now: u32, group: Option<&mut Group>) {
         if self.sent == 0 {
-            self.begun = now;
+            if self.unheard == 0 {
+                (self.begun, self.is_heard) = (now, false);
+            }
             if let Some(group) = group {
                 group.begin();
             }
         }
-        let deaf = self.still_deaf(now);
+        let deaf = self.deaf();
+        self.is_hurried = false;
         self.sent = self.sent.saturating_add(1);
+        self.unheard = self.unheard.saturating_add(1);
         let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
         let until = now.wrapping_add(wait);
         self.state = State::Waiting { until: deaf.filter(|deaf| is_later(*deaf, until)).unwrap_or(until) };
@@ -135,7 +160,7 @@ impl<P: Protocol> Entry<P> {
     /// request again if it may.
     pub fn ended(&mut self, now: u32, group: Option<&Group>) -> Option<Step> {
         if self.is_unheard(now) {
-            self.sent = 0;
+            self.unheard = 0;
             return Some(Step::Lost(self.ticket));
         }
         let is_complete = group.is_some_and(|group| group.missing.is_empty()) && self.awaits() && self.deaf().is_none();
@@ -166,9 +191,9 @@ impl<P: Protocol> Entry<P> {
         self.answers > 0 && self.hold.is_none()
     }
 
-    /// Returns the modules that did not answer at all, after the round was lost.
+    /// Returns the modules that have sent nothing, after the round was lost.
     pub fn silent(&self, group: Option<&Group>) -> Nodes {
-        let own = || self.node.filter(|_| self.answers == 0).into_iter().collect();
+        let own = || self.node.filter(|_| !self.is_heard).into_iter().collect();
         group.map_or_else(own, Group::silent)
     }
 
@@ -181,8 +206,8 @@ impl<P: Protocol> Entry<P> {
         group: Option<&mut Group>,
     ) -> Heard<P> {
         let ticket = self.ticket;
+        self.unheard = 0;
         if self.deaf().is_some() {
-            self.answers = 1;
             return Heard::Late { ticket, received };
         }
         let is_good = self.hold.is_none() || !is_refusal && self.agrees(&received, model);
@@ -205,6 +230,7 @@ impl<P: Protocol> Entry<P> {
         if self.deaf().is_some() || self.request.refuses(frame) != Some(true) {
             return Heard::Broken(self.ticket);
         }
+        self.unheard = 0;
         self.count(is_group_known);
         Heard::ShortRefusal(self.ticket)
     }
@@ -245,27 +271,40 @@ impl<P: Protocol> Entry<P> {
         Some(if is_lost { Heard::Late { ticket, received } } else { Heard::Twice { ticket, received } })
     }
 
-    /// Returns the entry after it was cancelled.
-    pub fn cancelled(mut self) -> Self {
+    /// Returns the entry after it was cancelled, as long as an answer can come.
+    pub fn cancelled(mut self) -> Option<Self> {
+        if !self.is_under_way() {
+            return None;
+        }
         self.period = None;
         if !matches!(self.state, State::Resting { .. }) {
             self.rest(self.until(), true);
         }
-        self
+        Some(self)
     }
 
-    /// Returns the entry after its rest: due for the next round, or `None` if there is none.
+    /// Returns the entry after its rest: due for the next round, or `None` if there is none. What is due and
+    /// was deaf begins anew when no answer to what was held before can come any more.
     pub fn rested(mut self, now: u32) -> Option<Self> {
         match self.state {
             State::Resting { until, .. } if has_come(until, now) => {
                 let period = self.period?;
                 let rounds = now.wrapping_sub(self.round) / period;
                 self.round = self.round.wrapping_add(period.get().wrapping_mul(rounds.max(1)));
-                (self.state, self.sent, self.answers) = (State::Due { from: self.round }, 0, 0);
-                Some(self)
+                Some(self.anew(self.round))
             }
+            State::Due { from } if self.deaf().is_some_and(|deaf| has_come(deaf, now)) => Some(self.anew(from)),
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(self),
         }
+    }
+
+    /// Returns the entry with a round that begins, and listens.
+    pub fn anew(mut self, from: u32) -> Self {
+        if let Some(hold) = &mut self.hold {
+            hold.deaf = None;
+        }
+        (self.state, self.sent, self.answers) = (State::Due { from }, 0, 0);
+        self
     }
 
     /// Returns when the wait for the last frame is over, or what comes after it.
@@ -280,6 +319,6 @@ impl<P: Protocol> Entry<P> {
         let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
         let until = until.wrapping_add(late);
         let until = self.deaf().filter(|deaf| is_later(*deaf, until)).unwrap_or(until);
-        self.state = State::Resting { until, is_lost };
+        (self.state, self.unheard) = (State::Resting { until, is_lost }, 0);
     }
 }

@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use super::entry::{Entry, State};
 use super::group::Groups;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
-use crate::clock::{has_come, is_later};
+use crate::clock::{earlier, has_come, is_later};
 use crate::{Protocol, Received, Request};
 
 /// Says whether an echo agrees: whether the second message says what the first one asks for.
@@ -19,7 +19,8 @@ pub enum NotHeld {
     Full,
     /// Nobody is known to answer it. So nothing would show whether it is in effect.
     Unconfirmed,
-    /// Something else is held of a group that has some of the same modules, and others. Cancel that first.
+    /// Something else is held of some of the same modules, and of others. Or it is not known which modules
+    /// that are, and the targets differ. Cancel that first.
     Torn(Ticket),
 }
 
@@ -28,7 +29,7 @@ impl core::fmt::Display for NotHeld {
         match self {
             Self::Full => Full.fmt(formatter),
             Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
-            Self::Torn(_) => formatter.write_str("something else is held of a group with some of the same modules"),
+            Self::Torn(_) => formatter.write_str("something else is held of other modules that are partly the same"),
         }
     }
 }
@@ -57,25 +58,33 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// To hold what is held already changes nothing, and returns the same ticket. So a program may call
     /// this in a loop.
     ///
-    /// What is held of the same message to the same target is replaced, and is never sent after that.
-    /// Its ticket ends without an event. The new request is sent at once. As long as an answer to the old
-    /// one can come, every answer is [`Late`](super::Heard::Late). After that the request is sent once
-    /// more, and its answer counts. A request that is replaced faster than that is never known to be in
-    /// effect. It is lost, however, if nobody answers.
+    /// What is held of the same message by the same access is replaced, if the new request goes to the same
+    /// modules. It does not matter who answers, or which address of the controller asks. The client does not
+    /// send the old request after that. Its ticket ends without an event.
+    ///
+    /// The new request does not wait for answers to the old one, and takes its place among those that are
+    /// due. As long as an answer to the old one can come that could be taken for one to the new one, every
+    /// answer is [`Late`](super::Heard::Late). After that the request is sent once more, and its answer
+    /// counts. A request that is replaced faster than that is never known to be in effect. It is lost,
+    /// however, if nobody answers.
+    ///
+    /// To [`ask`](Self::ask) for the same message and access ends what is held of the modules asked. What was
+    /// asked before and has not ended stays, and can be sent after a new value. Cancel it if it must not be.
     ///
     /// A device that restarts forgets what it was told. So hold all that it must do: the set-point, and
     /// that it is on. Nothing says in which order two of them are renewed.
     ///
-    /// Of several modules, each must agree, so the client must know its [`members`](Self::members). What is
-    /// held of a group replaces what is held of its members. A round is
-    /// [`Done`](super::Step::Done), or [`Missing`](super::Step::Missing) some.
+    /// Of several modules, each must agree, so the client must know its [`members`](Self::members). A round
+    /// is [`Done`](super::Step::Done), or [`Missing`](super::Step::Missing) some. What is held of a group
+    /// replaces what is held of its members, if they are known.
     ///
     /// # Errors
     ///
     /// Refuses a request
     /// - if there is no room for it,
     /// - if nobody is known to answer it,
-    /// - if something is held of a group that has some of the same modules and others.
+    /// - if the same message is held of some of the same modules and of others,
+    /// - if it is held of another target, and the modules of one of them are not known.
     pub fn hold<R>(
         &mut self,
         request: Request<P, R>,
@@ -97,14 +106,32 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         if let Some(held) = self.entries.iter().flatten().find(|held| held.is_torn_by(&entry, &groups)) {
             return Err(NotHeld::Torn(held.ticket));
         }
-        let replaced = |slot: &&mut Option<Entry<P>>| slot.is_some_and(|held| held.is_replaced_by(&entry, &groups));
+        let is_replaced = |slot: &Option<Entry<P>>| slot.is_some_and(|held| held.is_replaced_by(&entry, &groups));
         let mut new = entry;
-        for slot in self.entries.iter_mut().filter(replaced) {
+        for slot in self.entries.iter_mut().filter(|slot| is_replaced(slot)) {
             if let Some(old) = slot.take() {
-                new = new.in_place_of(&old, now);
+                let is_like = groups.is_like(&old, &entry);
+                new = new.in_place_of(&old, is_like, now);
+                // Late answers that could not be taken for one to the new request are still told from others.
+                *slot = Some(old).filter(|_| !is_like).and_then(Entry::cancelled);
             }
         }
-        self.add(new).map_err(|Full| NotHeld::Full)
+        self.add(new).or_else(|Full| {
+            let slot = self.entries.iter_mut().find(|slot| is_replaced(slot)).ok_or(NotHeld::Full)?;
+            *slot = None;
+            self.add(new).map_err(|Full| NotHeld::Full)
+        })
+    }
+
+    /// Ends what is held that a request would contradict.
+    pub(super) fn release(&mut self, request: &Entry<P>) {
+        let groups = self.groups;
+        let is_released = |slot: &Option<Entry<P>>| {
+            slot.is_some_and(|held| held.ticket != request.ticket && held.is_contradicted_by(request, &groups))
+        };
+        for slot in self.entries.iter_mut().filter(|slot| is_released(slot)) {
+            *slot = slot.and_then(Entry::cancelled);
+        }
     }
 }
 
@@ -116,42 +143,60 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether this is held, and another one would hold exactly the same.
     fn holds_the_same(&self, other: &Self) -> bool {
-        self.is_held() && self.is_comparable(other) && self.request.frame() == other.request.frame()
+        self.is_held() && self.is_of_same_exchange(other) && self.request.frame() == other.request.frame()
     }
 
-    /// Tests whether a reply could be an echo of both.
-    fn is_comparable(&self, other: &Self) -> bool {
-        self.request.is_of_same_exchange(&other.request) && self.request.is_like(&other.request)
+    /// Tests whether both carry the same message by the same access.
+    fn is_of_same_exchange(&self, other: &Self) -> bool {
+        self.request.is_of_same_exchange(&other.request)
     }
 
     /// Tests whether another one asks all modules of this one.
     fn is_covered_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
         let is_same_target = self.request.frame().raw_id() == other.request.frame().raw_id();
         let [own, others] = [self, other].map(|entry| groups.reach(entry));
-        is_same_target || own.zip(others).is_some_and(|(own, others)| own.both(&others) == own)
+        let is_part = own.zip(others).is_some_and(|(own, others)| own.both(&others) == own);
+        is_same_target || is_part || self.modules(other).is_some_and(|[own, other]| own == other)
+    }
+
+    /// Tests whether it is known that another one asks none of the modules of this one.
+    fn is_apart_from<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        let [own, others] = [self, other].map(|entry| groups.reach(entry));
+        let is_apart = own.zip(others).is_some_and(|(own, others)| own.both(&others).is_empty());
+        is_apart || self.modules(other).is_some_and(|[own, other]| own != other)
+    }
+
+    /// Returns the numbers of the modules that both go to, if each goes to one.
+    fn modules(&self, other: &Self) -> Option<[i32; 2]> {
+        Some([self.request.module()?, other.request.module()?])
     }
 
     /// Tests whether another one replaces this one, which is held or was.
     fn is_replaced_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
-        self.hold.is_some() && self.is_comparable(other) && self.is_covered_by(other, groups)
+        self.hold.is_some() && self.is_of_same_exchange(other) && self.is_covered_by(other, groups)
     }
 
-    /// Tests whether another one would contradict this one for some of its modules only.
+    /// Tests whether this is held, and another one could tell one of its modules something else.
+    fn is_contradicted_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        self.is_held() && self.is_of_same_exchange(other) && !self.is_apart_from(other, groups)
+    }
+
+    /// Tests whether another one would contradict this one, but perhaps not for all of its modules.
     fn is_torn_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
-        let [own, others] = [self, other].map(|entry| groups.reach(entry));
-        let is_apart = own.zip(others).is_some_and(|(own, others)| own.both(&others).is_empty());
-        self.is_held() && self.is_comparable(other) && !is_apart && !self.is_covered_by(other, groups)
+        self.is_contradicted_by(other, groups) && !self.is_covered_by(other, groups)
     }
 
-    /// Takes over from what was held before: its place among those that wait, and what can still answer it.
-    fn in_place_of(mut self, old: &Self, now: u32) -> Self {
-        if let Some(from) = old.due(now) {
+    /// Takes over from what was held before: its place among those that wait, how often nobody answered it,
+    /// and what can still answer it, if that could be taken for an answer to this.
+    fn in_place_of(mut self, old: &Self, is_like: bool, now: u32) -> Self {
+        if let Some(from) = old.due(now).filter(|from| earlier(*from, self.until(), now)) {
             self.state = State::Due { from };
         }
-        let open = old.open_until().filter(|until| !has_come(*until, now));
-        if open.is_some() && old.awaits() && old.answers == 0 {
-            (self.begun, self.sent) = (old.begun, old.sent);
+        self.is_hurried |= old.is_hurried;
+        if old.node == self.node {
+            (self.begun, self.unheard, self.is_heard) = (old.begun, old.unheard, old.is_heard);
         }
+        let open = old.open_until().filter(|until| is_like && !has_come(*until, now));
         let deaf = latest(self.deaf(), open);
         self.hold = self.hold.map(|hold| Hold { deaf, ..hold });
         self
@@ -168,27 +213,20 @@ impl<P: Protocol> Entry<P> {
         self.hold.is_none_or(|hold| asked().is_ok_and(|asked| (hold.agrees)(asked.content(), received.content())))
     }
 
-    /// Returns until when no answer counts, if none does yet.
-    pub fn still_deaf(&mut self, now: u32) -> Option<u32> {
-        let hold = self.hold.as_mut()?;
-        hold.deaf = hold.deaf.filter(|until| !has_come(*until, now));
-        hold.deaf
-    }
-
     /// Begins to listen when no answer to what was held before can come any more. The request is due again.
     pub fn listen(&mut self, now: u32) -> bool {
-        let Some(hold) = self.hold.as_mut().filter(|hold| hold.deaf.is_some()) else { return false };
-        hold.deaf = None;
-        (self.state, self.sent, self.answers) = (State::Due { from: now }, 0, 0);
-        true
+        let is_deaf = self.deaf().is_some();
+        if is_deaf {
+            *self = self.anew(now);
+        }
+        is_deaf
     }
 
     /// Tests whether nobody answers although the request was sent often enough, with other values each time.
     pub fn is_unheard(&self, now: u32) -> bool {
         self.awaits()
             && self.deaf().is_some()
-            && self.answers == 0
-            && self.sent >= self.pace.tries.max(1)
+            && self.unheard >= self.pace.tries.max(1)
             && has_come(self.begun.wrapping_add(self.pace.wait), now)
     }
 

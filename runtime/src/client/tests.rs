@@ -1,5 +1,6 @@
 //! A client on a bus with faults, and in single situations.
 
+mod conflicts;
 mod groups;
 mod health;
 mod holds;
