@@ -149,9 +149,9 @@ fn trio_is_set_by_one_frame_and_read_by_the_reports_of_its_document() {
 }
 
 #[test]
-fn huawei_and_daly_show_the_values_of_captured_frames() {
+fn huawei_and_daly_are_set_and_read_by_the_frames_of_their_documents() {
     let module = <huawei::Message as Addressed>::module(1).expect("unit 1");
-    // Section 12.1, W01, W17 and W18.
+    // Section 7.1: 0x132 with 1 is standby, and with 0 on.
     let set = sets::<huawei::Message>;
     assert_eq!(set(module, &[(VOLTAGE, 51_000)]), Ok(vec![frame(0x1081_80FE, 0x0100_0000_0000_CC00)]));
     assert_eq!(set(module, &[(DELIVERING, 0)]), Ok(vec![frame(0x1081_80FE, 0x0132_0001_0000_0000)]));
