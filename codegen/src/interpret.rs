@@ -7,7 +7,7 @@ mod decode;
 mod device;
 mod encode;
 mod long;
-mod notes;
+pub(crate) mod notes;
 mod request;
 mod transfer;
 mod value;

@@ -132,8 +132,12 @@ fn places(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> (Path,
 
 /// Tests whether models, lengths, constants and addresses allow a frame that is both.
 fn both_fit(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
+    !protocol[one.message].is_apart_from(&protocol[other.message]) && are_alike(protocol, one, other)
+}
+
+/// Tests whether lengths, constants and addresses allow a frame that is both.
+pub fn are_alike(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) -> bool {
     agree(one, other)
-        && !protocol[one.message].is_apart_from(&protocol[other.message])
         && one.lengths.iter().any(|length| other.lengths.contains(length))
         && protocol
             .patterns_of(one)

@@ -1,9 +1,12 @@
 #![doc = include_str!("../rules/quantity_path.md")]
 
-use canspec_runtime::{Quantity, QuantityKind};
+use canspec_runtime::{Place, Quantity, QuantityKind};
 
+use super::ambiguous::are_alike;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{Encoding, Fixed, Protocol, QuantityPaths, Signal, SignalPath};
+use crate::interpret::Reading;
+use crate::interpret::notes::signal_note;
+use crate::model::{Encoding, Fixed, FrameLayout, MessageId, Protocol, QuantityPaths, Signal, SignalId, SignalPath};
 use crate::resolve::rules::QUANTITY_PATH;
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
@@ -18,8 +21,12 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         if let Some(read) = known.read.as_ref().filter(|read| protocol.frames_with(read).next().is_none()) {
             diagnostics.push(untold(protocol, read, "no reply and no report of a module has", "read"));
         }
+        if let Some(read) = &known.read {
+            check_recognised(protocol, read, diagnostics);
+        }
         if let Some(set) = &known.set {
             check_request(protocol, set, diagnostics);
+            check_states(protocol, set, diagnostics);
         }
     }
     check_once(protocol, diagnostics);
@@ -34,7 +41,7 @@ fn check_value(protocol: &Protocol, path: &SignalPath, diagnostics: &mut Diagnos
     if let Some(text) = refused(signal) {
         diagnostics.push(at(path, format!("`{}` {text}", name(protocol, path))).help(match signal.encoding {
             Encoding::Named(_) | Encoding::Status(_) => {
-                "write its states, as in `{signal: .., active: on, inactive: off}`"
+                "write its states, as in `{signal: .., active: \"on\", inactive: \"off\"}`"
             }
             Encoding::Number { .. } | Encoding::Float => "write its `unit`, whose thousandths are counted",
             Encoding::ByModel { .. } | Encoding::Text(_) | Encoding::Packed { .. } => "leave the quantity out",
@@ -113,18 +120,82 @@ fn check_request(protocol: &Protocol, set: &SignalPath, diagnostics: &mut Diagno
     }
     let mut setters = protocol.setters_of(set.message);
     let is_first = setters.next().is_some_and(|first| first.path == set.path);
-    let is_given = |signal| {
-        let mut setters = protocol.setters_of(set.message);
-        setters.any(|path| path.signal == signal) || protocol.fixed_beside(set).any(|fixed| fixed.signal == signal)
-    };
-    let missing = request.signals.iter().filter(|signal| !is_given(**signal));
-    let missing: Vec<_> = missing.map(|signal| format!("`{}`", message[*signal].name)).collect();
+    let given = given(protocol, set);
+    let missing = request.signals.iter().flat_map(|signal| missing(protocol, &message[*signal], given));
+    let missing: Vec<_> = missing.collect();
     if let Some(first) = missing.first().filter(|_| is_first) {
-        let text = format!("nothing says what {} of `{}` is in the request", missing.join(" and "), message.name);
-        let help = format!("write it in `with: {{{}: ..}}`, or make it a quantity", first.trim_matches('`'));
+        let names: Vec<_> = missing.iter().map(|name| format!("`{name}`")).collect();
+        let text = format!("nothing says what {} of `{}` is in the request", names.join(" and "), message.name);
+        let help = match first.split_once('.') {
+            Some(_) => "make each bit of the word a quantity, or leave `set` out".to_owned(),
+            None => format!("write it in `with: {{{first}: ..}}`, or make it a quantity"),
+        };
         diagnostics.push(at(set, text).help(help));
     }
     set.with.iter().for_each(|fixed| check_fixed(protocol, set, fixed, diagnostics));
+}
+
+/// Returns the bits of the data that quantities and fixed values of a request give.
+fn given(protocol: &Protocol, set: &SignalPath) -> u64 {
+    let of_quantities = protocol.setters_of(set.message).map(|path| path.place);
+    let fixed = protocol.fixed_beside(set).map(|fixed| protocol[set.message][fixed.signal].place);
+    of_quantities.chain(fixed).fold(0, |given, place| given | mask(place))
+}
+
+/// Names a signal if some of its bits are not given. Of a status word it names the bits.
+fn missing(protocol: &Protocol, signal: &Signal, given: u64) -> Vec<String> {
+    let is_given = |place: Place| mask(place) & !given == 0;
+    let Some(word) = signal.encoding.status_word().filter(|_| mask(signal.place) & given != 0) else {
+        return if is_given(signal.place) { Vec::new() } else { vec![signal.name.clone()] };
+    };
+    let bits = protocol[word].bits.iter().filter(|bit| !is_given(signal.place.bit(bit.bit)));
+    bits.map(|bit| format!("{}.{}", signal.name, bit.name)).collect()
+}
+
+/// Returns the bits of a place in the data.
+fn mask(place: Place) -> u64 {
+    u64::from_be_bytes(place.mask())
+}
+
+/// Tests that every device model takes both states of a switch.
+fn check_states(protocol: &Protocol, set: &SignalPath, diagnostics: &mut Diagnostics) {
+    let signal = protocol.signal_at(set);
+    let shift = set.place.bits_of_payload().shift() - signal.place.bits_of_payload().shift();
+    for state in set.states.into_iter().flatten() {
+        if let Some(text) = unsendable(protocol, set.message, set.signal, state << shift) {
+            let help = "write a state that may be sent to every device model, or leave `set` out";
+            diagnostics.push(at(set, text).help(help));
+        }
+    }
+}
+
+/// Says why bits of a signal may not be sent to each device model that has the message.
+fn unsendable(protocol: &Protocol, message: MessageId, signal: SignalId, bits: u64) -> Option<String> {
+    let message = &protocol[message];
+    let models: Vec<_> = protocol.models_of(message).map(Some).collect();
+    // A number whose scale depends on the model has no value without one.
+    let unknown = models.is_empty() || !message[signal].encoding.by_model().is_empty();
+    unknown.then_some(None).into_iter().chain(models).find_map(|model| {
+        let reading = Reading::of(protocol, (signal, message[signal].on(model)), bits);
+        let text = signal_note(protocol, message, model, &reading)?.text;
+        Some(model.map_or_else(|| text.clone(), |model| format!("on {}: {text}", protocol[model].name)))
+    })
+}
+
+/// Tests that frames with a quantity are known without the device model.
+fn check_recognised(protocol: &Protocol, read: &SignalPath, diagnostics: &mut Diagnostics) {
+    let message = &protocol[read.message];
+    let is_like = |frame: &&FrameLayout| {
+        message.is_apart_from(&protocol[frame.message])
+            && protocol
+                .frames_with(read)
+                .any(|own| own.is_to_module() == frame.is_to_module() && are_alike(protocol, own, frame))
+    };
+    if let Some(other) = protocol.frames.iter().find(is_like).map(|frame| &protocol[frame.message]) {
+        let text = format!("only the device model tells `{}` from `{}`", message.name, other.name);
+        let help = "name a message that is known without the model, or leave the quantity out";
+        diagnostics.push(at(read, text).help(help).other(other.doc.path.at_key(), "the other message"));
+    }
 }
 
 /// Tests that a signal of a request has one value.
@@ -133,6 +204,10 @@ fn check_fixed(protocol: &Protocol, set: &SignalPath, fixed: &Fixed, diagnostics
     let other = earlier.find(|other| other.signal == fixed.signal && other.bits != fixed.bits);
     let quantity = protocol.setters_of(set.message).find(|path| path.signal == fixed.signal);
     let name = &protocol[set.message][fixed.signal].name;
+    if let Some(text) = unsendable(protocol, set.message, fixed.signal, fixed.bits) {
+        let problem = Diagnostic::error(&QUANTITY_PATH, fixed.path.at_value(), text);
+        diagnostics.push(problem.help("write a value that may be sent to every device model"));
+    }
     if let Some(quantity) = quantity {
         let text = format!("`{name}` is set by a quantity, and has a value here");
         let problem = Diagnostic::error(&QUANTITY_PATH, fixed.path.at_key(), text);
@@ -153,7 +228,8 @@ fn check_once(protocol: &Protocol, diagnostics: &mut Diagnostics) {
         let paths: Vec<_> = protocol.quantities.iter().filter_map(|known| Some((known, path_of(known)?))).collect();
         for (index, (known, path)) in paths.iter().enumerate() {
             let is_same = |(_, other): &&(&QuantityPaths, &SignalPath)| {
-                (other.message, other.signal, other.place) == (path.message, path.signal, path.place)
+                (other.message, other.signal) == (path.message, path.signal)
+                    && mask(other.place) & mask(path.place) != 0
             };
             if let Some((earlier, other)) = paths[..index].iter().find(is_same) {
                 let text = format!("both `{}` and `{}` are `{}`", earlier.name, known.name, name(protocol, path));

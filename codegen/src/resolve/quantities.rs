@@ -3,7 +3,8 @@
 use super::Resolver;
 use crate::diagnostic::At;
 use crate::encoding::said;
-use crate::model::{Fixed, Message, MessageId, QuantityPaths, Said, Signal, SignalId, SignalPath, Table};
+use crate::model::{Encoding, Fixed, Message, MessageId, QuantityPaths, Said, Signal, SignalId, SignalPath, Table};
+use crate::number::Rational;
 use crate::resolve::rules;
 use crate::syntax::ast;
 use crate::syntax::tree::Path;
@@ -79,7 +80,7 @@ impl Resolver<'_> {
             None => known.place,
         };
         let states = match &written.states {
-            Some(states) => Some(self.states(path, known, parts.len() > 2, states)?),
+            Some(states) => Some(self.states(path, &at, known, parts.len() > 2, states)?),
             None => None,
         };
         let with = written.with.iter();
@@ -111,7 +112,20 @@ impl Resolver<'_> {
     }
 
     /// Reads the states of a switch, the one that is off first.
-    fn states(&mut self, path: &Path, signal: &Signal, is_bit: bool, states: &[Option<String>; 2]) -> Option<[u64; 2]> {
+    fn states(
+        &mut self,
+        path: &Path,
+        at: &Path,
+        signal: &Signal,
+        is_bit: bool,
+        states: &[Option<String>; 2],
+    ) -> Option<[u64; 2]> {
+        if let (Some(what), false) = (stateless(signal), is_bit) {
+            let text = format!("`{}` is {what}, and has no states", signal.name);
+            let help = "name a signal with named values, a single bit, or a status bit behind its word";
+            self.error_with_help(&rules::QUANTITY_PATH, at.at_value(), text, help);
+            return None;
+        }
         let [Some(inactive), Some(active)] = states else {
             let missing = if states[0].is_none() { "inactive" } else { "active" };
             let text = format!("this switch has no state `{missing}`");
@@ -119,10 +133,8 @@ impl Resolver<'_> {
             self.error_with_help(&rules::QUANTITY_PATH, path.at_key(), text, help);
             return None;
         };
-        let (inactive, active) = (
-            self.state(&path.key("inactive"), signal, is_bit, inactive),
-            self.state(&path.key("active"), signal, is_bit, active),
-        );
+        let (inactive, active) =
+            (self.state(&path.key("inactive"), signal, inactive), self.state(&path.key("active"), signal, active));
         let (inactive, active) = (inactive?, active?);
         if inactive == active {
             let text = "both states of this switch are the same".to_owned();
@@ -133,17 +145,17 @@ impl Resolver<'_> {
         Some([inactive, active])
     }
 
-    /// Reads the bits of a state: a named value, or a raw one.
-    fn state(&mut self, path: &Path, signal: &Signal, is_bit: bool, text: &str) -> Option<u64> {
-        let known = signal.encoding.enumeration().map(|id| self.tables.enumerations[id].values.clone());
-        let known = known.filter(|_| !text.starts_with(|first: char| first.is_ascii_digit()));
-        if let Some(values) = known {
-            let names = values.iter().map(|value| value.name.as_str());
-            let index = self.lookup(path, "named value", text, names)?;
-            return signal.bits_of(values[index].raw);
+    /// Reads the bits of a state: a named value by its name or its raw number, or a bit.
+    fn state(&mut self, path: &Path, signal: &Signal, text: &str) -> Option<u64> {
+        let Some(known) = signal.encoding.enumeration() else { return self.integer(path, text, 0, 1) };
+        let values = self.tables.enumerations[known].values.clone();
+        let raw = Rational::parse(text).and_then(Rational::to_integer);
+        if let Some(listed) = raw.filter(|raw| values.iter().any(|value| value.raw == *raw)) {
+            return signal.bits_of(listed);
         }
-        let last = if is_bit { 1 } else { signal.place.max() };
-        self.integer(path, text, 0, last)
+        let names = values.iter().map(|value| value.name.as_str());
+        let index = self.lookup(path, "named value", text, names)?;
+        signal.bits_of(values[index].raw)
     }
 
     /// Reads the value that another signal of the request always has.
@@ -157,5 +169,20 @@ impl Resolver<'_> {
         let help = misfit.help.unwrap_or_else(|| "write a value of the signal, as in `means`".to_owned());
         self.error_with_help(&rules::VALUE, path.at_value(), misfit.why, help);
         None
+    }
+}
+
+/// Says what a signal is whose values are no states of a switch.
+fn stateless(signal: &Signal) -> Option<&'static str> {
+    match &signal.encoding {
+        Encoding::Named(_) => None,
+        Encoding::Number { .. } if signal.unit.is_some() => Some("a number with a unit"),
+        Encoding::Number { scale, offset, .. } => {
+            let is_bit = signal.place.width() == 1 && (*scale, *offset) == (Rational::ONE, Rational::ZERO);
+            (!is_bit).then_some("a number")
+        }
+        Encoding::ByModel { .. } | Encoding::Float => Some("a number"),
+        Encoding::Status(_) => Some("a whole status word"),
+        Encoding::Text(_) | Encoding::Packed { .. } => Some("a text"),
     }
 }

@@ -14,7 +14,7 @@ pub struct Quantity {
     /// nobody reads it.
     pub read: Option<SignalPath>,
     /// Message and signal of a request that sets the value: `set_output.voltage`. A switch also has its states:
-    /// `{signal: switch.power, active: on, inactive: off}`. If absent, nobody sets it.
+    /// `{signal: switch.power, active: "on", inactive: "off"}`. If absent, nobody sets it.
     pub set: Option<SignalPath>,
 }
 
