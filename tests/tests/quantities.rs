@@ -149,7 +149,7 @@ fn trio_is_set_by_one_frame_and_read_by_the_reports_of_its_document() {
 }
 
 #[test]
-fn huawei_and_daly_are_set_and_read_by_the_frames_of_their_documents() {
+fn huawei_and_daly_are_set_and_read_by_the_frames_of_their_examples() {
     let module = <huawei::Message as Addressed>::module(1).expect("unit 1");
     // Section 7.1: 0x132 with 1 is standby, and with 0 on.
     let set = sets::<huawei::Message>;
