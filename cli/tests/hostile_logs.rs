@@ -103,6 +103,32 @@ fn a_capture_of_many_channels_is_written_in_linear_time() {
 }
 
 #[test]
+fn messages_of_many_senders_are_joined_in_linear_time() {
+    let spec = "canspec: 1\nprotocol: p\ntitle: T\ndocument: {title: T, version: V}\nlength: 8\n\
+                identifier: {node: {bits: 28..1}, direction: {bits: 0}}\ntypes: {node: {range: 0..0xFFFFFFF}}\n\
+                addressing: {one: {request: {node: node, direction: 1}, one: {node: node, direction: 0}}}\n\
+                transports: {tp: {kind: isotp, section: \"1\"}}\n\
+                access: {write: {request: {}, answers: {one: nobody}}}\n\
+                messages: {m: {section: \"2\", access: [write], via: tp, length: 8..30, \
+                fields: {item: {bytes: 0, const: 0x2E}, text: {bytes: 1.., as: text}}}}\n";
+    let folder = folder();
+    let path = folder.path().join("p.yaml");
+    fs::write(&path, spec).expect("the folder can be written");
+    let path = path.to_str().expect("it is text");
+    let write = |out: &mut dyn Write, count: usize| {
+        for number in 0..count {
+            writeln!(out, "(1) can0 {:08X}#101E2E4142434445", 2 * number + 1).expect("a vector takes everything");
+        }
+    };
+    let mut log = Vec::new();
+    write(&mut log, 1);
+    fs::write(folder.path().join("bus.log"), log).expect("the folder can be written");
+    let shown = text(&canspec(folder.path(), &["decode", "--spec", path, "bus.log"]).stdout);
+    assert!(shown.contains("6 of 30 bytes came"), "{shown}");
+    is_linear(write, "bus.log", 8_000, &["decode", "--spec", path, "bus.log"]);
+}
+
+#[test]
 fn names_of_the_values_of_one_signal_are_imported_in_linear_time() {
     let write = |out: &mut dyn Write, count: usize| {
         let names: String = (0..count).fold(String::new(), |names, raw| names + &format!("{raw} \"n{raw}\" "));

@@ -2,17 +2,18 @@
 
 local SINGLE, LONGEST, OVERFLOW = 7, 4095, 2
 
-local open_messages
+-- The messages that have begun, and the place of each by its key.
+local open_messages, places
 
 local function forget_messages()
-  open_messages = {}
+  open_messages, places = {}, {}
 end
 
 -- Returns who sends a frame, and to whom. Named addresses are not sent by everybody.
 local function ends_of(frame, decoded, transport)
   local ends = { to_module = is_to_module(decoded.layout), mode = decoded.addressing.mode, addresses = {}, named = {} }
-  ends.sender = string.format("%s %s %d", frame.interface, transport.name, frame.id)
   ends.bus = frame.interface .. " " .. transport.name
+  ends.key = string.format("%s %d %s", ends.bus, frame.id, tostring(ends.to_module))
   local pattern = decoded.addressing.pattern
   for _, address in ipairs(pattern and pattern.addresses or {}) do
     local value = identifier_field(frame, address.field)
@@ -37,13 +38,6 @@ local function answers_sender(own, sender)
   if own.bus ~= sender.bus or own.to_module == sender.to_module then return false end
   local is_between = agree(own.named, sender.named) and agree(sender.named, own.named)
   return is_between and agree(own.addresses, sender.addresses, true) and (own.mode == sender.mode or next(own.named))
-end
-
--- Returns the place of the message that a sender has begun.
-local function place_of(ends)
-  for place, open in ipairs(open_messages) do
-    if open.ends.sender == ends.sender and open.ends.to_module == ends.to_module then return place end
-  end
 end
 
 -- Returns joined data as if their first bytes were a frame.
@@ -96,17 +90,23 @@ local function add_message(open, why, ended)
   table.insert(ended, whole)
 end
 
--- Ends the message at a place.
+-- Begins a message.
+local function begin_message(open)
+  table.insert(open_messages, open)
+  places[open.ends.key] = #open_messages
+end
+
+-- Ends the message at a place. The last one takes the place.
 local function end_message(place, why, ended)
-  local open = open_messages[place]
-  open_messages[place] = open_messages[#open_messages]
-  open_messages[#open_messages] = nil
+  local open, last = open_messages[place], open_messages[#open_messages]
+  open_messages[place], places[last.ends.key] = last, place
+  open_messages[#open_messages], places[open.ends.key] = nil, nil
   add_message(open, why, ended)
 end
 
 -- Ends the message that a sender has begun before.
 local function restart(ends, ended)
-  local place = place_of(ends)
+  local place = places[ends.key]
   if place then end_message(place, "another message begins", ended) end
 end
 
@@ -135,11 +135,11 @@ function take.first_frame(frame, decoded, transport, ended)
   restart(ends, ended)
   local layout = message_of(frame, decoded, transport, data, size)
   local open = { frame = frame, ends = ends, layout = layout, size = size, data = data, count = 1 }
-  if layout then table.insert(open_messages, open) end
+  if layout then begin_message(open) end
 end
 
 function take.consecutive_frame(frame, decoded, transport, ended)
-  local place, index = place_of(ends_of(frame, decoded, transport)), number(frame, decoded, "number")
+  local place, index = places[ends_of(frame, decoded, transport).key], number(frame, decoded, "number")
   local open = open_messages[place]
   if not open or not index then return end
   local wanted = open.count % 16

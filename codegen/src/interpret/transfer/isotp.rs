@@ -1,5 +1,7 @@
 //! Transfers by ISO 15765-2: a single frame, or a first frame and consecutive ones, and the receiver's flow control.
 
+use indexmap::IndexMap;
+
 use super::{Arrived, Part, Started, sending};
 use crate::interpret::assembly::{Assembled, Peers, Taken, module};
 use crate::interpret::encode::{frame, refuse};
@@ -16,27 +18,26 @@ const LONGEST: usize = 4095;
 /// How a receiver says that it has no room for a message.
 const OVERFLOW: usize = 2;
 
-/// The messages of several frames that have begun. `M` is what the caller remembers of each frame.
+/// The messages of several frames that have begun, by who sends them. `M` is what the caller remembers of each frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Transfers<M>(Vec<Transfer<M>>);
+pub struct Transfers<M>(IndexMap<Link, Transfer<M>>);
 
 impl<M> Default for Transfers<M> {
     fn default() -> Self {
-        Self(Vec::new())
+        Self(IndexMap::new())
     }
 }
 
 /// One message, as far as its frames came.
 #[derive(Clone, Debug, PartialEq)]
 struct Transfer<M> {
-    link: Link,
     started: Started,
     data: Vec<u8>,
     marks: Vec<M>,
 }
 
 /// Who sends a frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Link {
     transport: TransportId,
     id: u32,
@@ -84,23 +85,19 @@ impl<M: Clone> Transfers<M> {
 
     /// Ends all transfers that have begun.
     pub fn finish(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
-        let open = std::mem::take(&mut self.0).into_iter();
+        let open = std::mem::take(&mut self.0).into_values();
         open.map(|transfer| transfer.assembled(protocol, model, None)).collect()
     }
 
-    fn place(&self, link: &Link) -> Option<usize> {
-        self.0.iter().position(|known| known.link == *link)
-    }
-
-    /// Ends the transfer at a place, and says why if it is not whole.
-    fn end(&mut self, part: &Part, place: usize, why: Option<&str>) -> Assembled<M> {
-        self.0.swap_remove(place).assembled(part.protocol, part.model, why.map(str::to_owned))
+    /// Ends the message of a sender, if one has begun, and says why if it is not whole.
+    fn end(&mut self, part: &Part, link: &Link, why: Option<&str>) -> Vec<Assembled<M>> {
+        let open = self.0.swap_remove(link).into_iter();
+        open.map(|open| open.assembled(part.protocol, part.model, why.map(str::to_owned))).collect()
     }
 
     /// Ends the message that the sender has begun before.
     fn restarted(&mut self, part: &Part, link: &Link) -> Vec<Assembled<M>> {
-        let open = self.place(link);
-        open.map(|open| self.end(part, open, Some("another message begins"))).into_iter().collect()
+        self.end(part, link, Some("another message begins"))
     }
 
     fn single(&mut self, part: &Part, mark: M) -> Taken<M> {
@@ -109,7 +106,7 @@ impl<M: Clone> Transfers<M> {
         let link = Link::of(part);
         let mut ended = self.restarted(part, &link);
         let Some(started) = message(part, data, data.len()) else { return Taken { is_part: false, ended } };
-        let transfer = Transfer { link, started, data: data.to_vec(), marks: vec![mark] };
+        let transfer = Transfer { started, data: data.to_vec(), marks: vec![mark] };
         ended.push(transfer.assembled(part.protocol, part.model, None));
         Taken { is_part: true, ended }
     }
@@ -120,37 +117,38 @@ impl<M: Clone> Transfers<M> {
         let ended = self.restarted(part, &link);
         let started = message(part, data, size).filter(|_| size <= LONGEST);
         let is_part = started.is_some();
-        let begun = started.map(|started| Transfer { link, started, data: data.to_vec(), marks: vec![mark] });
+        let begun = started.map(|started| (link, Transfer { started, data: data.to_vec(), marks: vec![mark] }));
         self.0.extend(begun);
         Taken { is_part, ended }
     }
 
     fn consecutive(&mut self, part: &Part, mark: M) -> Taken<M> {
-        let open = self.place(&Link::of(part));
-        let (Some(open), Some(number)) = (open, part.number("number")) else { return Taken::NOTHING };
-        let transfer = &mut self.0[open];
+        let link = Link::of(part);
+        let (Some(transfer), Some(number)) = (self.0.get_mut(&link), part.number("number")) else {
+            return Taken::NOTHING;
+        };
         let wanted = transfer.marks.len() % 16;
         if number != wanted {
             let why = format!("frame number {number} came in place of {wanted}");
-            return Taken { is_part: true, ended: vec![self.end(part, open, Some(&why))] };
+            return Taken { is_part: true, ended: self.end(part, &link, Some(&why)) };
         }
         let missing = transfer.started.size - transfer.data.len();
         let Some(data) = part.frame.data.get(1..=missing.min(SINGLE)) else { return Taken::NOTHING };
         transfer.data.extend(data);
         transfer.marks.push(mark);
         let is_whole = missing <= SINGLE;
-        Taken { is_part: true, ended: is_whole.then(|| self.end(part, open, None)).into_iter().collect() }
+        Taken { is_part: true, ended: if is_whole { self.end(part, &link, None) } else { Vec::new() } }
     }
 
     /// Takes what the receiver answers.
     fn flow(&mut self, part: &Part) -> Taken<M> {
-        let link = Link::of(part);
-        let Some(open) = self.0.iter().position(|known| link.answers(part.protocol, &known.link)) else {
+        let own = Link::of(part);
+        let Some(link) = self.0.keys().find(|known| own.answers(part.protocol, known)).cloned() else {
             return Taken::NOTHING;
         };
         let is_over = part.number("status") == Some(OVERFLOW);
-        let ended = is_over.then(|| self.end(part, open, Some("the receiver has no room for it")));
-        Taken { is_part: true, ended: ended.into_iter().collect() }
+        let ended = if is_over { self.end(part, &link, Some("the receiver has no room for it")) } else { Vec::new() };
+        Taken { is_part: true, ended }
     }
 }
 
