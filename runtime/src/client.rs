@@ -244,8 +244,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// each period.
     ///
     /// A round that has waited for a gap goes before all others but hurried ones. So it is at most two gaps
-    /// late, and one more for each other module whose round is due. It is later while an answer to another
-    /// request could be taken for one to it, and while the frames of its last round are sent again.
+    /// late, and one more for each other module whose round is due. It is later while its last round is sent
+    /// again. It is also later while an answer to another request could be taken for one to it.
     ///
     /// It ends what [`ask`](Self::ask) would end.
     ///
@@ -401,8 +401,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         Some(Step::Send(*entry.request.frame()))
     }
 
-    /// Tests whether an answer to another request could be taken for one to this, and the other one is under
-    /// way or is to go first. Otherwise the one that has waited longest might never be sent.
+    /// Tests whether another request, under way or to go first, has answers that could be taken for those to this.
+    ///
+    /// Otherwise the one that has waited longest might never be sent.
     fn is_blocked(&self, own: &Entry<P>, now: u32) -> bool {
         let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
         others.any(|other| {

@@ -95,8 +95,10 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
-    /// Tests whether both are due, and this is to be sent first: what is hurried, then what keeps a module
-    /// alive and has waited for a gap, then what has waited longest.
+    /// Tests whether both are due, and this is to be sent first.
+    ///
+    /// First comes what is hurried, then what keeps a module alive and has waited for a gap. Then comes what
+    /// has waited longest.
     pub fn is_before(&self, other: &Self, now: u32) -> bool {
         let Some((own, others)) = self.due(now).zip(other.due(now)) else { return false };
         let [rank, other_rank] = [self, other].map(|entry| (entry.is_hurried, entry.is_overdue(now)));

@@ -186,8 +186,8 @@ impl<P: Protocol> Entry<P> {
         self.is_contradicted_by(other, groups) && !self.is_covered_by(other, groups)
     }
 
-    /// Takes over from what was held before: its place among those that wait, how often nobody answered it,
-    /// and what can still answer it, if that could be taken for an answer to this.
+    /// Takes over from what was held before: its place among those that wait, and how often nobody answered
+    /// it. What can still answer it also comes over, if that could be taken for an answer to this.
     fn in_place_of(mut self, old: &Self, is_like: bool, now: u32) -> Self {
         if let Some(from) = old.due(now).filter(|from| earlier(*from, self.until(), now)) {
             self.state = State::Due { from };

@@ -18,7 +18,7 @@ pub trait ReadNumber: AnySignal {
 
 /// A signal that is a number, for code that sets a quantity without knowing its type.
 pub trait SetNumber {
-    /// Returns what a frame with so many data bytes sets: thousandths of the unit, or the number itself if there is
+    /// Returns what a frame with `length` data bytes sets: thousandths of the unit, or the number itself if there is
     /// none. It is `None` if the frame does not have the signal, and where [`ReadNumber::read_number`] is.
     fn set_in(&self, data: &Data, length: usize) -> Option<i32>;
 

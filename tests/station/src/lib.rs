@@ -1,9 +1,9 @@
 //! A controller of charging modules in groups, of any protocol that has the quantities.
 //!
 //! It asks each module in rounds. While a group delivers, a round is: the set-point, the switch-on, and what is to be
-//! read. The switch-on is sent once, and only after the echo of the set-point has agreed in the same round. So a module
-//! that has restarted is never switched on without its set-point, if it takes longer to start than the switch-on waits
-//! for the bus. The next round renews both. No module is left alone for longer than a round.
+//! read. The switch-on is sent once, and only after the echo of the set-point has agreed in the same round. So no module
+//! is switched on without its set-point after a restart. It only must take longer to start than the switch-on waits for
+//! the bus. The next round renews both. No module is left alone for longer than a round.
 //!
 //! A stop goes to the group first, and then to each module in its rounds. Only what a module says of its output
 //! afterwards shows that it is off. What says nothing is unknown.
