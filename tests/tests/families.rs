@@ -10,7 +10,7 @@ use serde_yaml::{Mapping, Value};
 const MEGMEET: &str = include_str!("../../specs/megmeet.yaml");
 
 /// Rectifiers that speak MEGMEET's protocol, with another scale, another message and without the last barcode.
-const DERIVED: &str = r#"
+const DERIVED: &str = r"
 canspec: 1
 protocol: megmeet_like
 title: Rectifiers with the protocol of others
@@ -23,7 +23,7 @@ messages:
     examples:
       - {reply: 1081827E#0188271000000000, means: 1000 A}
   own_word: {section: megmeet 2.2.2, match: {signal: 0xFFE}, access: [read], value: {type: III}}
-"#;
+";
 
 /// Edits of the base that write the same out.
 const WRITTEN_OUT: [(&str, &str); 9] = [

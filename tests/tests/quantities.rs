@@ -224,7 +224,7 @@ fn a_model_has_limits_of_its_own() {
     let set = |voltage| {
         let values = [(VOLTAGE, voltage), (CURRENT, 35_000)];
         let requests = infy::Message::set_within(infy::Model::Reg50040, &values, infy::Target::Module(0));
-        requests.map(|requests| requests.count())
+        requests.map(Iterator::count)
     };
     assert_eq!([100_000, 550_000].map(set), [Ok(1), Ok(1)]);
     assert!([99_999, 550_001].map(set).iter().all(Result::is_err));

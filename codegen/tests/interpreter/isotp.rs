@@ -148,13 +148,19 @@ fn what_the_standard_tells_receivers_to_ignore_changes_nothing() {
         "7E8#0062F19103E80000",
         "7E8#0F62F19103E80000",
         "7E8#0562F19103",
-        "7E8#100062F19003E800",
+        "7E8#100000000FFF62F1",
         "7E8#100762F19003E800",
         "7E8#216401",
     ];
     for known in ignored {
         check(&[FIRST, known, SECOND, THIRD], (vec![(vec![0, 2, 3], None)], vec![1]));
     }
+}
+
+#[test]
+fn a_message_that_is_too_long_ends_the_one_before() {
+    let ended = Some("6 of 14 bytes came; another message begins");
+    check(&[FIRST, "7E8#10000000100062F1", SECOND, THIRD], (vec![(vec![0], ended)], vec![1, 2, 3]));
 }
 
 #[test]

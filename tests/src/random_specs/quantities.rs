@@ -1,6 +1,6 @@
 //! Quantities of a random spec: names for some of its signals.
 
-use canspec_codegen::model::{Encoding, FrameLayout, Kind, Message, Protocol, Signal};
+use canspec_codegen::model::{Encoding, Enumeration, FrameLayout, Kind, Message, Protocol, Signal};
 use serde_yaml::Value;
 
 use super::draft::Draft;
@@ -57,6 +57,10 @@ impl Draft {
             return;
         }
         let signals: Vec<&Signal> = frame.signals.iter().map(|id| &message[*id]).collect();
+        // Each bit of a word would have to be a quantity.
+        if signals.iter().any(|signal| matches!(signal.encoding, Encoding::Status(id) if protocol[id].bits.len() > 1)) {
+            return;
+        }
         let count = 1 + self.random.usize(..signals.len());
         let (set, fixed) = signals.split_at(count);
         let paths: Option<Vec<_>> = set.iter().map(|signal| self.quantity_path(protocol, message, signal)).collect();
@@ -79,8 +83,8 @@ impl Draft {
                 return Some(if self.chance(80) { path.into() } else { Map::of([("signal", path)]).into() });
             }
             Encoding::Named(id) => {
-                let [first, second, ..] = protocol[id].values.as_slice() else { return None };
-                (path, [first.name.clone(), second.name.clone()])
+                let mut names = names_of_all(&protocol[id]);
+                (path, [names.next()?, names.next()?])
             }
             Encoding::Status(id) => {
                 let bit = protocol[id].bits.first()?;
@@ -91,6 +95,11 @@ impl Draft {
         let [active, inactive] = states;
         Some(Map::of([("signal", path), ("active", active), ("inactive", inactive)]).into())
     }
+}
+
+/// Returns the names of values that every device model has.
+fn names_of_all(values: &Enumeration) -> impl Iterator<Item = String> {
+    values.values.iter().filter(|value| value.models.is_empty()).map(|value| value.name.clone())
 }
 
 /// Adds what other fields always are.
@@ -108,7 +117,7 @@ fn with(path: Value, fixed: &[(String, String)]) -> Value {
 /// Returns the first name of a signal's values.
 fn first_name(protocol: &Protocol, signal: &Signal) -> Option<String> {
     match signal.encoding {
-        Encoding::Named(id) => protocol[id].values.first().map(|value| value.name.clone()),
+        Encoding::Named(id) => names_of_all(&protocol[id]).next(),
         Encoding::Number { .. } => signal.specials.first().map(|special| special.name.clone()),
         Encoding::Float
         | Encoding::ByModel { .. }

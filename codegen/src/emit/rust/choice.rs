@@ -53,7 +53,11 @@ fn written(selectors: &Selectors, columns: &[SelectorId], Arm { sets, outcome }:
     let patterns = rows(columns, sets).into_iter().flat_map(|row| {
         let mut parts: Vec<_> =
             columns.iter().zip(row).map(|(column, values)| ranges(&selectors[*column], values)).collect();
-        if parts.len() == 1 { parts.remove(0) } else { vec![tuple(parts.into_iter().map(either).collect())] }
+        if parts.len() == 1 {
+            parts.remove(0)
+        } else {
+            vec![tuple(parts.iter().map(|patterns| either(patterns)).collect())]
+        }
     });
     quote!(#(#patterns)|* => #outcome,)
 }
@@ -82,7 +86,7 @@ fn rows(columns: &[SelectorId], sets: &[Constants]) -> Vec<Row> {
 }
 
 /// Writes patterns of one value as one pattern.
-fn either(patterns: Vec<TokenStream>) -> TokenStream {
+fn either(patterns: &[TokenStream]) -> TokenStream {
     if patterns.is_empty() { quote!(_) } else { quote!(#(#patterns)|*) }
 }
 

@@ -272,7 +272,7 @@ fn a_ramp_does_not_keep_a_request_like_it_waiting() {
     let steps: Vec<_> = (2..30).flat_map(|step| ramp(&mut client, 50 * step)).collect();
     // An answer to the value of 50 ms can come until 250 ms.
     assert_eq!(when(&steps, sent(&off)), [250]);
-    let last = steps.iter().filter(|(_, step)| matches!(step, Step::Send(_))).next_back();
+    let last = steps.iter().rfind(|(_, step)| matches!(step, Step::Send(_)));
     assert!(last.is_some_and(|(now, _)| *now >= 1400));
 }
 
