@@ -14,7 +14,10 @@ impl Draft {
             return;
         }
         let (mut quantities, mut scope) = (Map::default(), Scope::default());
+        // Another message may look like that of some models.
+        let is_of_all = |message: &&Message| message.models.is_empty();
         let messages = protocol.messages.iter().filter(|message| message.long.is_none() && message.set.is_none());
+        let messages = messages.filter(is_of_all);
         for message in messages.take(6) {
             let frames = || protocol.frames_of(message).filter(|frame| frame.long.is_none());
             if let Some(frame) = frames().find(|frame| !frame.is_to_module()) {
