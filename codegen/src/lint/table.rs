@@ -3,26 +3,7 @@
 use indexmap::IndexMap;
 
 use crate::diagnostic::At;
-use crate::syntax::tree::{Content, Entry, Node, Path};
-
-/// Keys of the language whose maps give names.
-const KINDS: [&str; 15] = [
-    "identifier",
-    "header",
-    "types",
-    "addressing",
-    "access",
-    "foreign",
-    "messages",
-    "models",
-    "timing",
-    "procedures",
-    "examples",
-    "errata",
-    "fields",
-    "status",
-    "facts",
-];
+use crate::syntax::tree::{Content, Entry, NAMING, Node, Path};
 
 /// Keys of the language whose maps use names that are given elsewhere.
 const REFERENCES: [&str; 10] =
@@ -51,7 +32,7 @@ pub struct Name<'a> {
 impl<'a> Table<'a> {
     /// Tests whether the table gives its names.
     pub fn is_definition(&self) -> bool {
-        self.kind == "values" || KINDS.contains(&self.kind)
+        self.kind == "values" || NAMING.contains(&self.kind)
     }
 
     /// Returns the names that the table gives.
@@ -101,7 +82,7 @@ fn visit_entry<'a>(key: &'a str, value: &'a Node, owner: &str, path: &Path, foun
     let Some(entries) = value.entries() else { return visit(value, "", path, found) };
     if REFERENCES.contains(&key) || (owner, key) == ("models", "types") {
         add_references(entries, path, found);
-    } else if key == "values" || KINDS.contains(&key) {
+    } else if key == "values" || NAMING.contains(&key) {
         found.push(Table { kind: key, path: path.clone(), entries });
         for (name, entry) in entries {
             visit(&entry.value, key, &path.key(name), found);

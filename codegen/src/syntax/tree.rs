@@ -7,6 +7,26 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
+/// Keys of the language whose maps give names to items.
+pub const NAMING: [&str; 16] = [
+    "identifier",
+    "header",
+    "types",
+    "addressing",
+    "access",
+    "foreign",
+    "transports",
+    "messages",
+    "models",
+    "timing",
+    "procedures",
+    "examples",
+    "errata",
+    "fields",
+    "status",
+    "facts",
+];
+
 /// A value in the file and where it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {

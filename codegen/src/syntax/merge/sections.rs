@@ -1,25 +1,7 @@
 //! Names the document of sections.
 
 use super::Entries;
-use crate::syntax::tree::{Content, Node};
-
-/// Keys whose maps hold items, which can have a section.
-const MAPS: [&str; 14] = [
-    "identifier",
-    "header",
-    "types",
-    "addressing",
-    "access",
-    "foreign",
-    "transports",
-    "messages",
-    "models",
-    "timing",
-    "procedures",
-    "errata",
-    "fields",
-    "status",
-];
+use crate::syntax::tree::{Content, NAMING, Node};
 
 /// Keys that hold one item, or a text in place of it.
 const ITEMS: [&str; 3] = ["value", "parts", "number"];
@@ -30,7 +12,7 @@ pub fn name(spec: &mut Entries, name: &str, others: &[String]) {
         match &mut entry.value.content {
             Content::Text(section) if key == "section" => *section = named(section, name, others),
             Content::Map(item) if ITEMS.contains(&key.as_str()) => self::name(item, name, others),
-            Content::Map(items) if key == "examples" || MAPS.contains(&key.as_str()) => {
+            Content::Map(items) if NAMING.contains(&key.as_str()) => {
                 let items = items.values_mut().map(|entry| &mut entry.value);
                 items.for_each(|item| name_item(item, name, others));
             }
