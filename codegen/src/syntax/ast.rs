@@ -31,8 +31,8 @@ pub struct Spec {
     pub protocol: String,
     /// What the devices are, in a few words without a full stop: `Charging modules`.
     pub title: String,
-    /// Name of another spec that this one takes over and changes: `megmeet`. It is a file
-    /// `megmeet.yaml` beside this one, or else a built-in protocol. Nothing is taken over if absent.
+    /// Name of another spec that this one takes over and changes: `charger`. It is a file
+    /// `charger.yaml` beside this one, or else a built-in protocol. Nothing is taken over if absent.
     pub based_on: Option<String>,
     /// List of what is in both specs and not joined, by the keys that lead to it: `[messages.output.title]`;
     /// none if absent.
