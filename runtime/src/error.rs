@@ -168,6 +168,11 @@ pub enum Error {
         /// Name of the quantity.
         quantity: &'static str,
     },
+    /// The output is switched on before another message sets the rest.
+    TooEarly {
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
     /// The quantity is a switch, and the value is neither 0 nor 1.
     State {
         /// Name of the quantity.
@@ -237,6 +242,7 @@ impl fmt::Display for Error {
                 write!(formatter, "`{message}` sets `{quantity}` too, which has no value")
             }
             Self::SetTwice { quantity } => write!(formatter, "`{quantity}` has two values"),
+            Self::TooEarly { quantity } => write!(formatter, "`{quantity}` comes before what it needs; give it last"),
             Self::State { quantity, value } => write!(formatter, "`{quantity}` is 0 or 1, and not {value}"),
         }
     }

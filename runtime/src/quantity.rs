@@ -129,12 +129,13 @@ pub trait Quantities: Protocol {
     }
 
     /// Builds the requests that set quantities, in the order of `values`. Those in one message share a request, at the
-    /// place of the first one.
+    /// place of the last one.
     ///
     /// # Errors
     ///
     /// Refuses
     /// - a quantity that the protocol cannot set, or that is given twice,
+    /// - to switch the output on before another message sets the rest,
     /// - values without another one that their message needs,
     /// - a value outside the limits of its signal, or between its last step and the limit,
     /// - a value of a switch that is not 0 or 1,

@@ -199,6 +199,23 @@ fn what_a_request_sets_and_its_reply_says_is_shown() {
 }
 
 #[test]
+fn an_output_is_switched_on_after_its_set_points_only() {
+    let (early, set) = (Err(Error::TooEarly { quantity: "delivering" }), sets::<mxr::Message>);
+    let module = mxr::Target::Module(1);
+    let (volts, amperes) = ((VOLTAGE, 700_000), (CURRENT, 10_000));
+    assert_eq!(set(module, &[(DELIVERING, 1), volts]), early);
+    assert_eq!(set(module, &[volts, (DELIVERING, 1), amperes]), early);
+    assert_eq!(set(module, &[(DELIVERING, 0), volts]).map(|frames| frames.len()), Ok(2));
+    // In INFY, voltage and current travel in one frame.
+    let infy = sets::<infy::Message>;
+    let module = infy::Target::Module(0);
+    assert_eq!(infy(module, &[(VOLTAGE, 500_000), (DELIVERING, 1), (CURRENT, 10_000)]), early);
+    let off = [(VOLTAGE, 500_000), (DELIVERING, 0), (CURRENT, 10_000)];
+    let ids = infy(module, &off).map(|frames| frames.iter().map(Frame::raw_id).collect::<Vec<_>>());
+    assert_eq!(ids, Ok(vec![0x029A_00F0, 0x029C_00F0]));
+}
+
+#[test]
 fn nothing_is_sent_if_one_value_is_refused() {
     let set = sets::<infy::Message>;
     let module = infy::Target::Module(0);

@@ -1,6 +1,5 @@
 //! Builds the requests that read and set quantities.
 
-use super::path::SetPath;
 use crate::layout::{Decode, Encode};
 use crate::{
     AnySignal, Data, Destination, Error, Exchange, Layout, Payload, Quantities, Quantity, ReadPath, Request, Route,
@@ -30,18 +29,20 @@ pub fn set<P: Quantities, T: Destination<Protocol = P>>(
     values: &[(Quantity, i32)],
     route: Route<T>,
 ) -> Result<impl Iterator<Item = Request<P, ()>>, Error> {
-    values.iter().enumerate().try_for_each(|(index, (quantity, _))| {
-        let quantity = quantity.name();
-        if values.iter().take(index).any(|(earlier, _)| earlier.name() == quantity) {
+    values.iter().enumerate().try_for_each(|(index, (known, value))| {
+        let (quantity, mut later) = (known.name(), values.iter().skip(index + 1));
+        if later.clone().any(|(later, _)| later == known) {
             return Err(Error::SetTwice { quantity });
         }
-        settable::<P>(quantity).map(|_| ()).ok_or(Error::NotSet { quantity })
+        let own = set_by::<P>(*known).ok_or(Error::NotSet { quantity })?;
+        let switches_on = (*known, *value) == (Quantity::DELIVERING, 1);
+        let is_early = switches_on && later.any(|(later, _)| !is_set_by::<P>(*later, own));
+        if is_early { Err(Error::TooEarly { quantity }) } else { Ok(()) }
     })?;
-    let exchange = |quantity: Quantity| settable::<P>(quantity.name()).map(|path| path.request);
     let requests = values.iter().enumerate().filter_map(move |(index, (quantity, _))| {
-        let own = exchange(*quantity)?;
-        let is_same = |(earlier, _): &(Quantity, i32)| exchange(*earlier).is_some_and(|earlier| earlier.is(own));
-        (!values.iter().take(index).any(is_same)).then(|| setting::<P, T>(own, model, values, route))
+        let own = set_by::<P>(*quantity)?;
+        let is_last = !values.iter().skip(index + 1).any(|(later, _)| is_set_by::<P>(*later, own));
+        is_last.then(|| setting::<P, T>(own, model, values, route))
     });
     all(requests)
 }
@@ -79,8 +80,13 @@ fn path<P: Quantities>(quantity: Quantity) -> Option<&'static ReadPath> {
     P::READS.iter().find(|path| path.quantity == quantity)
 }
 
-fn settable<P: Quantities>(quantity: &str) -> Option<&'static SetPath> {
-    P::SETS.iter().find(|path| path.quantity.name() == quantity)
+/// Returns the request that sets a quantity.
+fn set_by<P: Quantities>(quantity: Quantity) -> Option<&'static Exchange> {
+    P::SETS.iter().find(|path| path.quantity == quantity).map(|path| path.request)
+}
+
+fn is_set_by<P: Quantities>(quantity: Quantity, request: &Exchange) -> bool {
+    set_by::<P>(quantity).is_some_and(|own| own.is(request))
 }
 
 /// The bits of all signals of a message, written before.
