@@ -267,8 +267,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         &self.health.silent
     }
 
-    /// Sends a request before all others that are due, if it is due: a stop, for instance. It keeps the gap
-    /// between requests. It also waits until no answer to another request could be taken for one to it, but
+    /// Sends a request before all others that are due, if it is due: a stop, for instance. It counts for one
+    /// sending. It keeps the gap between requests. It also waits until no answer to another request could be taken for one to it, but
     /// not for answers to what it replaced. Of a group whose members are known, it waits until the round of
     /// another request to that group has ended.
     ///

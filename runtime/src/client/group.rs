@@ -45,8 +45,8 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
     /// done as soon as all of them have answered. It is sent again as long as some are missing. Nobody
     /// else answers it. There is room for `G` targets, and no members mean that they are not known.
     ///
-    /// Of requests to one such target, one is under way at a time, but for one whose answers are late. Tell it before you hold something of a
-    /// member, since the client then knows what contradicts what.
+    /// One request to such a target is under way at a time, except one whose answers are late. Tell the client
+    /// of members before you hold something of one of them, since it then knows what contradicts what.
     ///
     /// # Errors
     ///

@@ -124,7 +124,11 @@ impl Listed {
 
 impl Row {
     fn unknown(&self, path: &str, name: &str, base: &Entries) -> Diagnostic {
-        let found = Diagnostic::error(self.rule, self.at.clone(), format!("`{name}` has no `{path}`"));
+        let found = |text: String| Diagnostic::error(self.rule, self.at.clone(), text);
+        if NEVER_TAKEN.contains(&path) {
+            return found(format!("`{path}` is never taken over from `{name}`")).help("take it out");
+        }
+        let found = found(format!("`{name}` has no `{path}`"));
         match &self.own {
             Some(own) if *self.rule == REPLACES => {
                 found.other(own.clone(), "this is new").help("take it out of `replaces`")
@@ -164,9 +168,6 @@ impl Row {
 
 /// Says which path could be meant.
 fn meant(path: &str, base: &Entries) -> String {
-    if NEVER_TAKEN.contains(&path) {
-        return format!("take it out: `{path}` is never taken over");
-    }
     let (mut entries, mut found, mut rest) = (base, String::new(), path);
     loop {
         let (key, after) = rest.split_once('.').map_or((rest, None), |(key, after)| (key, Some(after)));
