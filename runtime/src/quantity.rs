@@ -178,12 +178,11 @@ impl<P: Quantities> Received<P> {
     /// [`quantity`](Self::quantity) does.
     ///
     /// It is `None` if
-    /// - the frame is neither a request that sets the quantity nor a reply to one,
+    /// - the frame is neither a request that sets the quantity nor a reply that carries it, too,
     /// - the bits mean something else than a number, or no state of the switch,
     /// - the frame is an error reply, or an `i32` cannot hold the value.
     pub fn setting(&self, quantity: Quantity) -> Option<i32> {
-        let mut paths = P::SETS.iter();
-        let path = paths.find(|path| path.quantity == quantity && path.request.is(self.exchange()))?;
+        let path = P::SETS.iter().find(|path| path.quantity == quantity && path.is_in(self))?;
         if self.is_error_reply() { None } else { path.read(self.frame()) }
     }
 }

@@ -266,6 +266,8 @@ fn every_build_reads_and_sets_the_same() {
     }
     // The reply to a setting carries no values, though that to a read of the same message does.
     assert_eq!(shown::<feature::Message>(0x631, 0, voltage), None);
+    let empty = Received::<feature::Message>::decode(&frame(0x631, 0)).expect("a reply to a setting");
+    assert_eq!([VOLTAGE, CURRENT, DELIVERING].map(|quantity| empty.setting(quantity)), [None; 3]);
     assert_eq!(shown::<feature::Message>(0x431, 0x0000_0FA0_4128_0000, voltage), Some(400_000));
     assert_eq!(shown::<feature::Message>(0x421, 0x2000_0000_0000_0000, DELIVERING), Some(0));
     assert_eq!(shown::<feature::Message>(0x421, 0x1F00_0000_0000_0000, DELIVERING), Some(1));

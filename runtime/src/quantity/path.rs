@@ -27,6 +27,8 @@ pub struct SetPath {
     pub unit: Option<&'static str>,
     /// How the message travels that sets it.
     pub request: &'static Exchange,
+    /// The reply carries the value, too.
+    pub(super) is_echoed: bool,
     pub(super) value: Value<&'static dyn SetNumber>,
     pub(super) others: &'static [(Place, u64)],
 }
@@ -101,13 +103,20 @@ impl SetPath {
         request: &'static Exchange,
         signal: &'static dyn SetNumber,
     ) -> Self {
-        Self { quantity, unit, request, value: Value::Number(signal), others: &[] }
+        Self { quantity, unit, request, is_echoed: false, value: Value::Number(signal), others: &[] }
     }
 
     /// Returns the path to a switch. Generated code calls it.
     #[doc(hidden)]
     pub const fn switch(quantity: Quantity, request: &'static Exchange, states: States) -> Self {
-        Self { quantity, unit: None, request, value: Value::Switch(states), others: &[] }
+        Self { quantity, unit: None, request, is_echoed: false, value: Value::Switch(states), others: &[] }
+    }
+
+    /// Says that the reply carries the value, too. Generated code calls it.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn echoed(self) -> Self {
+        Self { is_echoed: true, ..self }
     }
 
     /// Adds the bits that the message has elsewhere. Generated code calls it.
@@ -120,6 +129,16 @@ impl SetPath {
     /// Returns the name of the message.
     pub const fn message(&self) -> &'static str {
         self.request.message()
+    }
+
+    /// Tests whether a frame carries the value.
+    pub(super) fn is_in<P: Protocol>(&self, received: &Received<P>) -> bool {
+        let carries = match received.kind() {
+            Kind::Request => true,
+            Kind::Reply => self.is_echoed,
+            Kind::Report => false,
+        };
+        carries && self.request.is(received.exchange())
     }
 
     /// Reads the value in a request or in its reply.

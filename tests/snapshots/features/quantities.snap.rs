@@ -391,12 +391,14 @@ impl Quantities for Message {
     ];
     const SETS: &'static [SetPath] = &[
         SetPath::number(Quantity::new("output_voltage"), Some("V"), &Control::SET, &Control::VOLTAGE)
+            .echoed()
             .with(&[(Place::byte(0), 0x01)]),
         SetPath::switch(
             Quantity::new("delivering"),
             &Control::SET,
             States { place: Place::byte(1), inactive: 0x01, active: 0x00 },
-        ),
+        )
+        .echoed(),
     ];
 }
 

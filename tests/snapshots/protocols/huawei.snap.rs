@@ -3545,12 +3545,14 @@ impl Quantities for Message {
             Some("V"),
             &OutputVoltageSetting::SET,
             &OutputVoltageSetting::VALUE,
-        ),
+        )
+        .echoed(),
         SetPath::switch(
             Quantity::new("delivering"),
             &Standby::SET,
             States { place: Place::byte(3), inactive: 0x01, active: 0x00 },
-        ),
+        )
+        .echoed(),
     ];
 }
 

@@ -2295,14 +2295,17 @@ impl Quantities for Message {
         .asked_by(&ModuleLimits::READ),
     ];
     const SETS: &'static [SetPath] = &[
-        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetModuleOutput::SET, &SetModuleOutput::VOLTAGE),
-        SetPath::number(Quantity::new("output_current"), Some("A"), &SetModuleOutput::SET, &SetModuleOutput::CURRENT),
+        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetModuleOutput::SET, &SetModuleOutput::VOLTAGE)
+            .echoed(),
+        SetPath::number(Quantity::new("output_current"), Some("A"), &SetModuleOutput::SET, &SetModuleOutput::CURRENT)
+            .echoed(),
         SetPath::switch(
             Quantity::new("delivering"),
             &SwitchModules::SET,
             States { place: Place::byte(0), inactive: 0x01, active: 0x00 },
-        ),
-        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP),
+        )
+        .echoed(),
+        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP).echoed(),
     ];
 }
 

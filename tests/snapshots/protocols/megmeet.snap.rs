@@ -5849,12 +5849,14 @@ impl Quantities for Message {
             Some("V"),
             &OutputVoltageSetting::SET,
             &OutputVoltageSetting::VALUE,
-        ),
+        )
+        .echoed(),
         SetPath::switch(
             Quantity::new("delivering"),
             &SwitchModules::SET,
             States { place: Place::byte(3), inactive: 0x01, active: 0x00 },
-        ),
+        )
+        .echoed(),
     ];
 }
 

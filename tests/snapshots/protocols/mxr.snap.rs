@@ -2685,14 +2685,17 @@ impl Quantities for Message {
         .asked_by(&GroupAndAddress::READ),
     ];
     const SETS: &'static [SetPath] = &[
-        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetOutputVoltage::SET, &SetOutputVoltage::VALUE),
-        SetPath::number(Quantity::new("output_current"), Some("A"), &SetOutputCurrent::SET, &SetOutputCurrent::VALUE),
+        SetPath::number(Quantity::new("output_voltage"), Some("V"), &SetOutputVoltage::SET, &SetOutputVoltage::VALUE)
+            .echoed(),
+        SetPath::number(Quantity::new("output_current"), Some("A"), &SetOutputCurrent::SET, &SetOutputCurrent::VALUE)
+            .echoed(),
         SetPath::switch(
             Quantity::new("delivering"),
             &SwitchModules::SET,
             States { place: Place::bytes(4, 7), inactive: 0x0001_0000, active: 0x0000_0000 },
-        ),
-        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP),
+        )
+        .echoed(),
+        SetPath::number(Quantity::new("group"), None, &SetGroup::SET, &SetGroup::GROUP).echoed(),
     ];
 }
 

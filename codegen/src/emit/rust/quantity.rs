@@ -23,11 +23,12 @@ fn read(Read { value, frames, request }: &Read) -> TokenStream {
     quote!(#path #asked)
 }
 
-fn set(Set { value, request, others }: &Set) -> TokenStream {
+fn set(Set { value, request, is_echoed, others }: &Set) -> TokenStream {
     let path = path(&quote!(SetPath), value, request);
     let rows = others.iter().map(|(place, bits)| quote!((#place, #bits)));
     let with = (!others.is_empty()).then(|| quote!(.with(&[#(#rows),*])));
-    quote!(#path #with)
+    let echoed = is_echoed.then(|| quote!(.echoed()));
+    quote!(#path #echoed #with)
 }
 
 fn path(kind: &TokenStream, Value { name, unit, states }: &Value, frames: &TokenStream) -> TokenStream {

@@ -7,7 +7,7 @@ use super::literal::hexadecimal;
 use super::message::Message;
 use super::naming::{camel_case, ident};
 use super::place::Written;
-use crate::model::{ExchangeId, MessageId, Protocol, SignalPath, Table};
+use crate::model::{ExchangeId, FrameLayout, Kind, MessageId, Protocol, SignalPath, Table};
 
 /// Where quantities are read and set.
 pub struct Quantities {
@@ -33,6 +33,8 @@ pub struct Set {
     pub value: Value,
     /// The path of the exchange that sets it.
     pub request: TokenStream,
+    /// The reply carries it, too.
+    pub is_echoed: bool,
     /// Places that the message has elsewhere, with their bits.
     pub others: Vec<(Written, TokenStream)>,
 }
@@ -91,8 +93,13 @@ impl Planner<'_> {
             let place = message[fixed.signal].place;
             (Written::new(place), hexadecimal(fixed.bits, place.width()))
         });
-        let (value, request) = (self.value(name, path), self.exchange(path, request.exchange));
-        Some(Set { value, request, others: others.collect() })
+        let is_echo = |frame: &FrameLayout| frame.kind == Kind::Reply && frame.exchange == request.exchange;
+        Some(Set {
+            value: self.value(name, path),
+            request: self.exchange(path, request.exchange),
+            is_echoed: self.protocol.frames_with(path).any(is_echo),
+            others: others.collect(),
+        })
     }
 
     fn value(&self, name: &str, path: &SignalPath) -> Value {
