@@ -148,7 +148,7 @@ fn missing(protocol: &Protocol, signal: &Signal, given: u64) -> Vec<String> {
     let Some(word) = signal.encoding.status_word().filter(|_| mask(signal.place) & given != 0) else {
         return if is_given(signal.place) { Vec::new() } else { vec![signal.name.clone()] };
     };
-    let bits = protocol[word].bits.iter().filter(|bit| !is_given(signal.place.bit(bit.bit)));
+    let bits = protocol[word].bits_in(signal.place).filter(|bit| !is_given(signal.place.bit(bit.bit)));
     bits.map(|bit| format!("{}.{}", signal.name, bit.name)).collect()
 }
 

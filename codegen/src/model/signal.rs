@@ -72,6 +72,14 @@ pub struct StatusWord {
     pub bits: Vec<StatusBit>,
 }
 
+impl StatusWord {
+    /// Returns the named bits that a signal of this type has at a place, the lowest first. A narrower signal has
+    /// fewer.
+    pub fn bits_in(&self, place: Place) -> impl DoubleEndedIterator<Item = &StatusBit> + Clone {
+        self.bits.iter().filter(move |bit| bit.bit < place.width())
+    }
+}
+
 impl StatusBit {
     /// Tests whether a device model has the bit.
     pub fn is_of(&self, model: ModelId) -> bool {

@@ -106,7 +106,7 @@ impl Resolver<'_> {
             self.error_with_help(&rules::QUANTITY_PATH, path.at_value(), text, "name the signal alone");
             return None;
         };
-        let bits = self.tables.status_words[word].bits.clone();
+        let bits: Vec<_> = self.tables.status_words[word].bits_in(signal.place).cloned().collect();
         let names = bits.iter().map(|bit| bit.name.as_str());
         self.lookup(path, "status bit", name, names).map(|index| bits[index].bit)
     }

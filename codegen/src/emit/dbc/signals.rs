@@ -80,7 +80,7 @@ fn plain(signal: &Meaning, name: &str) -> Signal {
 fn status(word: &StatusWord, place: Place, name: &str) -> Vec<Signal> {
     let mut signals = Vec::new();
     let mut high = place.width();
-    for bit in word.bits.iter().rev() {
+    for bit in word.bits_in(place).rev() {
         signals.extend(unnamed(place, name, bit.bit + 1, high));
         let comment = about(bit);
         signals.push(Signal { comment, ..Signal::new(format!("{name}_{}", bit.name), place.bit(bit.bit)) });
