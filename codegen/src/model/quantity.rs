@@ -69,7 +69,7 @@ impl Protocol {
         self.carrying(path).filter(|frame| !frame.is_to_module())
     }
 
-    /// Returns the exchange that asks for the value at a path. It is `None` if devices only report it by themselves.
+    /// Returns the exchange that asks for the value at a path. It is `None` if no request without fields does.
     pub fn asking(&self, path: &SignalPath) -> Option<ExchangeId> {
         let mut replies = self.frames_with(path).filter(|frame| frame.kind == Kind::Reply && frame.set.is_none());
         let asks = |reply: &&FrameLayout| {
