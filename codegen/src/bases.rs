@@ -17,7 +17,7 @@ rules! {
     BASED_ON "based_on" Source ERROR;
 }
 
-/// All rules of the stage, in order.
+/// The rules of bases, in order.
 pub(crate) static RULES: &[&Rule] = &[&BASED_ON];
 
 /// Most specs that stand behind a spec, each the base of the one before.

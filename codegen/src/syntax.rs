@@ -25,6 +25,6 @@ pub fn parse(source: Source) -> (Option<ast::Spec>, Diagnostics) {
 
 /// Returns the name of the spec that the last file of a source is based on, and its place.
 pub(crate) fn based_on(source: &Source) -> Option<(String, Range<usize>)> {
-    let names_one = source.text()[source.last_part()].contains(merge::BASED_ON);
+    let names_one = source.text()[source.last_part()].contains(merge::KEY);
     names_one.then(|| gate::read_last(source))?.as_ref().and_then(merge::based_on)
 }

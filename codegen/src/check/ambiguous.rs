@@ -145,7 +145,7 @@ pub fn are_alike(protocol: &Protocol, one: &FrameLayout, other: &FrameLayout) ->
 }
 
 /// Tests whether the constants of two frames want the same of each data bit, whatever the fields are called.
-fn agree(one: &FrameLayout, other: &FrameLayout) -> bool {
+pub fn agree(one: &FrameLayout, other: &FrameLayout) -> bool {
     let bits = |frame: &FrameLayout| {
         frame.payload().fold((0, 0), |(mask, bits), (place, value)| {
             let mut data = [0; 8];

@@ -149,8 +149,7 @@ impl<'a> Decoder<'a> {
     }
 
     fn passes(&self, test: &FieldTest) -> bool {
-        let value = self.field(test.field);
-        test.ranges.iter().any(|(first, last)| (*first..=*last).contains(&value)) == test.inside
+        test.holds(self.field(test.field))
     }
 
     /// Says what is wrong with the fixed bits.

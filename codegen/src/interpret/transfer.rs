@@ -60,6 +60,11 @@ struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// Returns the greatest number of data bytes of a message.
+    fn most_bytes(&self) -> usize {
+        self.protocol[self.id].standard.most_bytes()
+    }
+
     /// Returns the raw value of one of its signals.
     fn number(&self, name: &str) -> Option<usize> {
         let message = &self.protocol[self.decoded.message];

@@ -220,6 +220,11 @@ impl FieldTest {
         Self { field, ranges: vec![(value, value)], inside: true }
     }
 
+    /// Tests whether a value of the field passes.
+    pub fn holds(&self, value: u32) -> bool {
+        self.ranges.iter().any(|(first, last)| (*first..=*last).contains(&value)) == self.inside
+    }
+
     /// Tests whether no value that lies inside passes both tests of one field.
     fn excludes(&self, other: &Self) -> bool {
         let apart = |(first, last): &(u32, u32), (start, end): &(u32, u32)| last < start || end < first;

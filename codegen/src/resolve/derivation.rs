@@ -13,19 +13,14 @@ impl Resolver<'_> {
             base: Text::new(self.spec.based_on.as_ref()?),
             replaces: texts(&self.spec.replaces),
             removes: texts(&self.spec.removes),
-            descents: messages.iter().map(|message| self.descent(&self.written_at(&message.name))).collect(),
+            descents: messages.entries().map(|(id, message)| self.descent(self.written_at(id, message))).collect(),
         })
     }
 
     /// Returns where a message is written. A frame of a transport has no place of its own.
-    fn written_at(&self, message: &str) -> Path {
-        let path = Path::default().key("messages").key(message);
-        let mut transports = self.spec.transports.keys();
-        let carrier = transports.find(|name| message.strip_prefix(*name).is_some_and(|rest| rest.starts_with('_')));
-        match carrier {
-            Some(carrier) if !self.diagnostics.has(&path) => Path::default().key("transports").key(carrier),
-            _ => path,
-        }
+    fn written_at<'a>(&'a self, id: MessageId, message: &'a Message) -> &'a Path {
+        let carrier = self.tables.transports.iter().find(|known| known.frames.contains(&id));
+        carrier.map_or(&message.doc.path, |carrier| &carrier.doc.path)
     }
 
     fn descent(&self, path: &Path) -> Descent {

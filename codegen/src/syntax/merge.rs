@@ -19,7 +19,7 @@ use base::Base;
 use listed::Listed;
 
 /// The key that names another spec.
-pub(super) const BASED_ON: &str = "based_on";
+pub(super) const KEY: &str = "based_on";
 
 /// The keys by which a spec changes its base.
 const LISTS: [&str; 2] = ["replaces", "removes"];
@@ -50,7 +50,7 @@ pub(super) fn merge(trees: Vec<Option<Node>>, problems: &mut Vec<Diagnostic>) ->
 
 /// Returns the name of the spec that a spec is based on, and its place.
 pub(super) fn based_on(tree: &Node) -> Option<(String, Range<usize>)> {
-    let value = tree.child_at(BASED_ON)?;
+    let value = tree.child_at(KEY)?;
     Some((value.text()?.to_owned(), value.span.clone()))
 }
 

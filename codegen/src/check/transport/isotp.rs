@@ -1,5 +1,6 @@
 //! What ISO-TP asks of its messages: the first six bytes show which one it is, and one node answers its first frame.
 
+use crate::check::ambiguous::agree;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{FrameLayout, LongMessage, Protocol, Signal, Travel, Who};
 use crate::resolve::rules;
@@ -78,18 +79,5 @@ fn fit_both(one: &FrameLayout, other: &FrameLayout) -> bool {
         let mut others = other.identifier();
         others.any(|(field, value)| field == known.0 && value != known.1)
     });
-    let ([mask, bits], [other_mask, other_bits]) = (constants(one), constants(other));
-    one.sender == other.sender && !differs && (bits ^ other_bits) & mask & other_mask == 0
-}
-
-/// Returns which bits of the payload are constant, and which value they have.
-fn constants(layout: &FrameLayout) -> [u64; 2] {
-    let ([mut mask, mut bits], blank) = ([0, 0], [0; 8]);
-    for (place, value) in layout.payload() {
-        let mut own = blank;
-        place.put(&mut own, value);
-        mask |= u64::from_be_bytes(place.mask());
-        bits |= u64::from_be_bytes(own);
-    }
-    [mask, bits]
+    one.sender == other.sender && !differs && agree(one, other)
 }

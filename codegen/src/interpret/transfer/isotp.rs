@@ -13,7 +13,6 @@ use crate::model::{
 /// Data bytes of a single and of a consecutive frame, of a first one, and of the longest message.
 const SINGLE: usize = 7;
 const FIRST: usize = 6;
-const LONGEST: usize = 4095;
 
 /// How a receiver says that it has no room for a message.
 const OVERFLOW: usize = 2;
@@ -115,7 +114,7 @@ impl<M: Clone> Transfers<M> {
         let Some((size, data)) = announced(part) else { return Taken::NOTHING };
         let link = Link::of(part);
         let ended = self.restarted(part, &link);
-        let started = message(part, data, size).filter(|_| size <= LONGEST);
+        let started = message(part, data, size).filter(|_| size <= part.most_bytes());
         let is_part = started.is_some();
         let begun = started.map(|started| (link, Transfer { started, data: data.to_vec(), marks: vec![mark] }));
         self.0.extend(begun);
@@ -183,7 +182,7 @@ fn announced<'a>(part: &Part<'a>) -> Option<(usize, &'a [u8])> {
     }
     let (size, data) = data.split_first_chunk()?;
     let size = usize::try_from(u32::from_be_bytes(*size)).ok()?;
-    (size > LONGEST).then_some((size, data))
+    (size > part.most_bytes()).then_some((size, data))
 }
 
 /// Finds the message whose data begin so.

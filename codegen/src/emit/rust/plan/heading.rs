@@ -1,7 +1,7 @@
 //! How the identifier shows where a frame goes: by one of its fields after another.
 //!
-//! Generated code writes out at each end what is done with the frame, which is long. So each end
-//! stands there only once.
+//! Generated code writes out at each end what is done with the frame, which is long. So each end that
+//! leads somewhere stands there only once.
 
 use std::collections::BTreeSet;
 use std::iter;
@@ -173,13 +173,11 @@ impl Lists {
     }
 
     fn after(&self, field: FieldId, value: u32) -> Self {
-        let is_there =
-            |test: &FieldTest| test.inside == test.ranges.iter().any(|(first, last)| (*first..=*last).contains(&value));
         let mut lists: Vec<Vec<FieldTest>> = Vec::new();
         for tests in &self.0 {
             let (now, later): (Vec<_>, Vec<_>) = tests.iter().partition(|test| test.field == field);
             let later: Vec<_> = later.into_iter().cloned().collect();
-            if now.into_iter().all(is_there) && !lists.contains(&later) {
+            if now.into_iter().all(|test| test.holds(value)) && !lists.contains(&later) {
                 lists.push(later);
             }
         }
