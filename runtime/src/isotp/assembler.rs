@@ -218,6 +218,9 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
         if flow == Flow::Overflow {
             return Event::broken(session.transfer, Cause::Overflow);
         }
+        if is_silent(session.since, now) {
+            return Event::broken(session.transfer, Cause::Silent);
+        }
         self.keep(Session { since: now, ..session });
         Event::NONE
     }

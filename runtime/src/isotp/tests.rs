@@ -221,6 +221,9 @@ fn a_frame_that_comes_too_late_gives_its_message_up() {
     let broken = event.broken.expect("a message");
     assert_eq!((broken.cause, broken.transfer.data().len()), (Cause::Silent, 13));
     assert!(event.whole.is_none() && event.answer.is_none() && assembler.timed_out(9999).is_none());
+    _ = assembler.receive(engine(), &bytes(VIN[0]), 3000);
+    let event = assembler.receive(engine().reversed(), &bytes("300000"), 4000);
+    assert_eq!(event.broken.map(|broken| broken.cause), Some(Cause::Silent), "a flow control revives nothing");
 }
 
 #[test]
