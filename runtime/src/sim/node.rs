@@ -11,7 +11,8 @@ pub struct Node<D> {
     pub number: u8,
     pub device: D,
     pub faults: Faults,
-    pub is_dead: bool,
+    /// Whether it has died. It stays so when time wraps around.
+    is_dead: bool,
     /// When it heard a request last.
     heard: u32,
     /// Until when it starts, if it does.
@@ -30,6 +31,12 @@ impl<D> Node<D> {
         !self.is_dead && self.boots.is_none()
     }
 
+    /// Tests whether it has died by now.
+    fn is_dead_at(&mut self, now: u32) -> bool {
+        self.is_dead |= self.faults.dies.is_some_and(|time| has_come(time, now));
+        self.is_dead
+    }
+
     /// Starts anew.
     pub fn restart<P: Protocol>(&mut self, boot: u32, now: u32)
     where
@@ -44,8 +51,7 @@ impl<D> Node<D> {
     where
         D: Device<P>,
     {
-        self.is_dead |= self.faults.dies.is_some_and(|time| has_come(time, now));
-        if self.is_dead {
+        if self.is_dead_at(now) {
             return false;
         }
         if self.faults.restarts.is_some_and(|time| has_come(time, now)) {
@@ -87,7 +93,7 @@ impl<D> Node<D> {
     where
         D: Device<P>,
     {
-        if self.is_dead || random.chance(self.faults.deaf) {
+        if self.is_dead_at(now) || random.chance(self.faults.deaf) {
             return None;
         }
         (self.heard, self.is_alone) = (now, false);
