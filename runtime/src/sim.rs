@@ -3,7 +3,8 @@
 //! A program says what a device does, by [`Device`]. A [`Bench`] has some of them, each with its number
 //! and its [`Faults`]. It takes the frames of a client, and gives back what the devices answer. It
 //! complains about a client that asks too fast, sends what the document forbids, or lets a watchdog run
-//! out. Time is a number of milliseconds, and may wrap around. The seed decides everything.
+//! out. It also complains about a device whose answer is no reply to the request. Time is a number of
+//! milliseconds, and may wrap around. The seed decides everything.
 //!
 //! ```
 //! use canspec_runtime::sim::{Answer, Bench, Device, Event, Rules};
@@ -44,11 +45,9 @@ use core::marker::PhantomData;
 
 use crate::clock::has_come;
 use crate::{Addressed, Frame, Received};
+use complaint::Complaints;
 use node::{Node, has_coordinator};
 use wire::Wire;
-
-/// How many complaints wait to be taken. More are dropped.
-const COMPLAINTS: usize = 4;
 
 /// What the devices of a bus expect, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,7 +67,7 @@ pub struct Rules {
 pub enum Event {
     /// A frame for the client.
     Frame(Frame),
-    /// The client does something wrong.
+    /// The client or a device does something wrong.
     Complaint(Complaint),
 }
 
@@ -83,7 +82,7 @@ pub struct Bench<P, D, const N: usize, const W: usize> {
     sent: Option<u32>,
     /// Another controller: its frame, the time between two of them, and when the next one is due.
     other: Option<(Frame, u32, u32)>,
-    complaints: [Option<Complaint>; COMPLAINTS],
+    complaints: Complaints,
     protocol: PhantomData<P>,
 }
 
@@ -97,7 +96,7 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             wire: Wire([None; W]),
             sent: None,
             other: None,
-            complaints: [None; COMPLAINTS],
+            complaints: Complaints::NONE,
             protocol: PhantomData,
         }
     }
@@ -135,15 +134,15 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
     pub fn send(&mut self, frame: &Frame, now: u32) {
         let after = self.sent.map(|sent| now.wrapping_sub(sent)).filter(|after| *after < self.rules.gap);
         if let Some(after) = after {
-            self.complain(Complaint::Gap { frame: *frame, after });
+            self.complaints.add(Complaint::Gap { frame: *frame, after });
         }
         self.sent = Some(now);
         match Received::decode(frame) {
-            Err(problem) => self.complain(Complaint::Unrecognised { frame: *frame, problem }),
-            Ok(received) if !received.is_to_module() => self.complain(Complaint::Direction(*frame)),
+            Err(problem) => self.complaints.add(Complaint::Unrecognised { frame: *frame, problem }),
+            Ok(received) if !received.is_to_module() => self.complaints.add(Complaint::Direction(*frame)),
             Ok(received) => {
                 if let Err(error) = received.encode() {
-                    self.complain(Complaint::Illegal { frame: *frame, error });
+                    self.complaints.add(Complaint::Illegal { frame: *frame, error });
                 }
                 self.deliver(&received, now);
             }
@@ -156,7 +155,7 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             let Some(node) = self.nodes.get_mut(place) else { continue };
             if node.tick(&self.rules, now) {
                 let node = node.number;
-                self.complain(Complaint::Unfed { node });
+                self.complaints.add(Complaint::Unfed { node });
             }
         }
         if let Some((frame, every, due)) = self.other.filter(|(_, _, due)| has_come(*due, now)) {
@@ -166,17 +165,20 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
                 self.deliver(&received, now);
             }
         }
-        let complaint = self.complaints.iter_mut().find_map(Option::take).map(Event::Complaint);
+        let complaint = self.complaints.take().map(Event::Complaint);
         complaint.or_else(|| self.wire.arrived(now).map(Event::Frame))
     }
 
     /// Lets the devices that a request addresses hear and answer it.
     fn deliver(&mut self, request: &Received<P>, now: u32) {
-        let Self { nodes, rules, random, wire, .. } = self;
+        let Self { nodes, rules, random, wire, complaints, .. } = self;
         let mut speaks = true;
         for node in nodes.iter_mut().filter(|node| node.is_asked(request)) {
-            let reply = node.answer(request, rules, random, now).filter(|_| speaks);
-            let Some(reply) = reply else { continue };
+            let reply = node.answer(request, rules, random, now).unwrap_or_else(|error| {
+                complaints.add(Complaint::Answer { node: node.number, error });
+                None
+            });
+            let Some(reply) = reply.filter(|_| speaks) else { continue };
             speaks = !has_coordinator(request);
             node.spoil(request, reply, random, |delay, frame| wire.send(now.wrapping_add(delay), frame));
         }
@@ -184,11 +186,5 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
 
     fn node(&mut self, node: u8) -> Option<&mut Node<D>> {
         self.nodes.iter_mut().find(|known| known.number == node)
-    }
-
-    fn complain(&mut self, complaint: Complaint) {
-        if let Some(slot) = self.complaints.iter_mut().find(|slot| slot.is_none()) {
-            *slot = Some(complaint);
-        }
     }
 }

@@ -1,10 +1,13 @@
-//! What a client does wrong.
+//! What a client or a simulated device does wrong.
 
 use core::fmt;
 
 use crate::{Error, Frame, Problem};
 
-/// What a client does wrong.
+/// How many complaints wait to be taken. More are dropped.
+const MOST: usize = 4;
+
+/// What a client does wrong, or a simulated device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Complaint {
     /// It sends a frame too soon after the one before.
@@ -35,6 +38,32 @@ pub enum Complaint {
         /// The module.
         node: u8,
     },
+    /// The program lets a module answer with what is no reply to the request: another message, or values or
+    /// an error code that it cannot carry. The client hears nothing.
+    Answer {
+        /// The module.
+        node: u8,
+        /// Why there is no reply.
+        error: Error,
+    },
+}
+
+/// Complaints that wait to be taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Complaints([Option<Complaint>; MOST]);
+
+impl Complaints {
+    pub const NONE: Self = Self([None; MOST]);
+
+    pub fn add(&mut self, complaint: Complaint) {
+        if let Some(slot) = self.0.iter_mut().find(|slot| slot.is_none()) {
+            *slot = Some(complaint);
+        }
+    }
+
+    pub fn take(&mut self) -> Option<Complaint> {
+        self.0.iter_mut().find_map(Option::take)
+    }
 }
 
 impl fmt::Display for Complaint {
@@ -45,6 +74,7 @@ impl fmt::Display for Complaint {
             Self::Direction(frame) => write!(formatter, "{frame} goes to no module"),
             Self::Illegal { frame, error } => write!(formatter, "{frame}: {error}"),
             Self::Unfed { node } => write!(formatter, "module {node} has heard nothing until its watchdog ran out"),
+            Self::Answer { node, error } => write!(formatter, "module {node} has no such answer: {error}"),
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::{Protocol, Received};
 
-/// What a device answers. It goes to whom asked, if anybody answers in the addressing mode.
+/// What a device answers. It goes to whom asked, if anybody answers in the addressing mode. The bench
+/// [complains](super::Complaint::Answer) about what is no reply to the request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer<P> {
     /// The reply that carries this.

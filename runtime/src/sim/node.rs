@@ -3,7 +3,7 @@
 use super::{Answer, Device, Faults, Random, Rules};
 use crate::clock::has_come;
 use crate::plumbing::Who;
-use crate::{Addressed, Destination, Frame, Protocol, Received};
+use crate::{Addressed, Destination, Error, Frame, Protocol, Received};
 
 /// A device on the bus.
 #[derive(Clone, Copy, Debug)]
@@ -82,19 +82,19 @@ impl<D> Node<D> {
         }
     }
 
-    /// Takes a request, and returns what it answers.
+    /// Takes a request, and returns what it answers. Fails if that is no reply to the request.
     pub fn answer<P: Addressed>(
         &mut self,
         request: &Received<P>,
         rules: &Rules,
         random: &mut Random,
         now: u32,
-    ) -> Option<Frame>
+    ) -> Result<Option<Frame>, Error>
     where
         D: Device<P>,
     {
         if self.is_dead_at(now) || random.chance(self.faults.deaf) {
-            return None;
+            return Ok(None);
         }
         (self.heard, self.is_alone) = (now, false);
         let answer = if self.boots.is_some() {
@@ -104,13 +104,17 @@ impl<D> Node<D> {
         } else {
             self.device.answer(request, now)
         };
-        match answer {
+        let reply = match answer {
             Answer::Values(values) if random.chance(self.faults.drifted) => {
-                request.answer(self.number, self.device.drift(values)).ok()
+                request.answer(self.number, self.device.drift(values))
             }
-            Answer::Values(values) => request.answer(self.number, values).ok(),
-            Answer::Refusal(code) => request.refuse(self.number, code).ok(),
-            Answer::Silence => None,
+            Answer::Values(values) => request.answer(self.number, values),
+            Answer::Refusal(code) => request.refuse(self.number, code),
+            Answer::Silence => return Ok(None),
+        };
+        match reply {
+            Err(Error::Unanswered { .. }) => Ok(None),
+            reply => reply.map(Some),
         }
     }
 

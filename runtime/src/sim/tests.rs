@@ -6,7 +6,7 @@ use std::vec::Vec;
 use super::{Answer, Bench, Complaint, Device, Event, Faults, Random, Rules};
 use crate::plumbing::Who;
 use crate::tests::heaters::{HEAT, Heat, Message, To, frame};
-use crate::{Frame, Problem, Received};
+use crate::{Error, Frame, Problem, Received};
 
 const RULES: Rules = Rules { gap: 20, watchdog: Some(1000), boot: 300, starting_up: Some(7) };
 
@@ -202,6 +202,33 @@ fn a_client_must_keep_the_gap_and_send_what_the_document_allows() {
     assert_eq!(complaints(reply, 200), [Event::Complaint(Complaint::Direction(reply))]);
     let hot = frame(0x0107_03F0, [1, 0, 0, 201]);
     assert!(matches!(&*complaints(hot, 300), [Event::Complaint(Complaint::Illegal { frame, .. })] if *frame == hot));
+}
+
+/// A heater that answers everything with the same.
+struct Stubborn(Answer<Message>);
+
+impl Device<Message> for Stubborn {
+    fn answer(&mut self, _: &Received<Message>, _: u32) -> Answer<Message> {
+        self.0
+    }
+}
+
+#[test]
+fn a_device_must_answer_with_a_reply_to_the_request() {
+    let complaints = |answer, target| {
+        let mut bench = Bench::<Message, Stubborn, 1, 4>::new([(3, Stubborn(answer))], RULES, 1);
+        bench.send(&set(target), 0);
+        (0..9).filter_map(|now| bench.poll(now)).collect::<Vec<_>>()
+    };
+    let error = |answer| match *complaints(answer, To::Heater(3)) {
+        [Event::Complaint(Complaint::Answer { node: 3, error })] => error,
+        ref other => panic!("{other:?}"),
+    };
+    let hot = Answer::Values(Message::Heat(Heat { power_w: 1e6 }));
+    assert!(matches!(error(hot), Error::Limits { message: "heat", signal: "power", .. }));
+    assert!(matches!(error(Answer::Values(Message::ReadHeat)), Error::Identifier { message: "heat", .. }));
+    assert_eq!(error(Answer::Refusal(0)), Error::Code { message: "heat", code: 0 });
+    assert_eq!(complaints(hot, To::All), [], "nobody answers all heaters");
 }
 
 #[test]
