@@ -36,8 +36,8 @@ pub struct Entry<P> {
     pub begun: u32,
     /// How often it was sent in this round.
     pub sent: u8,
-    /// How many modules have answered in this round.
-    pub answers: u8,
+    /// Whether the request was answered in this round.
+    pub has_answer: bool,
     /// How often it, and what it replaced, was sent since then.
     pub unheard: u8,
     /// Whether the module that it goes to has sent anything since then.
@@ -81,7 +81,7 @@ impl<P: Protocol> Entry<P> {
             round: now,
             begun: now,
             sent: 0,
-            answers: 0,
+            has_answer: false,
             unheard: 0,
             is_heard: false,
         }
@@ -174,7 +174,7 @@ impl<P: Protocol> Entry<P> {
         if self.listen(now) {
             return None;
         }
-        let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.has_answers();
+        let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.is_answered();
         if !is_done && self.sent < self.pace.tries {
             self.state = State::Due { from: now };
             return None;
@@ -188,9 +188,9 @@ impl<P: Protocol> Entry<P> {
         })
     }
 
-    /// Tests whether some of several modules have answered, and it is not known how many there are.
-    const fn has_answers(&self) -> bool {
-        self.answers > 0 && self.hold.is_none()
+    /// Tests whether one of several modules has answered, and nobody knows how many there are.
+    const fn is_answered(&self) -> bool {
+        self.has_answer && self.hold.is_none()
     }
 
     /// Returns the modules that have sent nothing, after the round was lost.
@@ -220,7 +220,6 @@ impl<P: Protocol> Entry<P> {
             }
         }
         if !is_good && !is_refusal {
-            self.answers = self.answers.saturating_add(1);
             return Heard::NotInEffect { ticket, received };
         }
         self.count(is_group_known);
@@ -237,10 +236,10 @@ impl<P: Protocol> Entry<P> {
         Heard::ShortRefusal(self.ticket)
     }
 
-    /// Counts an answer. The round ends if there is only one. It is not sent again if one of nobody knows
-    /// how many is enough.
+    /// Notes an answer that counts. The round ends if there is only one. It is not sent again if one of nobody
+    /// knows how many is enough.
     fn count(&mut self, is_group_known: bool) {
-        self.answers = self.answers.saturating_add(1);
+        self.has_answer = true;
         if has_one_answer(&self.request) {
             self.rest(self.until(), false);
         } else if let (State::Due { from }, false) = (self.state, is_group_known) {
@@ -279,7 +278,7 @@ impl<P: Protocol> Entry<P> {
             return None;
         }
         self.period = None;
-        if !matches!(self.state, State::Resting { .. }) {
+        if !self.is_resting() {
             self.rest(self.until(), true);
         }
         Some(self)
@@ -305,7 +304,7 @@ impl<P: Protocol> Entry<P> {
         if let Some(hold) = &mut self.hold {
             hold.deaf = None;
         }
-        (self.state, self.sent, self.answers) = (State::Due { from }, 0, 0);
+        (self.state, self.sent, self.has_answer) = (State::Due { from }, 0, false);
         self
     }
 
