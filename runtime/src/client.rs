@@ -341,9 +341,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns the place of the first request of some kind that a frame answers.
     fn asking(&self, frame: &impl embedded_can::Frame, is_one: impl Fn(&Entry<P>) -> bool) -> Option<usize> {
         let mut slots = self.entries.iter();
-        slots.position(|slot| {
-            slot.as_ref().is_some_and(|entry| is_one(entry) && self.groups.refuses(entry, frame).is_some())
-        })
+        slots.position(|slot| slot.as_ref().is_some_and(|entry| is_one(entry) && self.groups.is_answer(entry, frame)))
     }
 
     /// Says what a frame is that is not recognised.

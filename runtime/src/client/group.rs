@@ -102,11 +102,10 @@ impl<const G: usize> Groups<G> {
         }
     }
 
-    /// Tells whether a frame that answers a request refuses it. Returns `None` for any other frame.
-    pub fn refuses<P: Protocol>(&self, entry: &Entry<P>, frame: &impl embedded_can::Frame) -> Option<bool> {
-        let is_refusal = entry.request.refuses(frame)?;
+    /// Tests whether a frame answers a request, perhaps by a refusal, and a module that should answer sent it.
+    pub fn is_answer<P: Protocol>(&self, entry: &Entry<P>, frame: &impl embedded_can::Frame) -> bool {
         let is_expected = || Some(self.answerers(entry)?.contains(entry.request.sender(frame)?));
-        Some(is_refusal).filter(|_| is_expected().unwrap_or(true))
+        entry.request.refuses(frame).is_some() && is_expected().unwrap_or(true)
     }
 
     /// Tests whether a frame can answer both requests.
