@@ -212,7 +212,8 @@ impl<P: Protocol> Entry<P> {
         if self.deaf().is_some() {
             return Heard::Late { ticket, received };
         }
-        let is_good = self.hold.is_none() || !is_refusal && self.agrees(&received, model);
+        let agrees = |hold: Hold<P>| !is_refusal && hold.agrees(&self.request, &received, model);
+        let is_good = self.hold.is_none_or(agrees);
         let is_group_known = group.is_some();
         if let (Some(group), Some(node)) = (group, self.request.sender(received.frame())) {
             if !group.answered(node, is_good) {

@@ -125,13 +125,19 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Ends what is held that a request would contradict.
     pub(super) fn release(&mut self, request: &Entry<P>) {
-        let groups = self.groups;
-        let is_released = |slot: &Option<Entry<P>>| {
-            slot.is_some_and(|held| held.ticket != request.ticket && held.is_contradicted_by(request, &groups))
-        };
-        for slot in self.entries.iter_mut().filter(|slot| is_released(slot)) {
+        let Self { entries, groups, .. } = self;
+        let is_released = |slot: &Option<Entry<P>>| slot.is_some_and(|held| held.is_contradicted_by(request, groups));
+        for slot in entries.iter_mut().filter(|slot| is_released(slot)) {
             *slot = slot.and_then(Entry::cancelled);
         }
+    }
+}
+
+impl<P: Protocol> Hold<P> {
+    /// Tests whether a reply shows that a request is in effect.
+    pub fn agrees(&self, request: &Request<P, ()>, received: &Received<P>, model: Option<u8>) -> bool {
+        let asked = Received::decode_by(model, request.frame());
+        asked.is_ok_and(|asked| (self.agrees)(asked.content(), received.content()))
     }
 }
 
@@ -205,12 +211,6 @@ impl<P: Protocol> Entry<P> {
     /// Returns until when an answer to what was held before can come, or counts as one to it.
     pub fn deaf(&self) -> Option<u32> {
         self.hold.as_ref()?.deaf
-    }
-
-    /// Says whether a reply shows that the request is in effect. If it is not held, any reply does.
-    pub fn agrees(&self, received: &Received<P>, model: Option<u8>) -> bool {
-        let asked = || Received::decode_by(model, self.request.frame());
-        self.hold.is_none_or(|hold| asked().is_ok_and(|asked| (hold.agrees)(asked.content(), received.content())))
     }
 
     /// Begins to listen when no answer to what was held before can come any more. The request is due again.
