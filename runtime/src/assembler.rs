@@ -11,6 +11,7 @@ use core::fmt;
 
 use embedded_can::Frame as _;
 
+use crate::clock::{has_come, has_lasted};
 use crate::frame::classic;
 use crate::set::FrameSet;
 use crate::{Frame, Kind, Problem, Received};
@@ -205,7 +206,7 @@ impl<S: FrameSet, const N: usize> Assembler<S, N> {
     /// it returns `None`.
     pub fn timed_out(&mut self, now: u32) -> Option<Partial<S>> {
         let patience = self.patience;
-        let is_silent = |node: &Node<S>| elapsed(node.since, now).is_some_and(|silence| silence >= patience);
+        let is_silent = |node: &Node<S>| has_lasted(node.since, patience, now);
         let slot = self.nodes.iter_mut().find(|slot| slot.as_ref().is_some_and(is_silent))?;
         slot.take().map(|node| node.partial())
     }
@@ -278,7 +279,7 @@ impl<S: FrameSet> Node<S> {
     /// Takes what a frame says. `more` tells whether other frames follow.
     fn progress(&mut self, said: Said<S::Protocol>, more: bool, now: u32) -> Progress<S> {
         let arrival = self.arrival(said);
-        if elapsed(self.since, now).is_some() {
+        if has_come(self.since, now) {
             self.since = now;
         }
         let partial = self.partial();
@@ -326,10 +327,4 @@ impl<S: FrameSet> Node<S> {
 /// Returns the bit of a member.
 fn bit(position: usize) -> u64 {
     u32::try_from(position).ok().and_then(|position| 1_u64.checked_shl(position)).unwrap_or(0)
-}
-
-/// Returns the milliseconds since a time, or `None` if it lies ahead. Times wrap, so half of them
-/// count as ahead.
-pub(crate) fn elapsed(since: u32, now: u32) -> Option<u32> {
-    u32::try_from(now.wrapping_sub(since) as i32).ok()
 }

@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use super::group::Group;
 use super::hold::Hold;
 use super::{Heard, Nodes, Pace, Step, has_one_answer};
-use crate::clock::{earlier, has_come, is_later};
+use crate::clock::{earlier, has_come, is_later, later_of};
 use crate::{Protocol, Received, Replies, Request};
 
 /// Names a request of a client.
@@ -155,7 +155,7 @@ impl<P: Protocol> Entry<P> {
         self.unheard = self.unheard.saturating_add(1);
         let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
         let until = now.wrapping_add(wait);
-        self.state = State::Waiting { until: deaf.filter(|deaf| is_later(*deaf, until)).unwrap_or(until) };
+        self.state = State::Waiting { until: deaf.map_or(until, |deaf| later_of(until, deaf)) };
     }
 
     /// Ends a wait that has taken too long, or for which nobody is missing. Says how it ends. Sends the
@@ -320,7 +320,7 @@ impl<P: Protocol> Entry<P> {
     fn rest(&mut self, until: u32, is_lost: bool) {
         let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
         let until = until.wrapping_add(late);
-        let until = self.deaf().filter(|deaf| is_later(*deaf, until)).unwrap_or(until);
+        let until = self.deaf().map_or(until, |deaf| later_of(until, deaf));
         (self.state, self.unheard) = (State::Resting { until, is_lost }, 0);
     }
 }

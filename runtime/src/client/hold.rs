@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use super::entry::{Entry, State};
 use super::group::Groups;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
-use crate::clock::{earlier, has_come, is_later};
+use crate::clock::{earlier, has_come, later_of};
 use crate::{Protocol, Received, Request};
 
 /// Says whether an echo agrees: whether the second message says what the first one asks for.
@@ -245,8 +245,5 @@ impl<P: Protocol> Entry<P> {
 
 /// Returns the later one of two times, or the only one.
 fn latest(one: Option<u32>, other: Option<u32>) -> Option<u32> {
-    match (one, other) {
-        (Some(one), Some(other)) if is_later(other, one) => Some(other),
-        (one, other) => one.or(other),
-    }
+    one.zip(other).map(|(one, other)| later_of(one, other)).or(one).or(other)
 }

@@ -2,7 +2,7 @@
 
 use super::pdu::{CONSECUTIVE, FIRST, Flow, Packet, Pdu, Separation};
 use super::{Link, Memory, PADDING, PATIENCE, SIZES};
-use crate::assembler::elapsed;
+use crate::clock::has_lasted;
 use crate::long::buffer::Buffer;
 
 /// Puts the messages of up to `N` pairs of identifiers together, each in memory `M`, such as
@@ -167,7 +167,7 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
     /// Gives up a message whose sender has been silent for too long. Call this until it returns
     /// `None`. A frame that comes too late gives its message up, too.
     pub fn timed_out(&mut self, now: u32) -> Option<Event<M, L>> {
-        let is_silent = |session: &Session<M, L>| is_silent(session.since, now);
+        let is_silent = |session: &Session<M, L>| has_lasted(session.since, PATIENCE, now);
         let slot = self.sessions.iter_mut().find(|slot| slot.as_ref().is_some_and(is_silent))?;
         Some(Event::broken(slot.take()?.transfer, Cause::Silent))
     }
@@ -191,7 +191,7 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
 
     pub(crate) fn consecutive(&mut self, link: L, number: u8, data: &[u8], now: u32) -> Event<M, L> {
         let Some(Session { mut transfer, since }) = self.take(link) else { return Event::NONE };
-        if is_silent(since, now) {
+        if has_lasted(since, PATIENCE, now) {
             return Event::broken(transfer, Cause::Silent);
         }
         if transfer.frames() & 0xF != number.into() {
@@ -218,7 +218,7 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
         if flow == Flow::Overflow {
             return Event::broken(session.transfer, Cause::Overflow);
         }
-        if is_silent(session.since, now) {
+        if has_lasted(session.since, PATIENCE, now) {
             return Event::broken(session.transfer, Cause::Silent);
         }
         self.keep(Session { since: now, ..session });
@@ -253,9 +253,4 @@ impl<M: Memory, const N: usize, L: Copy + PartialEq> Assembler<M, N, L> {
             *slot = Some(session);
         }
     }
-}
-
-/// Tests whether a sender has been silent for too long.
-fn is_silent(since: u32, now: u32) -> bool {
-    elapsed(since, now).is_some_and(|silence| silence >= PATIENCE)
 }

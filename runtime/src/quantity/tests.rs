@@ -59,7 +59,8 @@ fn what_lies_beyond_a_limit_is_refused_by_its_own_value() {
 
 impl Quantities for Message {
     const READS: &'static [ReadPath] = &[];
-    const SETS: &'static [SetPath] = &[SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER)];
+    const SETS: &'static [SetPath] =
+        &[SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER).echoed()];
 }
 
 #[test]

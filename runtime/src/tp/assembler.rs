@@ -3,7 +3,7 @@
 use super::control::{Control, Reason};
 use super::{ALL, Link, Memory, PACKET, packets};
 use crate::Data;
-use crate::assembler::elapsed;
+use crate::clock::has_lasted;
 use crate::long::buffer::Buffer;
 
 /// How long a receiver waits for the next packet, in milliseconds: T1 of the standard.
@@ -175,8 +175,7 @@ impl<M: Memory, const N: usize> Assembler<M, N> {
     /// Gives up a message whose sender has been silent for too long. Call this until it returns
     /// `None`.
     pub fn timed_out(&mut self, now: u32) -> Option<Event<M>> {
-        let is_silent =
-            |session: &Session<M>| elapsed(session.since, now).is_some_and(|silence| silence >= session.patience);
+        let is_silent = |session: &Session<M>| has_lasted(session.since, session.patience, now);
         let slot = self.sessions.iter_mut().find(|slot| slot.as_ref().is_some_and(is_silent))?;
         Some(slot.take()?.given_up(Cause::Silent, Reason::TIMEOUT))
     }

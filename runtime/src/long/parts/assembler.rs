@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::peers::Peers;
 use super::{Incomplete, Outcome, Parted, Said, Whole, first, parts_of, size};
-use crate::assembler::elapsed;
+use crate::clock::has_lasted;
 use crate::long::buffer::Buffer;
 use crate::{Frame, Kind, Received};
 
@@ -130,7 +130,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
     /// Ends a message whose node has been silent for too long. Call this until it returns `None`.
     pub fn timed_out(&mut self, now: u32) -> Option<Outcome<L>> {
         let patience = self.patience;
-        let is_silent = |open: &Transfer<L>| elapsed(open.since, now).is_some_and(|silence| silence >= patience);
+        let is_silent = |open: &Transfer<L>| has_lasted(open.since, patience, now);
         self.end(|open| open.as_ref().is_some_and(is_silent))
     }
 
