@@ -14,8 +14,10 @@ impl<'a> Decoder<'a> {
     /// Says that the number of a part means nothing without the device model.
     pub fn part_note(&self, message: &Message) -> Option<Note> {
         let (_, long) = self.protocol.long_message(message)?;
-        let text = format!("the first part of `{}` has another number on each model", message.name);
-        long.first(self.model).is_none().then_some(Note { rule: NoteRule::ModelDependent, text })
+        long.first(self.model).is_none().then(|| {
+            let text = format!("the first part of `{}` has another number on each model", message.name);
+            Note { rule: NoteRule::ModelDependent, text }
+        })
     }
 
     /// Says that the device model has no such message, or that the frame may be another message on another model.
@@ -51,10 +53,12 @@ impl<'a> Decoder<'a> {
     pub fn reserved_note(&self, frame: &FrameLayout, reserved: [u8; 8]) -> Option<Note> {
         let present = first_bytes(u8::try_from(self.frame.data.len()).unwrap_or(8));
         let odd = u64::from_be_bytes(reserved) ^ frame.filled() & present;
-        let found = if frame.reserved.are_ones { "clear" } else { "set" };
-        let bits = hex::digits(&odd.to_be_bytes()[..self.frame.data.len()]);
-        let text = format!("bits are {found} that no field has: 0x{bits}");
-        (odd != 0 && !frame.reserved.are_free).then_some(Note { rule: NoteRule::ReservedBit, text })
+        (odd != 0 && !frame.reserved.are_free).then(|| {
+            let found = if frame.reserved.are_ones { "clear" } else { "set" };
+            let bits = hex::digits(&odd.to_be_bytes()[..self.frame.data.len()]);
+            let text = format!("bits are {found} that no field has: 0x{bits}");
+            Note { rule: NoteRule::ReservedBit, text }
+        })
     }
 
     pub fn error_notes(&self, frame: &FrameLayout, selectors: &[(SelectorId, u64)]) -> Vec<Note> {
