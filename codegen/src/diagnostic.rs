@@ -94,12 +94,16 @@ impl Diagnostic {
     /// Moves its ranges of bytes, whose text now stands behind another one.
     #[must_use]
     pub(crate) fn moved(mut self, by: usize) -> Self {
-        for at in std::iter::once(&mut self.at).chain(self.others.iter_mut().map(|(at, _)| at)) {
+        for at in self.places() {
             if let At::Span(span) = at {
                 *span = span.start + by..span.end + by;
             }
         }
         self
+    }
+
+    fn places(&mut self) -> impl Iterator<Item = &mut At> {
+        std::iter::once(&mut self.at).chain(self.others.iter_mut().map(|(at, _)| at))
     }
 
     fn new(rule: &'static Rule, severity: Severity, at: At, message: &str) -> Self {
@@ -128,6 +132,18 @@ impl Diagnostics {
     #[must_use]
     pub fn in_tree(self, tree: Option<Node>) -> Self {
         Self { tree: tree.map(Box::new), ..self }
+    }
+
+    /// Looks all places up and lets the tree go, which takes more memory than the protocol.
+    #[must_use]
+    pub(crate) fn without_tree(mut self) -> Self {
+        let mut items = std::mem::take(&mut self.items);
+        for at in items.iter_mut().flat_map(Diagnostic::places) {
+            if let Some(span) = self.span(at) {
+                *at = At::Span(span);
+            }
+        }
+        Self { items, tree: None, ..self }
     }
 
     /// Adds diagnostics.
