@@ -4,16 +4,22 @@ mod words;
 
 use std::ops::RangeInclusive;
 
+use canspec_runtime::Quantity;
+use indexmap::IndexMap;
+
 use super::Written;
 use super::table::{Name, Table};
 use crate::diagnostic::Diagnostic;
 use crate::rule::rules;
-use crate::syntax::tree::Path;
+use crate::syntax::tree::{Node, Path};
 use words::{Vocabulary, words};
 
 rules! {
     SPELLING "spelling" Lint WARNING;
 }
+
+/// The key with the quantities.
+const QUANTITIES: &str = "quantities";
 
 /// Longest name that is tested, in bytes.
 const LONGEST: usize = 48;
@@ -44,7 +50,22 @@ pub fn lint(Written { tree, tables, .. }: &Written) -> Vec<Diagnostic> {
     let mistyped = strange.filter_map(|name| Some(mistyped(&name, &meant(&vocabulary, &name)?)));
     let short = definitions().flat_map(Table::names).filter(|name| name.text.len() <= LONGEST);
     let misnumbered = short.filter_map(|name| misnumbered(&name));
-    mistyped.chain(misnumbered).collect()
+    mistyped.chain(misnumbered).chain(nearly_standard(tree)).collect()
+}
+
+/// Finds quantities whose names are one slip away from a standard one, so that no program would find them.
+fn nearly_standard(tree: &Node) -> Vec<Diagnostic> {
+    let known: Vec<_> = Quantity::STANDARD.iter().map(|(quantity, _)| quantity.name()).collect();
+    let own = tree.child_at(QUANTITIES).and_then(Node::entries).into_iter().flat_map(IndexMap::keys);
+    let strange = own.filter(|name| !known.contains(&name.as_str()));
+    let slips = strange.filter_map(|name| {
+        let meant = known.iter().find(|standard| strsim::osa_distance(name, standard) == 1)?;
+        let at = Path::default().key(QUANTITIES).key(name).at_key();
+        let warning = Diagnostic::warning(&SPELLING, at, format!("`{name}`: is `{meant}` meant?"));
+        let help = format!("write `{meant}`, or a name that is less like it");
+        Some(warning.label("no standard quantity has this name").help(help))
+    });
+    slips.collect()
 }
 
 fn mistyped(name: &Name, meant: &str) -> Diagnostic {
