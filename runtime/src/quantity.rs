@@ -84,8 +84,10 @@ standard! {
     INPUT_POWER "input_power" QuantityKind::Unit("W");
     /// Frequency at the input, in mHz.
     INPUT_FREQUENCY "input_frequency" QuantityKind::Unit("Hz");
-    /// Temperature of the device, or of the air around it, in m°C.
+    /// Temperature of the device itself, in m°C.
     TEMPERATURE "temperature" QuantityKind::Unit("°C");
+    /// Temperature of the air around the device, in m°C.
+    AMBIENT_TEMPERATURE "ambient_temperature" QuantityKind::Unit("°C");
     /// The least voltage that the output can be set to, in mV.
     MINIMUM_VOLTAGE "minimum_voltage" QuantityKind::Unit("V");
     /// The greatest voltage that the output can be set to, in mV.

@@ -10,6 +10,7 @@ use canspec_tests::{
 const VOLTAGE: Quantity = Quantity::OUTPUT_VOLTAGE;
 const CURRENT: Quantity = Quantity::OUTPUT_CURRENT;
 const DELIVERING: Quantity = Quantity::DELIVERING;
+const AMBIENT: Quantity = Quantity::AMBIENT_TEMPERATURE;
 
 fn frame(id: u32, data: u64) -> Frame {
     let (extended, data) = (id > 0x7FF, data.to_be_bytes());
@@ -55,7 +56,7 @@ fn infy_is_set_and_read_by_the_frames_of_its_document() {
     assert_eq!(show(0x028A_F000, 0x02EE_0064_0100_05DC, Quantity::RATED_POWER), Some(15_000_000));
     // Section 2.4, 0x04: group 2, 16 °C, and the DC side is not off.
     let status = |quantity| show(0x02C4_F000, 0x0000_0200_1000_4000, quantity);
-    assert_eq!([Quantity::GROUP, Quantity::TEMPERATURE, DELIVERING].map(status), [Some(2), Some(16_000), Some(1)]);
+    assert_eq!([Quantity::GROUP, AMBIENT, DELIVERING].map(status), [Some(2), Some(16_000), Some(1)]);
     assert_eq!(status(VOLTAGE), None, "another message has it");
     // The lowest bit of status 1 says that the DC side is off.
     assert_eq!(show(0x02C4_F000, 0x0000_0200_1000_4100, DELIVERING), Some(0));
@@ -157,6 +158,9 @@ fn huawei_and_daly_are_set_and_read_by_the_frames_of_their_examples() {
     assert_eq!(set(module, &[(DELIVERING, 0)]), Ok(vec![frame(0x1081_80FE, 0x0132_0001_0000_0000)]));
     assert_eq!(set(module, &[(DELIVERING, 1)]), Ok(vec![frame(0x1081_80FE, 0x0132_0000_0000_0000)]));
     assert_eq!(shown::<huawei::Message>(0x1082_827E, 0x0175_0000_0000_D000, VOLTAGE), Some(52_000));
+    // Section 9.2 and P35: active is giving voltage, which a PSU in standby does not.
+    let state = |data| shown::<huawei::Message>(0x1081_11FE, data, DELIVERING);
+    assert_eq!([0x0003_0000_0001_0000, 0x0003_0000_0000_0000].map(state), [Some(1), Some(0)]);
     // Section 8.1, D03.
     let pack = |quantity| shown::<daly::Message>(0x1890_4001, 0x0200_01FF_7431_01D9, quantity);
     let wanted = [Quantity::BATTERY_VOLTAGE, Quantity::BATTERY_CURRENT, Quantity::STATE_OF_CHARGE];
@@ -165,7 +169,7 @@ fn huawei_and_daly_are_set_and_read_by_the_frames_of_their_examples() {
 
 #[test]
 fn a_request_reads_all_quantities_of_its_message() {
-    let wanted = [VOLTAGE, CURRENT, DELIVERING, Quantity::TEMPERATURE];
+    let wanted = [VOLTAGE, CURRENT, DELIVERING, AMBIENT];
     let infy = reads::<infy::Message>(infy::Target::Module(0), &wanted).expect("three of them in one mode");
     assert_eq!(infy, [frame(0x0283_00F0, 0), frame(0x0284_00F0, 0)]);
     let mxr = reads::<mxr::Message>(mxr::Target::Module(1), &wanted).expect("all of them");

@@ -3503,6 +3503,11 @@ impl Quantities for Message {
             &OutputPower::VALUE,
         )
         .asked_by(&OutputPower::GET),
+        ReadPath::switch(
+            Quantity::new("delivering"),
+            &[(Kind::Report, &ActiveState::ANNOUNCE)],
+            States { place: Place::byte(5), inactive: 0x00, active: 0x01 },
+        ),
         ReadPath::number(
             Quantity::new("temperature"),
             Some("°C"),

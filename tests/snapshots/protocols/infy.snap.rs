@@ -2257,7 +2257,7 @@ impl Quantities for Message {
         )
         .asked_by(&ModuleStatus::READ),
         ReadPath::number(
-            Quantity::new("temperature"),
+            Quantity::new("ambient_temperature"),
             Some("°C"),
             &[(Kind::Reply, &ModuleStatus::READ)],
             &ModuleStatus::TEMPERATURE,

@@ -5801,7 +5801,7 @@ impl Quantities for Message {
         )
         .asked_by(&ModuleStatus::READ),
         ReadPath::number(
-            Quantity::new("temperature"),
+            Quantity::new("ambient_temperature"),
             Some("°C"),
             &[(Kind::Reply, &AmbientTemperature::READ), (Kind::Reply, &AmbientTemperature::READ_ALL_REAL_TIME_DATA)],
             &AmbientTemperature::VALUE,

@@ -2642,7 +2642,7 @@ impl Quantities for Message {
         )
         .asked_by(&ModuleStatus::READ),
         ReadPath::number(
-            Quantity::new("temperature"),
+            Quantity::new("ambient_temperature"),
             Some("°C"),
             &[(Kind::Reply, &AmbientTemperature::READ)],
             &AmbientTemperature::VALUE,
