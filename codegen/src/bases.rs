@@ -69,12 +69,13 @@ impl Bases {
         let mut chain = vec![stem(source.name()).to_owned()];
         while let Some((name, at)) = syntax::based_on(&source) {
             chain.push(name);
-            let base = match self.base(&source, &chain, folder)? {
+            let base = match self.base(&source, &chain, folder) {
                 Ok(base) => base,
-                Err(Flaw { message, help }) => {
+                Err(Flaw::Own { message, help }) => {
                     let problem = Diagnostic::error(&BASED_ON, at, message).help(help);
                     return Err(Diagnostics::new(source).with([problem]));
                 }
+                Err(Flaw::OfBase(diagnostics)) => return Err(diagnostics),
             };
             folder = folder.filter(|_| base.is_file());
             source = source.with_base(base);
@@ -83,15 +84,11 @@ impl Bases {
     }
 
     /// Finds the base that a chain ends with, or says why there is none.
-    fn base(
-        &self,
-        source: &Source,
-        chain: &[String],
-        folder: Option<&Path>,
-    ) -> Result<Result<Source, Flaw>, Diagnostics> {
-        let Some(name) = chain.last().filter(|name| is_name(name)) else { return Ok(Err(misnamed(chain))) };
-        let Some(base) = self.find(name, folder)? else { return Ok(Err(self.missing(name, chain, folder))) };
-        Ok(flaw(source, &base, chain).map_or(Ok(base), Err))
+    fn base(&self, source: &Source, chain: &[String], folder: Option<&Path>) -> Result<Source, Flaw> {
+        let name = chain.last().filter(|name| is_name(name)).ok_or_else(|| misnamed(chain))?;
+        let found = self.find(name, folder).map_err(Flaw::OfBase)?;
+        let base = found.ok_or_else(|| self.missing(name, chain, folder))?;
+        flaw(source, &base, chain).map_or(Ok(base), Err)
     }
 
     /// Finds a spec in a folder, or else among these.
@@ -115,14 +112,16 @@ impl Bases {
                 format!("put it beside this file as `{name}.yaml`, or take one of {}", known.join(", "))
             }
         };
-        Flaw { message: format!("there is no spec `{name}`"), help }
+        Flaw::Own { message: format!("there is no spec `{name}`"), help }
     }
 }
 
 /// Why a spec cannot be based on another one.
-struct Flaw {
-    message: String,
-    help: String,
+enum Flaw {
+    /// What is wrong with the name of the base, and what to do.
+    Own { message: String, help: String },
+    /// The base cannot be read.
+    OfBase(Diagnostics),
 }
 
 fn flaw(source: &Source, base: &Source, chain: &[String]) -> Option<Flaw> {
@@ -133,15 +132,15 @@ fn flaw(source: &Source, base: &Source, chain: &[String]) -> Option<Flaw> {
             [own, _] => format!("name another spec; if you mean the built-in `{own}`, rename this file"),
             _ => "base one of them on no other spec".to_owned(),
         };
-        return Some(Flaw { message, help });
+        return Some(Flaw::Own { message, help });
     }
     if chain.len() > MOST + 1 {
         let message = format!("more than {MOST} specs stand behind this one: {}", row());
-        return Some(Flaw { message, help: "base a spec of the row on one that is further back".to_owned() });
+        return Some(Flaw::Own { message, help: "base a spec of the row on one that is further back".to_owned() });
     }
     if source.text().len() + base.text().len() >= SIZE_LIMIT {
         let message = format!("the spec and those that it is based on are larger than {} MiB", SIZE_LIMIT >> 20);
-        return Some(Flaw { message, help: "check that these are the specs you mean".to_owned() });
+        return Some(Flaw::Own { message, help: "check that these are the specs you mean".to_owned() });
     }
     None
 }
@@ -154,7 +153,7 @@ fn misnamed(chain: &[String]) -> Flaw {
     } else {
         "write the name of a file beside this one without `.yaml`, or of a built-in protocol".to_owned()
     };
-    Flaw { message: format!("`{name}` is not the name of a spec"), help }
+    Flaw::Own { message: format!("`{name}` is not the name of a spec"), help }
 }
 
 /// Tests the form of a name. It becomes the name of a file and of a document.
