@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::plan::quantity::{Quantities, Read, Set, States, Value};
+use super::plan::quantity::{Quantities, Read, Set, States, Value, ValueKind};
 
 /// Emits where quantities are read and set.
 pub fn quantities(Quantities { reads, sets }: &Quantities) -> TokenStream {
@@ -31,12 +31,12 @@ fn set(Set { value, request, is_echoed, others }: &Set) -> TokenStream {
     quote!(#path #echoed #with)
 }
 
-fn path(kind: &TokenStream, Value { name, unit, states }: &Value, frames: &TokenStream) -> TokenStream {
+fn path(table: &TokenStream, Value { name, unit, kind }: &Value, frames: &TokenStream) -> TokenStream {
     let unit = unit.as_ref().map_or_else(|| quote!(None), |unit| quote!(Some(#unit)));
-    match states {
-        Ok(signal) => quote!(#kind::number(Quantity::new(#name), #unit, #frames, #signal)),
-        Err(States { place, inactive, active }) => {
-            quote!(#kind::switch(Quantity::new(#name), #frames, States { place: #place, inactive: #inactive, active: #active }))
+    match kind {
+        ValueKind::Number(signal) => quote!(#table::number(Quantity::new(#name), #unit, #frames, #signal)),
+        ValueKind::Switch(States { place, inactive, active }) => {
+            quote!(#table::switch(Quantity::new(#name), #frames, States { place: #place, inactive: #inactive, active: #active }))
         }
     }
 }

@@ -45,8 +45,16 @@ pub struct Value {
     pub name: String,
     /// The unit.
     pub unit: Option<String>,
-    /// The path of the signal, or the states of a switch.
-    pub states: Result<TokenStream, States>,
+    /// What it is.
+    pub kind: ValueKind,
+}
+
+/// What the value of a quantity is.
+pub enum ValueKind {
+    /// A number, with the path of its signal.
+    Number(TokenStream),
+    /// A switch.
+    Switch(States),
 }
 
 /// The states of a switch.
@@ -103,19 +111,20 @@ impl Planner<'_> {
     }
 
     fn value(&self, name: &str, path: &SignalPath) -> Value {
-        let states = match path.states {
+        let kind = match path.states {
             None => {
                 let (message, signal) = (&self.messages[path.message], path.signal);
                 let (home, constant) = (&message.home, &message.signals[signal].constant);
-                Ok(quote!(&#home::#constant))
+                ValueKind::Number(quote!(&#home::#constant))
             }
             Some([inactive, active]) => {
                 let bits = |bits| hexadecimal(bits, path.place.width());
-                Err(States { place: Written::new(path.place), inactive: bits(inactive), active: bits(active) })
+                let place = Written::new(path.place);
+                ValueKind::Switch(States { place, inactive: bits(inactive), active: bits(active) })
             }
         };
         let unit = self.protocol.unit_at(path).map(|unit| unit.symbol.to_string());
-        Value { name: name.to_owned(), unit, states }
+        Value { name: name.to_owned(), unit, kind }
     }
 
     fn exchange(&self, path: &SignalPath, exchange: ExchangeId) -> TokenStream {
