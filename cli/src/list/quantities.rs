@@ -25,13 +25,11 @@ fn row(protocol: &Protocol, QuantityPaths { name, read, set, .. }: &QuantityPath
 
 /// Writes a path, and what a switch is while it is on and off.
 fn text(protocol: &Protocol, path: &SignalPath) -> String {
-    let (message, signal) = (&protocol[path.message], protocol.signal_at(path));
-    let bit = path.bit.as_ref().map_or_else(String::new, |name| format!(".{name}"));
     let states = path.states.map_or_else(String::new, |states| {
         let [inactive, active] = states.map(|bits| state(protocol, path, bits));
         format!(" (active: {active}, inactive: {inactive})")
     });
-    format!("{}.{}{bit}{states}", message.name, signal.name)
+    protocol.path_text(path) + &states
 }
 
 /// Writes a state by its name, or as its raw value.

@@ -39,7 +39,7 @@ fn check_value(protocol: &Protocol, path: &SignalPath, diagnostics: &mut Diagnos
     }
     let signal = protocol.signal_at(path);
     if let Some(text) = refused(signal) {
-        diagnostics.push(at(path, format!("`{}` {text}", name(protocol, path))).help(match signal.encoding {
+        diagnostics.push(at(path, format!("`{}` {text}", protocol.path_text(path))).help(match signal.encoding {
             Encoding::Named(_) | Encoding::Status(_) => {
                 "write its states, as in `{signal: .., active: \"on\", inactive: \"off\"}`"
             }
@@ -68,42 +68,43 @@ fn refused(signal: &Signal) -> Option<&'static str> {
 fn check_standard(protocol: &Protocol, known: &QuantityPaths, path: &SignalPath, diagnostics: &mut Diagnostics) {
     let mut standard = Quantity::STANDARD.iter();
     let Some((_, kind)) = standard.find(|(quantity, _)| quantity.name() == known.name) else { return };
-    let unit = protocol.unit_at(path);
-    let symbol = unit.as_ref().map(|unit| &*unit.symbol);
-    let is_right = match kind {
-        QuantityKind::Unit(unit) => symbol == Some(unit),
-        QuantityKind::Count => symbol.is_none() && path.states.is_none(),
-        QuantityKind::Switch => path.states.is_some(),
-    };
-    if is_right {
-        return;
+    let (wanted, found) = (kind_text(*kind), kind_of(protocol, path));
+    if wanted != found {
+        let text = format!("`{}` {wanted}, but `{}` {found}", known.name, protocol.path_text(path));
+        diagnostics.push(at(path, text).help("name another signal, or give the quantity a name of its own"));
     }
-    let wanted = match kind {
-        QuantityKind::Unit(unit) => format!("is in {unit}"),
-        QuantityKind::Count => "is a number without a unit".to_owned(),
-        QuantityKind::Switch => "is a switch".to_owned(),
-    };
-    let text = format!("`{}` {wanted}, but `{}` {}", known.name, name(protocol, path), kind_of(protocol, path));
-    diagnostics.push(at(path, text).help("name another signal, or give the quantity a name of its own"));
 }
 
 /// Tests that what is read and what is set have one unit.
 fn check_agreement(protocol: &Protocol, [read, set]: [&SignalPath; 2], diagnostics: &mut Diagnostics) {
     let kinds = [read, set].map(|path| kind_of(protocol, path));
     if kinds[0] != kinds[1] {
-        let names = [read, set].map(|path| name(protocol, path));
+        let names = [read, set].map(|path| protocol.path_text(path));
         let text = format!("`{}` {}, but `{}`, which is read, {}", names[1], kinds[1], names[0], kinds[0]);
         let problem = at(set, text).other(read.path.at_value(), "what is read");
         diagnostics.push(problem.help("name a signal of the same unit, or make them two quantities"));
     }
 }
 
+/// Says what a path leads to.
 fn kind_of(protocol: &Protocol, path: &SignalPath) -> String {
     match protocol.unit_at(path) {
-        _ if path.states.is_some() => "is a switch".to_owned(),
-        Some(unit) => format!("is in {}", unit.symbol),
-        None => "has no unit".to_owned(),
+        _ if path.states.is_some() => kind_text(QuantityKind::Switch),
+        Some(unit) => in_unit(&unit.symbol),
+        None => kind_text(QuantityKind::Count),
     }
+}
+
+fn kind_text(kind: QuantityKind) -> String {
+    match kind {
+        QuantityKind::Unit(symbol) => in_unit(symbol),
+        QuantityKind::Count => "has no unit".to_owned(),
+        QuantityKind::Switch => "is a switch".to_owned(),
+    }
+}
+
+fn in_unit(symbol: &str) -> String {
+    format!("is in {symbol}")
 }
 
 /// Tests that a request says all that its frame carries.
@@ -138,7 +139,7 @@ fn check_request(protocol: &Protocol, set: &SignalPath, diagnostics: &mut Diagno
 /// Returns the bits of the data that quantities and fixed values of a request give.
 fn given(protocol: &Protocol, set: &SignalPath) -> u64 {
     let of_quantities = protocol.setters_of(set.message).map(|path| path.place);
-    let fixed = protocol.fixed_beside(set).map(|fixed| protocol[set.message][fixed.signal].place);
+    let fixed = protocol.fixed_in(set.message).map(|fixed| protocol[set.message][fixed.signal].place);
     of_quantities.chain(fixed).fold(0, |given, place| given | mask(place))
 }
 
@@ -200,7 +201,7 @@ fn check_recognised(protocol: &Protocol, read: &SignalPath, diagnostics: &mut Di
 
 /// Tests that a signal of a request has one value.
 fn check_fixed(protocol: &Protocol, set: &SignalPath, fixed: &Fixed, diagnostics: &mut Diagnostics) {
-    let mut earlier = protocol.fixed_beside(set).take_while(|other| other.path != fixed.path);
+    let mut earlier = protocol.fixed_in(set.message).take_while(|other| other.path != fixed.path);
     let other = earlier.find(|other| other.signal == fixed.signal && other.bits != fixed.bits);
     let quantity = protocol.setters_of(set.message).find(|path| path.signal == fixed.signal);
     let name = &protocol[set.message][fixed.signal].name;
@@ -232,7 +233,7 @@ fn check_once(protocol: &Protocol, diagnostics: &mut Diagnostics) {
                     && mask(other.place) & mask(path.place) != 0
             };
             if let Some((earlier, other)) = paths[..index].iter().find(is_same) {
-                let text = format!("both `{}` and `{}` are `{}`", earlier.name, known.name, name(protocol, path));
+                let text = format!("both `{}` and `{}` are `{}`", earlier.name, known.name, protocol.path_text(path));
                 let problem = at(path, text).other(other.path.at_value(), "the other quantity");
                 diagnostics.push(problem.help("take one of the two out"));
             }
@@ -241,14 +242,10 @@ fn check_once(protocol: &Protocol, diagnostics: &mut Diagnostics) {
 }
 
 fn untold(protocol: &Protocol, path: &SignalPath, what: &str, key: &str) -> Diagnostic {
-    let text = format!("{what} `{}`", name(protocol, path));
+    let text = format!("{what} `{}`", protocol.path_text(path));
     at(path, text).help(format!("name a message that can be {key}, or take `{key}` out"))
 }
 
 fn at(path: &SignalPath, text: String) -> Diagnostic {
     Diagnostic::error(&QUANTITY_PATH, path.path.at_value(), text)
-}
-
-fn name(protocol: &Protocol, path: &SignalPath) -> String {
-    format!("{}.{}", protocol[path.message].name, protocol.signal_at(path).name)
 }

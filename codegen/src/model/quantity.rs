@@ -59,6 +59,13 @@ impl Protocol {
         &self[path.message][path.signal]
     }
 
+    /// Returns a path as a spec has it: `MESSAGE.SIGNAL`, or `MESSAGE.WORD.BIT` of a status bit.
+    pub fn path_text(&self, path: &SignalPath) -> String {
+        let bit = path.bit.iter().map(String::as_str);
+        let names = [&*self[path.message].name, &*self.signal_at(path).name].into_iter().chain(bit);
+        names.collect::<Vec<_>>().join(".")
+    }
+
     /// Returns the unit of the value at a path. A switch has none.
     pub fn unit_at(&self, path: &SignalPath) -> Option<Unit> {
         if path.states.is_some() { None } else { self.signal_at(path).unit }
@@ -86,9 +93,9 @@ impl Protocol {
         self.carrying(path).find(|frame| frame.kind == Kind::Request && frame.set.is_none())
     }
 
-    /// Returns what other paths that set values of the same message, and the one itself, fix of it.
-    pub fn fixed_beside<'a>(&'a self, path: &SignalPath) -> impl Iterator<Item = &'a Fixed> {
-        self.setters_of(path.message).flat_map(|path| &path.with)
+    /// Returns what paths that set values of a message fix of it.
+    pub fn fixed_in(&self, message: MessageId) -> impl Iterator<Item = &Fixed> {
+        self.setters_of(message).flat_map(|path| &path.with)
     }
 
     /// Returns the paths that set values of a message.
@@ -98,7 +105,6 @@ impl Protocol {
 
     fn carrying(&self, path: &SignalPath) -> impl Iterator<Item = &FrameLayout> + use<'_> {
         let signal = path.signal;
-        let frames = self.frames_of(&self[path.message]);
-        frames.filter(move |frame| frame.long.is_none() && frame.signals.contains(&signal))
+        self.frames_of(&self[path.message]).filter(move |frame| frame.signals.contains(&signal))
     }
 }
