@@ -8,12 +8,15 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use wait4::Wait4;
 
 /// How many messages of four signals a spec has.
 const MESSAGES: [u32; 5] = [10, 100, 1_000, 4_000, 10_000];
+
+/// Lines of the logs that are decoded as a whole.
+const LENGTHS: [u32; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
 
 /// Lines of the logs whose difference shows what a line costs.
 const LINES: [u32; 2] = [2_000, 12_000];
@@ -47,6 +50,7 @@ const LOGGED: u32 = 4_000;
 fn main() -> io::Result<()> {
     let folder = tempfile::tempdir()?;
     of_messages(folder.path())?;
+    of_lines(folder.path())?;
     println!(
         "\n| what grows | how many | `check` | `compile` | `export dbc` | `import dbc` | `export wireshark` | `list` \
          | `decode` | `encode` |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
@@ -58,19 +62,56 @@ fn main() -> io::Result<()> {
     of_files(folder.path())
 }
 
+/// What a call takes.
+struct Cost {
+    /// Time of all processors.
+    time: Duration,
+    /// Time that somebody waits.
+    wait: Duration,
+    /// The most memory at a time, in bytes.
+    memory: u64,
+}
+
+impl Cost {
+    /// Writes time and memory as two cells.
+    fn cells(&self) -> String {
+        format!("{:.2} s | {} MiB", self.time.as_secs_f64(), self.memory >> 20)
+    }
+}
+
 /// Prints what specs of more and more messages cost.
 fn of_messages(folder: &Path) -> io::Result<()> {
-    println!("| messages | `check` | `compile` | `decode` a line | instructions a line |\n|--:|--:|--:|--:|--:|");
+    println!(
+        "| messages | `check` | memory | `compile` | memory | lines of Rust a message | `decode` a line \
+         | instructions a line |\n|--:|--:|--:|--:|--:|--:|--:|--:|"
+    );
     for count in MESSAGES {
         let spec = write(folder, "synthetic.yaml", &specs::messages(count))?;
         let out = folder.join("out");
-        let check = time(&[Path::new("check"), &spec])?;
-        let compile = time(&[Path::new("compile"), &spec, Path::new("--out"), &out])?;
-        let [check, compile] = [check, compile].map(|time| format!("{:.2} s", time.as_secs_f64()));
+        let check = cost(&[Path::new("check"), &spec])?.cells();
+        let compile = cost(&[Path::new("compile"), &spec, Path::new("--out"), &out])?.cells();
+        let rust = fs::read_to_string(out.join("synthetic.rs"))?.lines().count() / usize::try_from(count).unwrap_or(1);
         let line = time_a_line(folder, &spec, count)?.as_nanos();
         let instructions = instructions_a_line(folder, &spec, count)?;
         let instructions = instructions.map_or_else(|| "no valgrind".to_owned(), |count| count.to_string());
-        println!("| {count} | {check} | {compile} | {line} ns | {instructions} |");
+        println!("| {count} | {check} | {compile} | {rust} | {line} ns | {instructions} |");
+    }
+    Ok(())
+}
+
+/// Prints what logs of more and more lines cost, each decoded as a table and as JSON.
+fn of_lines(folder: &Path) -> io::Result<()> {
+    println!(
+        "\n| lines of a log | table | memory | lines a second | JSON | memory | lines a second |\n\
+         |--:|--:|--:|--:|--:|--:|--:|"
+    );
+    let spec = write(folder, "synthetic.yaml", &specs::messages(100))?;
+    for count in LENGTHS {
+        let log = write(folder, "long.log", &log(100, count))?;
+        let [table, json] = ["text", "jsonl"].map(|format| cost(&decode_as(format, &spec, &log)));
+        let row =
+            |cost: Cost| format!("{} | {:.1} million", cost.cells(), f64::from(count) / cost.wait.as_secs_f64() / 1e6);
+        println!("| {count} | {} | {} |", row(table?), row(json?));
     }
     Ok(())
 }
@@ -94,7 +135,7 @@ fn of_axis(folder: &Path, axis: &Axis) -> io::Result<()> {
             times.push(run(&decode(spec, log), Some(jsonl))?);
             times.push(run(&[encode, option, spec, from, Path::new("jsonl"), jsonl], None)?);
         }
-        print_row(axis.name, count, times.into_iter().map(|(time, _)| Some(time)));
+        print_row(axis.name, count, times.into_iter().map(|(cost, _)| Some(cost.time)));
     }
     Ok(())
 }
@@ -158,24 +199,35 @@ fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
 }
 
 fn decode<'a>(spec: &'a Path, log: &'a Path) -> [&'a Path; 6] {
-    let [command, format, jsonl, option] = ["decode", "--format", "jsonl", "--spec"].map(Path::new);
-    [command, format, jsonl, option, spec, log]
+    decode_as("jsonl", spec, log)
+}
+
+fn decode_as<'a>(format: &'a str, spec: &'a Path, log: &'a Path) -> [&'a Path; 6] {
+    let [command, option, format, from] = ["decode", "--format", format, "--spec"].map(Path::new);
+    [command, option, format, from, spec, log]
 }
 
 /// Returns the processor time that the command takes.
 fn time(arguments: &[&Path]) -> io::Result<Duration> {
+    cost(arguments).map(|cost| cost.time)
+}
+
+/// Returns what the command takes.
+fn cost(arguments: &[&Path]) -> io::Result<Cost> {
     match run(arguments, None)? {
-        (time, true) => Ok(time),
+        (cost, true) => Ok(cost),
         (_, false) => Err(io::Error::other(format!("canspec {arguments:?} fails"))),
     }
 }
 
-/// Returns the processor time that the command takes, and whether it finds no error.
-fn run(arguments: &[&Path], out: Option<&Path>) -> io::Result<(Duration, bool)> {
+/// Returns what the command takes, and whether it finds no error.
+fn run(arguments: &[&Path], out: Option<&Path>) -> io::Result<(Cost, bool)> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_canspec"));
     let out = out.map_or_else(|| Ok(Stdio::null()), |path| File::create(path).map(Stdio::from))?;
+    let start = Instant::now();
     let used = command.args(arguments).stdout(out).stderr(Stdio::null()).spawn()?.wait4()?;
-    Ok((used.rusage.utime, used.status.success()))
+    let cost = Cost { time: used.rusage.utime, wait: start.elapsed(), memory: used.rusage.maxrss };
+    Ok((cost, used.status.success()))
 }
 
 /// Returns how long a further line of a log takes.
