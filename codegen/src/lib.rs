@@ -7,7 +7,7 @@
 #![forbid(unsafe_code)]
 #![warn(clippy::wildcard_enum_match_arm)]
 
-pub mod bases;
+mod bases;
 mod builder;
 pub mod check;
 pub mod diagnostic;

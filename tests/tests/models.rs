@@ -1,7 +1,7 @@
 //! Device models in the generated code: limits, layouts and messages of their own.
 
-use canspec_protocols::{infy, megmeet};
-use canspec_runtime::Frame;
+use canspec_protocols::{gcp, infy, megmeet, trio};
+use canspec_runtime::{Frame, Quantity};
 use canspec_tests::{
     features_model_layouts as layouts, features_model_limits as limits, features_revisions as revisions,
     features_scales_by_model as scales, features_values_by_model as values,
@@ -169,4 +169,18 @@ fn a_model_refuses_named_values_that_it_does_not_have() {
     assert_eq!(frame.as_deref(), Ok("006#02FE0000"), "without a model everything counts");
     let error = set.within(Model::V1_2).expect_err("a value too much");
     assert_eq!(error.to_string(), "`mode` of `set_mode` has no such value");
+}
+
+#[test]
+fn a_program_learns_what_the_document_says_of_bus_and_models() {
+    assert_eq!((infy::BIT_RATES, trio::BIT_RATES), (&[125_000][..], &[250_000][..]));
+    assert_eq!(infy::DOCUMENTS.iter().map(|document| document.version).collect::<Vec<_>>(), ["V1.08"]);
+    // Section 2.1 of GCP: only the module with a DC input takes 500 kbit/s, too.
+    let rates = [gcp::Model::PsM2_3ac1000dc30kw, gcp::Model::PsM2_825dc1000dc30kw].map(gcp::Model::bit_rates);
+    assert_eq!(rates, [&[125_000][..], &[125_000, 500_000][..]]);
+    // Section 3.3 of INFY, and the address of section 2.1 of TRIO.
+    let rated = |model: infy::Model| model.fact(Quantity::RATED_CURRENT);
+    assert_eq!([infy::Model::Reg85750, infy::Model::Reg85500].map(rated), [Some(10_000), Some(13_640)]);
+    assert_eq!(trio::Model::ALL.map(|model| model.fact(Quantity::new("default_address"))), [Some(0xE0); 5]);
+    assert_eq!(infy::Model::Reg85750.fact(Quantity::TEMPERATURE), None);
 }

@@ -1,5 +1,6 @@
 //! Emits Rust: a `no_std` codec on the runtime.
 
+mod about;
 mod address;
 mod carrier;
 mod choice;
@@ -100,6 +101,7 @@ fn items(plan: &Plan, derives: Derives) -> impl Iterator<Item = TokenStream> {
 /// Emits what comes before the types and messages: imports, identifier, addresses, accesses and device models.
 fn head(plan: &Plan, derives: Derives) -> TokenStream {
     let optional = derives.imports();
+    let about = about::about(&plan.about);
     let frame = filter::base(&plan.base);
     let selectors = plan.in_data.iter().map(filter::in_data);
     let identifier = identifier::identifier(&plan.identifier, derives);
@@ -114,7 +116,7 @@ fn head(plan: &Plan, derives: Derives) -> TokenStream {
         #[doc(no_inline)]
         pub use canspec_runtime::prelude::*;
         #optional
-        #frame #(#selectors)* #identifier #continuation #targets #(#addresses)* #(#modes)* #timing #(#accesses)* #of_models
+        #about #frame #(#selectors)* #identifier #continuation #targets #(#addresses)* #(#modes)* #timing #(#accesses)* #of_models
     }
 }
 

@@ -5,6 +5,13 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[
+    Document { title: "Supplement for the faster fan", version: "1" },
+    Document { title: "Manual of the fan", version: "3" },
+    Document { title: "Frames captured on a bus", version: "not stated" },
+];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::STANDARD;
 

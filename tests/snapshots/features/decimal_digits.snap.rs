@@ -5,6 +5,9 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "Feature", version: "1" }];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::STANDARD;
 

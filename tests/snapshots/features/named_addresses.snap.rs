@@ -5,6 +5,9 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "Feature", version: "1" }];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x1F00_0000, 0x0000_0000);
 

@@ -5,6 +5,15 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document {
+    title: "GB/T 27930-2015: messages between an off-board DC charger and the battery management system of a vehicle",
+    version: "2015",
+}];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[250_000, 50_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id(Identifier::PAGE, 0x0).send_id(Identifier::PRIORITY, 0x6);
 

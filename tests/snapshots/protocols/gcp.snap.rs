@@ -5,6 +5,13 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] =
+    &[Document { title: "CHARX PS... CAN BUS, GCP Protocol, data sheet 109960_en_03", version: "V1.30" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[125_000, 500_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED;
 
@@ -465,6 +472,31 @@ impl Model {
             Self::PsM2_3ac500dc20kw => "PS_M2_3AC_500DC_20KW",
             Self::PsM2_825dc1000dc30kw => "PS_M2_825DC_1000DC_30KW",
         }
+    }
+
+    /// Returns the speeds of the bus that the document states for this model, in bit/s.
+    #[must_use]
+    pub const fn bit_rates(self) -> &'static [u32] {
+        match self {
+            Self::PsM2_3ac1000dc30kw => &[125_000],
+            Self::Ps3ac500dc20kw => &[125_000],
+            Self::PsM2_3ac500dc20kw => &[125_000],
+            Self::PsM2_825dc1000dc30kw => &[125_000, 500_000],
+        }
+    }
+
+    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+    ///
+    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+    #[must_use]
+    pub fn fact(self, quantity: Quantity) -> Option<i32> {
+        let facts : & [(& str , i32)] = match self {
+            Self::PsM2_3ac1000dc30kw => &[("rated_output_voltage", 1_000_000), ("rated_power", 30_000_000)],
+            Self::Ps3ac500dc20kw => &[("rated_output_voltage", 500_000), ("rated_power", 20_000_000)],
+            Self::PsM2_3ac500dc20kw => &[("rated_output_voltage", 500_000), ("rated_power", 20_000_000)],
+            Self::PsM2_825dc1000dc30kw => &[("rated_output_voltage", 1_000_000), ("rated_power", 30_000_000)],
+        };
+        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
     }
 }
 

@@ -5,6 +5,13 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] =
+    &[Document { title: "Huawei R48xx rectifiers: CAN protocol", version: "not stated" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[125_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id(Identifier::GROUP, 0x1F).id(Identifier::SOFTWARE, 0x1);
 
@@ -504,6 +511,23 @@ impl Model {
             Self::R4850n2 => "R4850N2",
             Self::R4875g1 => "R4875G1",
         }
+    }
+
+    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+    ///
+    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+    #[must_use]
+    pub fn fact(self, quantity: Quantity) -> Option<i32> {
+        let facts : & [(& str , i32)] = match self {
+            Self::R4830s1 => &[("nominal_voltage", 53_500), ("full_current", 42_600)],
+            Self::R4830g2 => &[("nominal_voltage", 53_500)],
+            Self::R4850g2 => &[("nominal_voltage", 53_500), ("rated_power", 3_000_000)],
+            Self::R4850g2_20 => &[("nominal_voltage", 53_500), ("rated_power", 3_000_000)],
+            Self::R4850g6 => &[("nominal_voltage", 53_500), ("full_current", 63_300)],
+            Self::R4850n2 => &[("nominal_voltage", 53_500)],
+            Self::R4875g1 => &[("nominal_voltage", 53_500)],
+        };
+        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
     }
 }
 

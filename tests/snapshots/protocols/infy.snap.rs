@@ -5,6 +5,12 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "充电模块 CAN 通讯协议", version: "V1.08" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[125_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED;
 
@@ -485,6 +491,50 @@ impl Model {
             Self::Reg75035 => "REG75035",
             Self::Reg50050 => "REG50050",
         }
+    }
+
+    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+    ///
+    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+    #[must_use]
+    pub fn fact(self, quantity: Quantity) -> Option<i32> {
+        let facts : & [(& str , i32)] = match self {
+            Self::Reg85750 => &[("rated_current", 10_000), ("default_voltage", 600_000), ("default_current", 15_000)],
+            Self::Reg85500 => &[("rated_current", 13_640), ("default_voltage", 500_000), ("default_current", 20_000)],
+            Self::Reg75020 => &[
+                ("rated_current", 13_000),
+                ("default_voltage", 600_000),
+                ("default_current", 16_700),
+                ("changed_default_voltage", 100_000),
+                ("changed_default_current", 2600),
+            ],
+            Self::Reg50025 => &[
+                ("rated_current", 20_000),
+                ("default_voltage", 500_000),
+                ("default_current", 23_000),
+                ("changed_default_voltage", 100_000),
+                ("changed_default_current", 4000),
+            ],
+            Self::Reg75030 => &[
+                ("rated_current", 20_000),
+                ("changed_default_voltage", 100_000),
+                ("changed_default_current", 4000),
+                ("minimum_voltage_from_2017_02", 50_000),
+            ],
+            Self::Reg50040 => &[
+                ("rated_current", 30_000),
+                ("changed_default_voltage", 100_000),
+                ("changed_default_current", 6000),
+                ("minimum_voltage_from_2017_02", 50_000),
+            ],
+            Self::Reg75035 => {
+                &[("rated_current", 26_000), ("changed_default_voltage", 100_000), ("changed_default_current", 5200)]
+            }
+            Self::Reg50050 => {
+                &[("rated_current", 40_000), ("changed_default_voltage", 100_000), ("changed_default_current", 8000)]
+            }
+        };
+        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
     }
 }
 

@@ -5,6 +5,13 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] =
+    &[Document { title: "MEGMEET 1U Low Voltage Module (24V/48V/72V) CAN Communication Protocol", version: "V2.0" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[125_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id_bits(0x0000_007E, 0x0000_007E).id(Identifier::PROTOCOL, 0x21);
 
@@ -340,6 +347,29 @@ impl Model {
             Self::V24 => "V24",
             Self::V72 => "V72",
         }
+    }
+
+    /// Returns the speeds of the bus that the document states for this model, in bit/s.
+    #[must_use]
+    pub const fn bit_rates(self) -> &'static [u32] {
+        match self {
+            Self::V48 => &[125_000],
+            Self::V24 => &[125_000],
+            Self::V72 => &[125_000],
+        }
+    }
+
+    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+    ///
+    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+    #[must_use]
+    pub fn fact(self, quantity: Quantity) -> Option<i32> {
+        let facts : & [(& str , i32)] = match self {
+            Self::V48 => &[("voltage_level", 48_000)],
+            Self::V24 => &[("voltage_level", 24_000)],
+            Self::V72 => &[("voltage_level", 72_000)],
+        };
+        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
     }
 }
 

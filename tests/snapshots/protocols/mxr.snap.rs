@@ -5,6 +5,12 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "MXR Series Module Communication Protocol", version: "V1.50" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[125_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id(Identifier::PROTOCOL, 0x060);
 

@@ -5,6 +5,13 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] =
+    &[Document { title: "NW-R2 rectifier, CAN control protocol", version: "Revision 2.1" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[250_000];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::STANDARD;
 

@@ -5,6 +5,13 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] =
+    &[Document { title: "TRIO-PM... CAN-BUS communication protocol", version: "112011_en_00" }];
+
+/// Speeds of the bus, in bit/s.
+pub const BIT_RATES: &[u32] = &[250_000];
+
 /// What every frame shows.
 pub const FRAME: Filter =
     Filter::EXTENDED.id(Identifier::RESERVED, 0x0).id(Identifier::DATA_PAGE, 0x0).send_id(Identifier::PRIORITY, 0x6);
@@ -278,6 +285,33 @@ impl Model {
             Self::Pm1ac48dc1500wPt => "PM_1AC_48DC_1500W_PT",
             Self::Pm1ac48dc2500wPt => "PM_1AC_48DC_2500W_PT",
         }
+    }
+
+    /// Returns the speeds of the bus that the document states for this model, in bit/s.
+    #[must_use]
+    pub const fn bit_rates(self) -> &'static [u32] {
+        match self {
+            Self::Pm1ac24dc1500wPt => &[250_000],
+            Self::Pm1ac24dc2500w => &[250_000],
+            Self::Pm1ac24dc2500wPt => &[250_000],
+            Self::Pm1ac48dc1500wPt => &[250_000],
+            Self::Pm1ac48dc2500wPt => &[250_000],
+        }
+    }
+
+    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+    ///
+    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+    #[must_use]
+    pub fn fact(self, quantity: Quantity) -> Option<i32> {
+        let facts : & [(& str , i32)] = match self {
+            Self::Pm1ac24dc1500wPt => &[("nominal_voltage", 24_000), ("power", 1_500_000), ("default_address", 224)],
+            Self::Pm1ac24dc2500w => &[("nominal_voltage", 24_000), ("power", 2_500_000), ("default_address", 224)],
+            Self::Pm1ac24dc2500wPt => &[("nominal_voltage", 24_000), ("power", 2_500_000), ("default_address", 224)],
+            Self::Pm1ac48dc1500wPt => &[("nominal_voltage", 48_000), ("power", 1_500_000), ("default_address", 224)],
+            Self::Pm1ac48dc2500wPt => &[("nominal_voltage", 48_000), ("power", 2_500_000), ("default_address", 224)],
+        };
+        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
     }
 }
 

@@ -86,7 +86,7 @@ fn rows(columns: &[SelectorId], sets: &[Constants]) -> Vec<Row> {
 }
 
 /// Writes patterns of one value as one pattern.
-fn either(patterns: &[TokenStream]) -> TokenStream {
+pub fn either(patterns: &[TokenStream]) -> TokenStream {
     if patterns.is_empty() { quote!(_) } else { quote!(#(#patterns)|*) }
 }
 

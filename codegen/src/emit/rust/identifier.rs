@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::choice::tuple;
+use super::choice::{either, tuple};
 use super::derives::Derives;
 use super::plan::documented::{Documented, Shown};
 use super::plan::heading::Heading;
@@ -103,7 +103,7 @@ fn pattern(ranges: &[Range]) -> TokenStream {
         Range::One(only) => quote!(#only),
         Range::Span(first, last) => quote!(#first..=#last),
     });
-    if ranges.len() == 0 { quote!(_) } else { quote!(#(#ranges)|*) }
+    either(&ranges.collect::<Vec<_>>())
 }
 
 /// Emits where a frame goes.

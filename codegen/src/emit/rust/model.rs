@@ -5,17 +5,19 @@ use quote::quote;
 
 use super::derives::Derives;
 use super::plan::models::{Limits, Model, Models};
+use crate::model::{ModelId, Table};
 
 /// Emits the enum of the device models, if there are any, and the tables of their limits.
 pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives) -> Option<TokenStream> {
     let attributes = derives.structure(&quote!(Clone, Copy, Debug, PartialEq, Eq, Hash));
-    let definitions = rows.iter().map(|Model { variant, comment, name }| {
+    let definitions = rows.iter().map(|Model { variant, comment, name, .. }| {
         let serialized = derives.variant(name);
         quote!(#comment #serialized #variant)
     });
     let texts = rows.iter().map(|model| &model.name);
     let count = Literal::usize_unsuffixed(rows.len());
     let all: Vec<_> = rows.iter().map(|model| &model.variant).collect();
+    let (bit_rates, fact) = (bit_rates(rows), fact(rows));
     let within = has_within.then(within);
     let tables = limits.iter().map(table);
     (!rows.is_empty()).then(|| {
@@ -34,6 +36,9 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
                 pub const fn name(self) -> &'static str {
                     match self { #(Self::#all => #texts),* }
                 }
+
+                #bit_rates
+                #fact
             }
 
             impl From<Model> for u8 {
@@ -45,6 +50,47 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
             #within
 
             #(#tables)*
+        }
+    })
+}
+
+/// Emits the method that returns the speeds of the bus, if the document states them for a model.
+fn bit_rates(rows: &Table<ModelId, Model>) -> Option<TokenStream> {
+    let known = rows.iter().filter(|model| !model.bit_rates.is_empty());
+    let arms: Vec<_> =
+        known.map(|Model { variant, bit_rates, .. }| quote!(Self::#variant => &[#(#bit_rates),*],)).collect();
+    let others = (arms.len() < rows.len()).then(|| quote!(_ => &[],));
+    (!arms.is_empty()).then(|| {
+        quote! {
+            /// Returns the speeds of the bus that the document states for this model, in bit/s.
+            #[must_use]
+            pub const fn bit_rates(self) -> &'static [u32] {
+                match self { #(#arms)* #others }
+            }
+        }
+    })
+}
+
+/// Emits the method that returns a rating, if the document states some.
+fn fact(rows: &Table<ModelId, Model>) -> Option<TokenStream> {
+    let known = rows.iter().filter(|model| !model.facts.is_empty());
+    let arms: Vec<_> = known
+        .map(|Model { variant, facts, .. }| {
+            let facts = facts.iter().map(|(name, value)| quote!((#name, #value)));
+            quote!(Self::#variant => &[#(#facts),*],)
+        })
+        .collect();
+    let others = (arms.len() < rows.len()).then(|| quote!(_ => &[],));
+    (!arms.is_empty()).then(|| {
+        quote! {
+            /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+            ///
+            /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+            #[must_use]
+            pub fn fact(self, quantity: Quantity) -> Option<i32> {
+                let facts: &[(&str, i32)] = match self { #(#arms)* #others };
+                facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
+            }
         }
     })
 }

@@ -1,5 +1,6 @@
 //! The plan of generated Rust: every item with its names, types, comments and relations.
 
+pub mod about;
 pub mod address;
 pub mod carrier;
 pub mod doc;
@@ -35,6 +36,7 @@ use proc_macro2::TokenStream;
 
 use crate::emit::Options;
 use crate::model::{LongMessageId, MessageId, Protocol, SelectorPlace, Table};
+use about::About;
 use address::{AddressType, Mode, Targets};
 use carrier::Carrier;
 use exchange::{Access, Accesses};
@@ -56,6 +58,8 @@ use word::{Enumeration, Packed, StatusWord};
 
 /// A whole module.
 pub struct Plan {
+    /// What the spec says about the protocol as a whole.
+    pub about: About,
     /// What every frame shows.
     pub base: Base,
     /// Every selector.
@@ -133,6 +137,7 @@ impl Plan {
         let transports = transports.map(|id| Transport::new(protocol, types, &messages, id)).collect();
         let address_types = protocol.address_types.iter().zip(addresses);
         Self {
+            about: About::new(protocol),
             base: Base::new(&protocol.identifier),
             in_data: selector::in_data(protocol, &selectors),
             identifier: Identifier::new(protocol, types),

@@ -9,6 +9,9 @@ use canspec_runtime::plumbing::arbitrary;
 use canspec_runtime::plumbing::defmt;
 use canspec_runtime::plumbing::serde;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "Feature", version: "1" }];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED;
 

@@ -14,6 +14,9 @@ use canspec_runtime::plumbing::defmt;
 #[cfg(feature = "serde")]
 use canspec_runtime::plumbing::serde;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "Feature", version: "1" }];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::STANDARD;
 

@@ -10,7 +10,7 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 98] = [
+const TAKEN: [&str; 99] = [
     "Address",
     "AddressType",
     "Addressed",
@@ -27,6 +27,7 @@ const TAKEN: [&str; 98] = [
     "Decode",
     "Default",
     "Destination",
+    "Document",
     "Drop",
     "Elements",
     "Encode",
@@ -112,7 +113,7 @@ const TAKEN: [&str; 98] = [
 ];
 
 /// Constants that every module has.
-const CONSTANTS: [&str; 4] = ["CONTINUATION", "FRAME", "MESSAGES", "TIMING"];
+const CONSTANTS: [&str; 6] = ["BIT_RATES", "CONTINUATION", "DOCUMENTS", "FRAME", "MESSAGES", "TIMING"];
 
 /// Methods and constants that every message has.
 const OF_MESSAGES: [&str; 14] = [
