@@ -52,8 +52,13 @@ impl Named<'_> {
         self.known.values.iter().find(|value| value.name == name)
     }
 
-    /// Says which names a signal has.
+    /// Says which names a signal has. A number is no name, since people count states in different ways.
     fn unnamed(&self, text: &str) -> String {
+        let raw = Rational::parse(text).and_then(Rational::to_integer);
+        let meant = self.known.values.iter().find(|value| raw == Some(value.raw));
+        if let Some(value) = meant {
+            return format!("`{}` takes names, and {text} is `{}`", self.signal.name, value.name);
+        }
         let names: Vec<_> = self.known.values.iter().map(|value| format!("`{}`", value.name)).collect();
         format!("`{}` has no value `{text}`; it has {}", self.signal.name, names.join(", "))
     }
