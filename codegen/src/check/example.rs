@@ -53,6 +53,8 @@ pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) -> Counts {
         let checked = Checker { protocol, example, diagnostics: &*diagnostics };
         match (checked.run(), example.fails, &example.data) {
             (Err(diagnostic), _, _) if is_explained(&diagnostic) => {}
+            // Several frames can show the same mistake of a message.
+            (Err(diagnostic), _, _) if diagnostic.rule == &rules::EXAMPLE => diagnostics.push_first(*diagnostic),
             (Err(diagnostic), _, _) => diagnostics.push(*diagnostic),
             (Ok(()), Some(_), _) => counts.expected_failures += 1,
             (Ok(()), None, Some(_)) => counts.frames += 1,

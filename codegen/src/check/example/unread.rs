@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 
 use super::unreadable::Slip;
 use crate::diagnostic::{At, Diagnostic};
-use crate::interpret::{Frame, decode};
+use crate::interpret::{Frame, Problem, Unrecognised, decode};
 use crate::model::{Example, MessageId, Protocol};
 use crate::resolve::rules;
 use crate::syntax::tree::Path;
@@ -13,7 +13,8 @@ use crate::syntax::tree::Path;
 /// Largest number of examples that are shown beside a message.
 const SHOWN: usize = 3;
 
-/// Finds the messages with at least two examples that cannot be read, and none that can.
+/// Finds the messages with at least two examples that cannot be read, and none that can. A frame of another length says
+/// by itself what is wrong.
 pub fn find(protocol: &Protocol) -> IndexMap<MessageId, Vec<&Example>> {
     let mut unread: IndexMap<_, Vec<_>> = IndexMap::new();
     let mut read = Vec::new();
@@ -21,6 +22,7 @@ pub fn find(protocol: &Protocol) -> IndexMap<MessageId, Vec<&Example>> {
         let Some(message) = example.message else { continue };
         match decode(protocol, example.model, &Frame::of(protocol, example)) {
             Ok(decoded) if decoded.message == message => read.push(message),
+            Err(Unrecognised { problem: Problem::Length, .. }) => {}
             _ => unread.entry(message).or_default().push(example),
         }
     }

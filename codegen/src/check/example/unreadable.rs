@@ -13,7 +13,8 @@ pub fn report(protocol: &Protocol, example: &Example, problem: &Unrecognised) ->
     match (problem.problem, &example.data) {
         (Problem::Length, Some(data)) => {
             let length = data.len();
-            let help = format!("if the message has {length} data bytes, write `length: {length}` in it; {wrongly}");
+            let bytes = if length == 1 { "byte" } else { "bytes" };
+            let help = format!("if the message has {length} data {bytes}, write `length: {length}` in it; {wrongly}");
             match other_length(protocol, example, length) {
                 None => Diagnostic::error(&rules::EXAMPLE, at, text).help(help),
                 Some((place, text)) => Diagnostic::error(&rules::EXAMPLE, place, text).other(at, "a frame").help(help),
