@@ -33,6 +33,11 @@ pub fn losses(protocol: &Protocol, mask: u32) -> Vec<String> {
             format!("what the frames of `{}` say together; it has their numbers and data", long.content.name)
         }),
     );
+    if protocol.frames.iter().any(|frame| frame.payload().next().is_some()) {
+        losses.push(
+            "whether all constants in the data are right; so an unknown message may be read as a known one".to_owned(),
+        );
+    }
     if protocol.frames.iter().any(|frame| frame.kind == Kind::Reply) {
         losses.push("which request a reply answers, and who answers it".to_owned());
     }
