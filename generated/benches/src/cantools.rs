@@ -1,6 +1,7 @@
 //! The C that cantools makes of the DBC, compiled when the table is made.
 
-use std::path::{Path, PathBuf};
+use std::ffi::OsString;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::{fs, io};
 
@@ -16,7 +17,7 @@ const REQUIREMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/pee
 /// Builds the program in a folder, with link-time optimization and without, and writes its frames.
 ///
 /// Returns the commands in this order. The error says what is missing.
-pub fn programs(folder: &Path, frames: &[Frame]) -> Result<[Vec<PathBuf>; 2], &'static str> {
+pub fn programs(folder: &Path, frames: &[Frame]) -> Result<[Vec<OsString>; 2], &'static str> {
     let python = folder.join("venv/bin/python");
     let (input, code) = (folder.join("frames"), folder.join("infy.c"));
     fs::create_dir_all(folder).and_then(|()| write(&input, frames)).map_err(|_| "a folder to write to")?;
@@ -30,7 +31,7 @@ pub fn programs(folder: &Path, frames: &[Frame]) -> Result<[Vec<PathBuf>; 2], &'
         let program = folder.join(name);
         let mut compiler = Command::new("cc");
         compiler.args(["-O3", option, MAIN, "-I"]).arg(folder).arg(&code).arg("-o").arg(&program);
-        succeeds(&mut compiler).then(|| vec![program, input.clone()]).ok_or("a C compiler")
+        succeeds(&mut compiler).then(|| vec![program.into(), input.clone().into()]).ok_or("a C compiler")
     };
     if !succeeds(Command::new(&compiled("check", "-DCHECK")?[0]).arg(&input).args(["decode", "1"])) {
         return Err("frames that its C encodes back");

@@ -1,34 +1,34 @@
-//! Does one work by one codec for as many passes as it is told, so that valgrind can count.
+//! Does one work by one codec for as many passes as it is told, so that valgrind can count: count KIND PASSES.
 //!
-//! `table` compiles it for each work and each codec. So the codec has one call site, as in most programs.
+//! `table` compiles it for each work of each codec. So the codec has one call site, as in most programs.
 
 use std::env;
 
-#[cfg(codec = "by_hand")]
-use canspec_benches::by_hand::Hand as Codec;
-#[cfg(codec = "dbc")]
-use canspec_benches::dbc::Dbc as Codec;
-use canspec_benches::frames;
-#[cfg(not(any(codec = "by_hand", codec = "dbc")))]
-use canspec_benches::generated::Generated as Codec;
-#[cfg(not(any(work = "decode_by_call", work = "payload", work = "request", work = "encode", work = "reply")))]
-use canspec_benches::work::decode as prepare;
-#[cfg(work = "decode_by_call")]
-use canspec_benches::work::decode_by_call as prepare;
-#[cfg(work = "encode")]
-use canspec_benches::work::encode as prepare;
-#[cfg(work = "payload")]
-use canspec_benches::work::payload as prepare;
-#[cfg(work = "reply")]
-use canspec_benches::work::reply as prepare;
-#[cfg(work = "request")]
-use canspec_benches::work::request as prepare;
+use canspec_benches::frame::Frame;
+use canspec_benches::work::Prepared;
+use canspec_benches::workload::{Kind, Workload};
+
+/// The numbers of the workload, of the codec and of the work, a digit each.
+const WORK: [usize; 3] = match option_env!("CANSPEC_WORK") {
+    Some(digits) => numbers(digits.as_bytes()),
+    None => [0; 3],
+};
+const WORKLOAD: Workload = Workload::ALL[WORK[0]];
+/// Constants of their own: a program links all that its constants name.
+const KINDS: &[Kind] = WORKLOAD.kinds;
+const PREPARE: fn(&[Frame]) -> Prepared = WORKLOAD.codecs[WORK[1]].works[WORK[2]].prepare;
 
 fn main() {
-    let passes: usize = env::args().next_back().and_then(|passes| passes.parse().ok()).expect("a number of passes");
-    let prepared = prepare::<Codec>(&frames::distinct(frames::COUNTED));
+    let numbers: Vec<usize> = env::args().skip(1).filter_map(|number| number.parse().ok()).collect();
+    let [kind, passes] = numbers[..] else { panic!("count KIND PASSES") };
+    let prepared = PREPARE(&(KINDS[kind].frames)(Workload::COUNTED));
     println!("{}", prepared.count());
     for _ in 0..passes {
         prepared.run();
     }
+}
+
+const fn numbers(digits: &[u8]) -> [usize; 3] {
+    let [workload, codec, work] = *digits else { panic!("three digits") };
+    [(workload - b'0') as usize, (codec - b'0') as usize, (work - b'0') as usize]
 }

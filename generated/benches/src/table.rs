@@ -2,91 +2,128 @@
 
 mod cantools;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use canspec_benches::Codec;
-use canspec_benches::by_hand::Hand;
-use canspec_benches::dbc::Dbc;
-use canspec_benches::frames;
-use canspec_benches::generated::Generated;
-use canspec_benches::work::Work;
+use canspec_benches::infy;
+use canspec_benches::workload::{Kind, Measured, Workload};
 
-/// The codecs, with the words by which `count` is compiled for them.
-const CODECS: [(&str, &str); 3] = [(Generated::NAME, "canspec"), (Hand::NAME, "by_hand"), (Dbc::NAME, "dbc")];
 /// The profiles of cargo, with the names that people know.
 const PROFILES: [(&str, &str); 2] = [("lto", "LTO"), ("release", "release")];
 
 fn main() {
-    instructions();
-    println!();
+    (0..Workload::ALL.len()).for_each(instructions);
     times();
 }
 
-fn instructions() {
-    let names = CODECS.iter().map(|(name, _)| *name);
-    let cantools = cantools::programs(&target().join("cantools"), &frames::distinct(frames::COUNTED));
-    if let Err(missing) = &cantools {
-        println!("SKIPPED: cantools' C, which needs {missing}\n");
-    }
-    let columns: Vec<_> = names.chain(cantools.is_ok().then_some("cantools' C")).collect();
+/// Prints the instructions of a workload.
+fn instructions(number: usize) {
+    let workload = &Workload::ALL[number];
+    let cantools = cantools(workload);
+    let codecs = workload.codecs.iter().map(|Measured { codec, .. }| *codec);
+    let columns: Vec<_> = codecs.chain((!cantools.is_empty()).then_some("cantools' C")).collect();
     let headings = columns.iter().flat_map(|codec| PROFILES.map(|(_, name)| format!("{codec}, {name}")));
-    println!("| instructions | {} |", headings.collect::<Vec<_>>().join(" | "));
+    println!("| {} | {} |", workload.name, headings.collect::<Vec<_>>().join(" | "));
     println!("|---|{}", "--:|".repeat(columns.len() * PROFILES.len()));
-    for work in Work::ALL {
-        let ours = CODECS.iter().flat_map(|(_, codec)| PROFILES.map(|(profile, _)| vec![built(profile, codec, work)]));
-        let commands = ours.chain(cantools.iter().flatten().cloned());
-        let cells: Vec<_> = commands.map(|command| counted(&command, work)).collect();
-        println!("| {} | {} |", work.name(), cells.join(" | "));
+    for (work, name) in workload.works().enumerate() {
+        let programs = programs(workload, |codec| [number, codec, work]);
+        let cells = |kind: usize| {
+            let ours = programs.iter().map(|program| vec![program.into(), kind.to_string().into()]);
+            let cantools = cantools.iter().map(|command| command.iter().cloned().chain([name.into()]).collect());
+            ours.chain(cantools).map(|command: Vec<_>| counted(&command)).collect()
+        };
+        rows(name, workload.kinds, &(0..workload.kinds.len()).map(cells).collect::<Vec<_>>());
+    }
+    println!();
+}
+
+/// Prints a row for each kind, and their average if there are several.
+#[expect(clippy::cast_precision_loss, reason = "there are few kinds")]
+fn rows(work: &str, kinds: &[Kind], rows: &[Vec<Option<f64>>]) {
+    let [(_, first), others @ ..] = &kinds.iter().zip(rows).collect::<Vec<_>>()[..] else { return };
+    if others.is_empty() {
+        return row(work, first);
+    }
+    kinds.iter().zip(rows).for_each(|(kind, cells)| row(&format!("{work}: {}", kind.name), cells));
+    let sum = |column: usize| rows.iter().map(|cells| cells[column]).sum::<Option<f64>>();
+    let average = (0..first.len()).map(|column| Some(sum(column)? / rows.len() as f64));
+    row(&format!("{work}: average"), &average.collect::<Vec<_>>());
+}
+
+fn row(heading: &str, cells: &[Option<f64>]) {
+    let cells: Vec<_> = cells.iter().map(|cell| cell.map_or("-".into(), |cell| format!("{cell:.0}"))).collect();
+    println!("| {heading} | {} |", cells.join(" | "));
+}
+
+/// Builds the C of cantools, which does INFY alone. Returns a command for each profile, or none.
+fn cantools(workload: &Workload) -> Vec<Vec<OsString>> {
+    if workload.name != infy::WORKLOAD.name {
+        return Vec::new();
+    }
+    let frames = (workload.kinds[0].frames)(Workload::COUNTED);
+    match cantools::programs(&target().join("cantools"), &frames) {
+        Ok(programs) => programs.into(),
+        Err(missing) => {
+            println!("SKIPPED: cantools' C, which needs {missing}\n");
+            Vec::new()
+        }
     }
 }
 
-/// Compiles `count` for a work of a codec in a profile, and returns its path.
-fn built(profile: &str, codec: &str, work: Work) -> PathBuf {
+/// Compiles `count` for a work of each codec in each profile, and returns where they stand.
+fn programs(workload: &Workload, work: impl Fn(usize) -> [usize; 3]) -> Vec<PathBuf> {
+    let codecs = 0..workload.codecs.len();
+    codecs.flat_map(|codec| PROFILES.map(|(profile, _)| program(profile, work(codec)))).collect()
+}
+
+/// Compiles `count` for a work in a profile, and returns where it stands.
+fn program(profile: &str, work: [usize; 3]) -> PathBuf {
+    let digits = work.map(|number| number.to_string()).concat();
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .args(["rustc", "--quiet", "--bin", "count", "--profile", profile, "--target-dir"])
+        .args(["build", "--quiet", "--bin", "count", "--profile", profile, "--target-dir"])
         .arg(target())
-        .args(["--", "--cfg", &format!("codec=\"{codec}\""), "--cfg", &format!("work=\"{}\"", work.word())])
+        .env("CANSPEC_WORK", &digits)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .status();
     assert!(status.is_ok_and(|status| status.success()), "`count` is built in the profile `{profile}`");
-    target().join(profile).join("count")
+    let (built, kept) = (target().join(profile).join("count"), target().join(profile).join(format!("count_{digits}")));
+    fs::copy(built, &kept).expect("the target folder can be written");
+    kept
 }
 
-/// Returns the instructions of one work: what three passes take more than one.
+/// Returns the instructions of one work: what three passes take more than one. A codec that does not have it has none.
 #[expect(clippy::cast_precision_loss, reason = "it is no exact number anyway")]
-fn counted(command: &[PathBuf], work: Work) -> String {
-    let passes = [1, 3].map(|passes| valgrind(command, work, passes));
-    match passes {
-        [Some((_, 0)), _] => "-".into(),
-        [Some((one, count)), Some((three, _))] => format!("{:.0}", (three - one) / (2 * count) as f64),
-        _ => "not counted".into(),
-    }
+fn counted(command: &[OsString]) -> Option<f64> {
+    let [(one, count), (three, _)] = [1, 3].map(|passes| valgrind(command, passes));
+    (count > 0).then(|| (three - one) / (2 * count) as f64)
 }
 
 /// Returns how many instructions a command takes for its passes, and how often a pass does the work.
-fn valgrind(command: &[PathBuf], work: Work, passes: usize) -> Option<(f64, usize)> {
+fn valgrind(command: &[OsString], passes: usize) -> (f64, usize) {
     let output = Command::new("valgrind")
         .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
         .args(command)
-        .args([work.name(), &passes.to_string()])
+        .arg(passes.to_string())
         .output()
-        .ok()?;
+        .expect("valgrind is installed");
     let [text, count] = [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).into_owned());
-    let line = text.lines().find(|line| line.contains("refs:"))?;
-    Some((line.rsplit(' ').next()?.replace(',', "").parse().ok()?, count.trim().parse().ok()?))
+    let line = text.lines().find(|line| line.contains("refs:")).expect("valgrind counts");
+    let instructions = line.rsplit(' ').next().and_then(|number| number.replace(',', "").parse().ok());
+    (instructions.expect("a number"), count.trim().parse().expect("the program says how often it works"))
 }
 
+/// Prints what criterion measured.
 fn times() {
-    let groups =
-        Work::ALL.iter().flat_map(|work| ["distinct", "loop"].map(|frames| format!("{} {frames}", work.name())));
-    let rows: Vec<_> = groups.map(|group| (CODECS.map(|(codec, _)| time(&group, codec)), group)).collect();
+    let groups = Workload::ALL.iter().flat_map(|workload| workload.groups().map(|group| (workload.codecs, group)));
+    let rows: Vec<_> = groups.map(|(codecs, group)| (codecs.map(|codec| time(&group, codec.codec)), group)).collect();
     if rows.iter().flat_map(|(times, _)| times).all(Option::is_none) {
         return println!("Processor time: not measured; `cargo bench` measures it.");
     }
-    println!("| processor time | {} |", CODECS.map(|(codec, _)| codec).join(" | "));
-    println!("|---|{}", "--:|".repeat(CODECS.len()));
+    let names = Workload::ALL[0].codecs.map(|codec| codec.codec);
+    println!("| processor time | {} |", names.join(" | "));
+    println!("|---|{}", "--:|".repeat(names.len()));
     for (times, group) in rows {
         println!("| {group} | {} |", times.map(|time| time.unwrap_or_else(|| "-".into())).join(" | "));
     }

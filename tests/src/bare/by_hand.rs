@@ -23,7 +23,7 @@ impl Program {
     }
 
     fn by_hand(task: &str, calls: &TokenStream) -> Self {
-        let [hand, frame] = ["hand", "frame"].map(source);
+        let [hand, frame] = ["infy/hand", "frame"].map(source);
         let [hand_code, frame_code] = [&hand, &frame].map(|code| code.parse::<TokenStream>().expect("it is Rust"));
         let unknown_values = Module::new(&hand).unknown_values();
         let named_values = NAMED.map(|name| {

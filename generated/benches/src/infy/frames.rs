@@ -7,11 +7,6 @@ use fastrand::Rng;
 
 use crate::frame::Frame;
 
-/// How many distinct frames are measured.
-pub const MANY: usize = 1_000_000;
-/// How many of them valgrind sees.
-pub const COUNTED: usize = 20_000;
-
 /// Returns `count` different frames in a random order.
 ///
 /// All messages are equally frequent until their frames are used up. There are few reads, and many
@@ -20,25 +15,17 @@ pub fn distinct(count: usize) -> Vec<Frame> {
     let mut rng = Rng::with_seed(0x5EED);
     let mut seen = HashSet::with_capacity(count);
     let mut frames: Vec<_> =
-        iter::repeat_with(|| frame(&mut rng, None)).filter(|frame| seen.insert(*frame)).take(count).collect();
+        iter::repeat_with(|| frame(&mut rng)).filter(|frame| seen.insert(*frame)).take(count).collect();
     rng.shuffle(&mut frames);
     frames
-}
-
-/// Returns the frames of a small loop: eight requests that set something, and eight replies to reads.
-pub fn few() -> Vec<Frame> {
-    let mut rng = Rng::with_seed(0x5EED);
-    let sets = [0x13, 0x14, 0x16, 0x19, 0x1A, 0x1B, 0x1C, 0x1F].map(|command| (command, false));
-    let reads = [0x01, 0x03, 0x04, 0x06, 0x08, 0x09, 0x0A, 0x0C].map(|command| (command, true));
-    sets.into_iter().zip(reads).flat_map(|(set, read)| [set, read]).map(|kind| frame(&mut rng, Some(kind))).collect()
 }
 
 const COMMANDS: [u32; 18] =
     [0x01, 0x02, 0x03, 0x04, 0x06, 0x08, 0x09, 0x0A, 0x0B, 0x0C, 0x13, 0x14, 0x16, 0x19, 0x1A, 0x1B, 0x1C, 0x1F];
 
-/// Returns a frame of a command and direction, or of any.
-fn frame(rng: &mut Rng, kind: Option<(u32, bool)>) -> Frame {
-    let (command, is_reply) = kind.unwrap_or_else(|| (COMMANDS[rng.usize(..COMMANDS.len())], rng.bool()));
+/// Returns a frame of any command and direction.
+fn frame(rng: &mut Rng) -> Frame {
+    let (command, is_reply) = (COMMANDS[rng.usize(..COMMANDS.len())], rng.bool());
     let (device, address) = target(rng, command, is_reply);
     let controller = rng.u32(0xF0..=0xF8);
     let (target, source) = if is_reply { (controller, address) } else { (address, controller) };

@@ -8,8 +8,10 @@ use canspec_protocols::infy::{
 };
 use canspec_runtime::Layout;
 
+use super::{Infy, hand};
+use crate::Codec;
 use crate::frame::Frame;
-use crate::{Codec, each, hand};
+use crate::work::each;
 
 /// The codec that canspec generates.
 pub struct Generated;
@@ -19,7 +21,7 @@ impl Codec for Generated {
     type Received = Received;
     type Values = Received;
     type Request = (Route<Target>, Message);
-    type Asked = Request<ModuleOutput>;
+    type ByHand = hand::Received;
 
     #[inline(always)]
     fn decode(frame: &Frame) -> Result<Received, impl Debug> {
@@ -31,6 +33,40 @@ impl Codec for Generated {
         take!(received.identifier().source);
         take(received.content());
     }
+
+    #[inline(always)]
+    fn encode(received: &Received) -> Option<impl embedded_can::Frame> {
+        received.encode().ok()
+    }
+
+    #[inline(always)]
+    fn request((route, message): &Self::Request) -> Option<impl embedded_can::Frame> {
+        request(*route, message).ok()
+    }
+
+    fn to_values(received: &Received) -> Received {
+        *received
+    }
+
+    fn to_request(received: &Received) -> Option<Self::Request> {
+        let Identifier { device, target, source, .. } = received.identifier();
+        let target = match (device, target) {
+            (0xA, 0x3F) => Target::Broadcast,
+            (_, 0x3F) => Target::AllGroups,
+            (0xA, module) => Target::Module(module),
+            (_, group) => Target::Group(group),
+        };
+        (received.kind() == Kind::Request).then(|| (target.sent_by(source), *received.content()))
+    }
+
+    fn to_hand(received: &Received) -> hand::Received {
+        let id = received.frame().raw_id();
+        hand::Received { id, message: values(received.content(), id) }
+    }
+}
+
+impl Infy for Generated {
+    type Asked = Request<ModuleOutput>;
 
     fn payloads(command: u8, payloads: &[[u8; 8]]) {
         fn all<L: Layout>(payloads: &[[u8; 8]], variant: impl Fn(L) -> Message) {
@@ -58,16 +94,6 @@ impl Codec for Generated {
         }
     }
 
-    #[inline(always)]
-    fn encode(received: &Received) -> Option<impl embedded_can::Frame> {
-        received.encode().ok()
-    }
-
-    #[inline(always)]
-    fn request((route, message): &Self::Request) -> Option<impl embedded_can::Frame> {
-        request(*route, message).ok()
-    }
-
     fn ask(target: hand::Target, controller: u8) -> Option<Request<ModuleOutput>> {
         let target = match target {
             hand::Target::Module(module) => Target::Module(module),
@@ -85,26 +111,6 @@ impl Codec for Generated {
             Err(Failure::Error) => Err(hand::Failure::Error),
             Err(Failure::Length) => Err(hand::Failure::Length),
         })
-    }
-
-    fn to_values(received: &Received) -> Received {
-        *received
-    }
-
-    fn to_request(received: &Received) -> Option<Self::Request> {
-        let Identifier { device, target, source, .. } = received.identifier();
-        let target = match (device, target) {
-            (0xA, 0x3F) => Target::Broadcast,
-            (_, 0x3F) => Target::AllGroups,
-            (0xA, module) => Target::Module(module),
-            (_, group) => Target::Group(group),
-        };
-        (received.kind() == Kind::Request).then(|| (target.sent_by(source), *received.content()))
-    }
-
-    fn to_hand(received: &Received) -> hand::Received {
-        let id = received.frame().raw_id();
-        hand::Received { id, message: values(received.content(), id) }
     }
 }
 

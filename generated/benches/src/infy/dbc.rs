@@ -7,13 +7,15 @@ use std::fmt::Debug;
 
 use embedded_can::{ExtendedId, Frame as _, Id};
 
+use super::hand::{Asked, Failure, Message, Received, Request, Target, is_controller, to_request};
+use super::{Infy, hand};
+use crate::Codec;
 use crate::frame::Frame;
-use crate::hand::{Asked, Failure, Message, Received, Request, Target, is_controller, to_request};
-use crate::{Codec, each, hand};
+use crate::work::each;
 
 #[expect(clippy::pedantic, reason = "it is generated")]
 mod code {
-    include!(concat!(env!("OUT_DIR"), "/dbc.rs"));
+    include!(concat!(env!("OUT_DIR"), "/infy_dbc.rs"));
 }
 
 use code::{self as dbc, CanError, Messages};
@@ -26,7 +28,7 @@ impl Codec for Dbc {
     type Received = (u32, Messages);
     type Values = Received;
     type Request = Request;
-    type Asked = Asked;
+    type ByHand = Received;
 
     #[inline(always)]
     fn decode(frame: &Frame) -> Result<(u32, Messages), impl Debug> {
@@ -39,6 +41,34 @@ impl Codec for Dbc {
         take!(source);
         take(messages);
     }
+
+    #[inline(always)]
+    fn encode(Received { id, message }: &Received) -> Option<impl embedded_can::Frame> {
+        Some(Frame::of(*id, data(message).ok()?))
+    }
+
+    #[inline(always)]
+    fn request(Request { message, target, controller }: &Request) -> Option<impl embedded_can::Frame> {
+        let (_, id) = target.shown().filter(|_| is_controller(*controller))?;
+        let (command, data) = (command(message), data(message).ok()?);
+        Some(Frame::of(id | u32::from(command) << 16 | u32::from(*controller), data))
+    }
+
+    fn to_values(received: &(u32, Messages)) -> Received {
+        Self::to_hand(received)
+    }
+
+    fn to_request(values: &Received) -> Option<Request> {
+        to_request(values)
+    }
+
+    fn to_hand((id, messages): &(u32, Messages)) -> Received {
+        Received { id: *id, message: values(messages, *id) }
+    }
+}
+
+impl Infy for Dbc {
+    type Asked = Asked;
 
     fn payloads(command: u8, payloads: &[[u8; 8]]) {
         fn all(payloads: &[[u8; 8]], decode: impl Fn(&[u8]) -> Result<Messages, CanError>) {
@@ -68,18 +98,6 @@ impl Codec for Dbc {
         }
     }
 
-    #[inline(always)]
-    fn encode(Received { id, message }: &Received) -> Option<impl embedded_can::Frame> {
-        Some(Frame::of(*id, data(message).ok()?))
-    }
-
-    #[inline(always)]
-    fn request(Request { message, target, controller }: &Request) -> Option<impl embedded_can::Frame> {
-        let (_, id) = target.shown().filter(|_| is_controller(*controller))?;
-        let (command, data) = (command(message), data(message).ok()?);
-        Some(Frame::of(id | u32::from(command) << 16 | u32::from(*controller), data))
-    }
-
     /// A DBC does not say who answers.
     fn ask(_: Target, _: u8) -> Option<Asked> {
         None
@@ -87,18 +105,6 @@ impl Codec for Dbc {
 
     fn reply(_: &Asked, _: &Frame) -> Option<Result<(f32, f32), Failure>> {
         None
-    }
-
-    fn to_values(received: &(u32, Messages)) -> Received {
-        Self::to_hand(received)
-    }
-
-    fn to_request(values: &Received) -> Option<Request> {
-        to_request(values)
-    }
-
-    fn to_hand((id, messages): &(u32, Messages)) -> Received {
-        Received { id: *id, message: values(messages, *id) }
     }
 }
 

@@ -2,9 +2,11 @@
 
 use std::fmt::Debug;
 
+use super::Infy;
+use super::hand::{self, Asked, Failure, Message, Received, Request, Target};
+use crate::Codec;
 use crate::frame::Frame;
-use crate::hand::{self, Asked, Failure, Message, Received, Request, Target};
-use crate::{Codec, each};
+use crate::work::each;
 
 /// Hands over each value, as a program takes it.
 #[inline(always)]
@@ -45,7 +47,7 @@ impl Codec for Hand {
     type Received = Received;
     type Values = Received;
     type Request = Request;
-    type Asked = Asked;
+    type ByHand = Received;
 
     #[inline(always)]
     fn decode(frame: &Frame) -> Result<Received, impl Debug> {
@@ -57,6 +59,32 @@ impl Codec for Hand {
         take!(hand::source(*id));
         take(message);
     }
+
+    #[inline(always)]
+    fn encode(received: &Received) -> Option<impl embedded_can::Frame> {
+        hand::encode(received)
+    }
+
+    #[inline(always)]
+    fn request(values: &Request) -> Option<impl embedded_can::Frame> {
+        hand::request(values)
+    }
+
+    fn to_values(received: &Received) -> Received {
+        *received
+    }
+
+    fn to_request(received: &Received) -> Option<Request> {
+        hand::to_request(received)
+    }
+
+    fn to_hand(received: &Received) -> Received {
+        *received
+    }
+}
+
+impl Infy for Hand {
+    type Asked = Asked;
 
     fn payloads(command: u8, words: &[[u8; 8]]) {
         fn all<const COMMAND: u8>(words: &[[u8; 8]]) {
@@ -85,16 +113,6 @@ impl Codec for Hand {
         all(words);
     }
 
-    #[inline(always)]
-    fn encode(received: &Received) -> Option<impl embedded_can::Frame> {
-        hand::encode(received)
-    }
-
-    #[inline(always)]
-    fn request(values: &Request) -> Option<impl embedded_can::Frame> {
-        hand::request(values)
-    }
-
     fn ask(target: Target, controller: u8) -> Option<Asked> {
         Asked::new(target, controller)
     }
@@ -102,17 +120,5 @@ impl Codec for Hand {
     #[inline(always)]
     fn reply(asked: &Asked, frame: &Frame) -> Option<Result<(f32, f32), Failure>> {
         asked.reply(frame)
-    }
-
-    fn to_values(received: &Received) -> Received {
-        *received
-    }
-
-    fn to_request(received: &Received) -> Option<Request> {
-        hand::to_request(received)
-    }
-
-    fn to_hand(received: &Received) -> Received {
-        *received
     }
 }

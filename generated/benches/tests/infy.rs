@@ -2,12 +2,14 @@
 
 use std::fmt::Debug;
 
-use canspec_benches::by_hand::Hand;
-use canspec_benches::dbc::Dbc;
+use canspec_benches::Codec;
 use canspec_benches::frame::Frame;
-use canspec_benches::generated::Generated;
-use canspec_benches::hand::{Message, Problem, Target};
-use canspec_benches::{Codec, frames, hand, work};
+use canspec_benches::infy::by_hand::Hand;
+use canspec_benches::infy::dbc::Dbc;
+use canspec_benches::infy::generated::Generated;
+use canspec_benches::infy::hand::{self, Message, Problem, Target};
+use canspec_benches::infy::{Infy as _, frames, replies};
+use canspec_benches::workload::Workload;
 use canspec_protocols::infy;
 use embedded_can::{ExtendedId, Frame as _, StandardId};
 use fastrand::Rng;
@@ -132,7 +134,7 @@ fn replies_are_found_alike() {
 
 #[test]
 fn half_of_the_frames_that_are_measured_answer() {
-    let replies = work::replies::<Generated>(&frames::distinct(frames::COUNTED));
+    let replies = replies::<Generated>(&frames::distinct(Workload::COUNTED));
     let answers = replies.iter().filter(|(asked, frame)| matches!(Generated::reply(asked, frame), Some(Ok(_)))).count();
     assert!(replies.len() > 1000);
     assert_eq!(answers * 2, replies.len());
@@ -192,9 +194,7 @@ fn copied(frame: Option<impl embedded_can::Frame>) -> Option<Frame> {
 }
 
 fn all() -> Vec<Frame> {
-    let mut frames = frames::distinct(frames::MANY);
-    frames.extend(frames::few());
-    frames
+    frames::distinct(Workload::TIMED)
 }
 
 /// Returns a frame of any type and length, often with an identifier of the protocol.
