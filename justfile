@@ -12,9 +12,9 @@ ci:
 size *words:
     cargo run --quiet --bin size -- {{words}}
 
-# Instructions of the generated codecs beside a hand-written one, dbc-codegen and cantools, with LTO and without.
-bench:
-    cd generated/benches && cargo test --release --quiet && cargo run --release --quiet
+# Instructions of the generated codecs beside a hand-written one, dbc-codegen and cantools, with LTO and without; words choose among the protocols.
+bench *words:
+    cd generated/benches && cargo test --release --quiet && cargo run --release --quiet -- {{words}}
 
 # What the command costs for specs of 10 to 10,000 messages.
 growth:

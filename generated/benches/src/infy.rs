@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 
 use crate::Codec;
 use crate::frame::{self, Frame};
+use crate::steps;
 use crate::work::{self, Prepared, Work, received};
 use crate::workload::{Kind, Measured, Workload};
 use by_hand::Hand;

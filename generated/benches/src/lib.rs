@@ -8,6 +8,8 @@ macro_rules! take {
 pub mod frame;
 pub mod infy;
 pub mod processor_time;
+pub mod steps;
+pub mod supply;
 pub mod work;
 pub mod workload;
 

@@ -1,4 +1,6 @@
 //! Prints the instructions that valgrind counts and the times that `cargo bench` measured, as Markdown tables.
+//!
+//! Words choose among the workloads.
 
 mod cantools;
 
@@ -14,7 +16,9 @@ use canspec_benches::workload::{Kind, Measured, Workload};
 const PROFILES: [(&str, &str); 2] = [("lto", "LTO"), ("release", "release")];
 
 fn main() {
-    (0..Workload::ALL.len()).for_each(instructions);
+    let words: Vec<_> = env::args().skip(1).collect();
+    let is_wanted = |number: &usize| words.iter().all(|word| Workload::ALL[*number].name.contains(word));
+    (0..Workload::ALL.len()).filter(is_wanted).for_each(instructions);
     times();
 }
 

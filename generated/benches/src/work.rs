@@ -81,6 +81,16 @@ pub const fn request<C: Codec>() -> Work {
     Work { name: "request", prepare }
 }
 
+/// Builds requests by a function that is not inlined.
+pub const fn request_by_call<C: Codec>() -> Work {
+    let prepare = |frames: &[Frame]| {
+        Prepared::each(requests::<C>(frames), |request| {
+            black_box(&requested::<C>(request));
+        })
+    };
+    Work { name: "request by a call", prepare }
+}
+
 /// Encodes what was received.
 pub const fn encode<C: Codec>() -> Work {
     let prepare = |frames: &[Frame]| {
@@ -91,9 +101,29 @@ pub const fn encode<C: Codec>() -> Work {
     Work { name: "encode what was received", prepare }
 }
 
+/// Encodes what was received by a function that is not inlined.
+pub const fn encode_by_call<C: Codec>() -> Work {
+    let prepare = |frames: &[Frame]| {
+        Prepared::each(values::<C>(frames), |values| {
+            black_box(&encoded::<C>(values));
+        })
+    };
+    Work { name: "encode what was received by a call", prepare }
+}
+
 #[inline(never)]
 fn decoded<C: Codec>(frame: &Frame) -> Result<C::Received, impl Debug> {
     C::decode(frame)
+}
+
+#[inline(never)]
+fn requested<C: Codec>(request: &C::Request) -> Option<impl embedded_can::Frame> {
+    C::request(request)
+}
+
+#[inline(never)]
+fn encoded<C: Codec>(values: &C::Values) -> Option<impl embedded_can::Frame> {
+    C::encode(values)
 }
 
 /// Decodes a frame of the protocol.

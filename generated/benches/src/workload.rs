@@ -1,8 +1,8 @@
 //! All that is measured.
 
 use crate::frame::Frame;
-use crate::infy;
 use crate::work::Work;
+use crate::{infy, supply};
 
 /// Frames, and the codecs that work on them.
 #[derive(Clone, Copy)]
@@ -35,7 +35,7 @@ pub struct Measured {
 
 impl Workload {
     /// All workloads.
-    pub const ALL: [Self; 1] = [infy::WORKLOAD];
+    pub const ALL: [Self; 2] = [infy::WORKLOAD, supply::WORKLOAD];
     /// How many frames of a kind valgrind sees.
     pub const COUNTED: usize = 20_000;
     /// How many frames of a kind are timed.

@@ -1,6 +1,6 @@
 //! The three codecs say the same, as far as they can: only then is it fair to measure them.
 
-use std::fmt::Debug;
+mod common;
 
 use canspec_benches::Codec;
 use canspec_benches::frame::Frame;
@@ -11,7 +11,8 @@ use canspec_benches::infy::hand::{self, Message, Problem, Target};
 use canspec_benches::infy::{Infy as _, frames, replies};
 use canspec_benches::workload::Workload;
 use canspec_protocols::infy;
-use embedded_can::{ExtendedId, Frame as _, StandardId};
+use common::{Refused, copied, encoded, many, of_any_type, refusals, requested};
+use embedded_can::{ExtendedId, Frame as _};
 use fastrand::Rng;
 
 #[test]
@@ -24,9 +25,8 @@ fn the_hand_written_codec_gives_the_values_of_the_generated_one() {
 
 #[test]
 fn both_refuse_the_same_frames_for_the_same_reasons() {
-    let mut rng = Rng::with_seed(1);
     let mut reasons = [0; 6];
-    for frame in (0..1_000_000).map(|_| foreign(&mut rng)) {
+    for frame in many(1, foreign) {
         let generated = infy::Message::decode(&frame).map(|received| Generated::to_hand(&received));
         let generated = generated.map_err(|problem| match problem {
             infy::Problem::Frame => Problem::Frame,
@@ -50,22 +50,9 @@ fn every_frame_is_encoded_back_by_both() {
     }
 }
 
-/// Compares what two codecs make of random frames, and counts the refusals.
-///
-/// Values, modes and addresses come from random bytes, so the codecs refuse many of them.
-fn refusals<T: PartialEq + Debug>(seed: u64, one: fn(&Frame) -> T, other: fn(&Frame) -> T, refusal: &T) -> usize {
-    let mut rng = Rng::with_seed(seed);
-    let made = (0..1_000_000).map(|_| odd(&mut rng)).map(|frame| {
-        let made = one(&frame);
-        assert_eq!(other(&frame), made, "{frame:?}");
-        made
-    });
-    made.filter(|made| made == refusal).count()
-}
-
 #[test]
 fn both_encode_the_same_of_what_was_received() {
-    let refused = refusals(2, encoded::<Generated>, encoded::<Hand>, &None);
+    let refused = refusals(many(2, odd), [encoded::<Generated>, encoded::<Hand>], &None);
     assert!((200_000..900_000).contains(&refused), "{refused}");
 }
 
@@ -83,7 +70,7 @@ fn requests_are_built_alike() {
 
 #[test]
 fn both_refuse_the_same_requests() {
-    let refused = refusals(3, requested::<Generated>, requested::<Hand>, &Some(Err(Refused)));
+    let refused = refusals(many(3, odd), [requested::<Generated>, requested::<Hand>], &Some(Err(Refused)));
     assert!((100_000..600_000).contains(&refused), "{refused}");
 }
 
@@ -175,24 +162,6 @@ fn assert_near(near: &Message, exact: &Message) {
     }
 }
 
-fn encoded<C: Codec>(frame: &Frame) -> Option<Frame> {
-    copied(C::encode(&C::to_values(&C::decode(frame).ok()?)))
-}
-
-/// Returns what is built of the values of a request, unless the frame is none.
-fn requested<C: Codec>(frame: &Frame) -> Option<Result<Frame, Refused>> {
-    let request = C::to_request(&C::to_values(&C::decode(frame).ok()?))?;
-    Some(copied(C::request(&request)).ok_or(Refused))
-}
-
-/// A request is not built.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Refused;
-
-fn copied(frame: Option<impl embedded_can::Frame>) -> Option<Frame> {
-    frame.and_then(|frame| Frame::copy(&frame))
-}
-
 fn all() -> Vec<Frame> {
     frames::distinct(Workload::TIMED)
 }
@@ -201,14 +170,8 @@ fn all() -> Vec<Frame> {
 fn foreign(rng: &mut Rng) -> Frame {
     let near = 0x0280_00F0 ^ rng.u32(..) & rng.u32(..) & 0x1FFF_FFFF;
     let id = [near, near & 0x1FFF_FF00 | 0xF0, near & 0x1FFF_00FF | 0xF400, 0x0757_F800 | rng.u32(..0x200)];
-    let id = ExtendedId::new(id[rng.usize(..4)]).expect("29 bits");
-    let length = if rng.bool() { 8 } else { rng.usize(..=8) };
-    let frame = match rng.u8(..10) {
-        0 => Frame::new_remote(id, length),
-        1 => Frame::new(StandardId::new(rng.u16(..0x800)).expect("11 bits"), &[0; 8][..length]),
-        _ => Frame::new(id, &[0; 8][..length]),
-    };
-    frame.expect("at most eight bytes")
+    let id = id[rng.usize(..4)];
+    of_any_type(rng, id, [0; 8])
 }
 
 /// Returns a frame of the protocol with random addresses and values, whose reserved bits are 0.

@@ -23,8 +23,9 @@ impl Program {
     }
 
     fn by_hand(task: &str, calls: &TokenStream) -> Self {
-        let [hand, frame] = ["infy/hand", "frame"].map(source);
-        let [hand_code, frame_code] = [&hand, &frame].map(|code| code.parse::<TokenStream>().expect("it is Rust"));
+        let [hand, frame, steps] = ["infy/hand", "frame", "steps"].map(source);
+        let [hand_code, frame_code, steps_code] =
+            [&hand, &frame, &steps].map(|code| code.parse::<TokenStream>().expect("it is Rust"));
         let unknown_values = Module::new(&hand).unknown_values();
         let named_values = NAMED.map(|name| {
             let name = format_ident!("{name}");
@@ -35,6 +36,10 @@ impl Program {
                 mod frame {
                     #frame_code
                     use canspec_runtime::embedded_can;
+                }
+
+                mod steps {
+                    #steps_code
                 }
 
                 mod hand {

@@ -6,6 +6,7 @@
 use embedded_can::Id;
 
 use super::frame::Frame;
+use super::steps::{half, halves, milli, rounded, words};
 
 /// Named values: an enum that keeps what it has no name for.
 macro_rules! named {
@@ -325,36 +326,6 @@ fn mode(id: u32) -> u8 {
 #[inline(always)]
 fn first(byte: impl Into<u8>) -> u64 {
     u64::from(byte.into()) << 56
-}
-
-#[inline(always)]
-fn words(first: u32, second: u32) -> u64 {
-    u64::from(first) << 32 | u64::from(second)
-}
-
-#[inline(always)]
-fn halves([a, b, c, d]: [u16; 4]) -> u64 {
-    u64::from(a) << 48 | u64::from(b) << 32 | u64::from(c) << 16 | u64::from(d)
-}
-
-/// Returns the nearest thousandth that 32 bits hold.
-#[inline(always)]
-fn milli(value: f64) -> Option<u32> {
-    let value = value * 1000.0;
-    (value > -0.5 && value < f64::from(u32::MAX) + 0.5).then(|| rounded(value))
-}
-
-/// Returns the nearest integer that 16 bits hold.
-#[inline(always)]
-fn half(value: f64) -> Option<u16> {
-    (value > -0.5 && value < f64::from(u16::MAX) + 0.5).then(|| rounded(value) as u16)
-}
-
-/// Returns the nearest integer, with ties away from zero. A whole half would carry the largest number below it up.
-#[inline(always)]
-#[expect(clippy::cast_sign_loss, reason = "the limits are tested first")]
-fn rounded(value: f64) -> u32 {
-    (value + 0.5_f64.next_down()) as u32
 }
 
 /// Whom a request addresses.
