@@ -98,6 +98,10 @@ impl<R: Integer> Raw for Bcd<R> {
     fn is_finite(self) -> bool {
         self.number().is_some()
     }
+
+    fn is_within(self, minimum: Self, maximum: Self) -> bool {
+        self.is_finite() && (minimum.to_bits()..=maximum.to_bits()).contains(&self.to_bits())
+    }
 }
 
 /// Returns the number that the digits stand for.
@@ -148,8 +152,10 @@ mod tests {
         let mut reply = Payload::new("date", [0; 8]);
         assert_eq!(DAY.put(odd, &mut reply), Ok(()));
         assert_eq!(reply.data()[0], 0x2A);
-        let refused = DAY.put(odd, &mut Payload::within_limits("date", [0; 8]));
-        assert!(matches!(refused, Err(Error::NotFinite { .. })));
+        for day in [DAY, DAY.limits(Bcd::from_raw(0x01), Bcd::from_raw(0x31))] {
+            let refused = day.put(odd, &mut Payload::within_limits("date", [0; 8]));
+            assert!(matches!(refused, Err(Error::NotFinite { .. })));
+        }
     }
 
     #[test]

@@ -85,6 +85,9 @@ pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
     /// Returns the same raw value as [`raw`](Self::raw), or `None` if `width` bits cannot hold it.
     fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64>;
 
+    /// Returns the raw value nearest to this physical value, which lies between two that `width` bits hold.
+    fn raw_held(self, scale: Scale, width: u8, signed: bool) -> Option<i64>;
+
     /// Tests whether a raw value has exactly this physical value.
     fn is_step(self, scale: Scale) -> bool;
 
@@ -123,6 +126,11 @@ impl Scaled for f64 {
     #[inline(always)]
     fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64> {
         scale.raw_of(self, width, signed)
+    }
+
+    #[inline(always)]
+    fn raw_held(self, scale: Scale, width: u8, signed: bool) -> Option<i64> {
+        scale.raw_held(self, width, signed)
     }
 
     #[inline(always)]
@@ -169,6 +177,11 @@ impl Scaled for f32 {
     #[inline(always)]
     fn raw_of(self, scale: Scale, width: u8, signed: bool) -> Option<i64> {
         scale.raw_of_f32(self, width, signed)
+    }
+
+    #[inline(always)]
+    fn raw_held(self, scale: Scale, width: u8, signed: bool) -> Option<i64> {
+        scale.raw_held_f32(self, width, signed)
     }
 
     #[inline(always)]

@@ -61,7 +61,7 @@ pub trait Raw: Copy + 'static {
         true
     }
 
-    /// Tests whether this lies inside limits, both legal.
+    /// Tests whether this is a finite number inside limits, both legal.
     #[inline(always)]
     fn is_within(self, minimum: Self, maximum: Self) -> bool {
         let [value, minimum, maximum] = [self, minimum, maximum].map(Self::to_bits);

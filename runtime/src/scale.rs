@@ -72,6 +72,14 @@ impl Scale {
         if width > 32 { nearest(exact) } else { nearest_of(exact, width, signed) }
     }
 
+    /// Returns the same raw value of a physical value between two others that `width` bits hold. It tests nothing that
+    /// those tell.
+    #[inline(always)]
+    pub(crate) const fn raw_held(self, physical: f64, width: u8, signed: bool) -> Option<i64> {
+        let exact = self.exact(physical);
+        if width > 32 { nearest(exact) } else { Some(rounded(exact, width, signed)) }
+    }
+
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^50")]
     #[inline(always)]
     const fn exact(self, physical: f64) -> f64 {
@@ -104,6 +112,13 @@ impl Scale {
     pub(crate) const fn raw_of_f32(self, physical: f32, width: u8, signed: bool) -> Option<i64> {
         let exact = self.exact_f32(physical);
         if width > 22 { nearest_f32(exact) } else { nearest_of_f32(exact, width, signed) }
+    }
+
+    /// Returns the same raw value as [`raw_held`](Self::raw_held) does, without arithmetic in double precision.
+    #[inline(always)]
+    pub(crate) const fn raw_held_f32(self, physical: f32, width: u8, signed: bool) -> Option<i64> {
+        let exact = self.exact_f32(physical);
+        if width > 22 { nearest_f32(exact) } else { Some(rounded_f32(exact, width, signed)) }
     }
 
     #[expect(clippy::cast_precision_loss, reason = "the compiler keeps these numbers below 2^22")]
@@ -194,35 +209,45 @@ pub const fn nearest(value: f64) -> Option<i64> {
 }
 
 /// Returns the integer nearest to `value` as [`nearest`] does, or `None` if `width` bits, at most 32, cannot hold it.
-///
-/// Processors convert to 32 bits at less cost than to 64.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
 #[expect(clippy::cast_precision_loss, reason = "32 bits are exact")]
 #[inline(always)]
 const fn nearest_of(value: f64, width: u8, signed: bool) -> Option<i64> {
     let count = 1_u64.wrapping_shl(width as u32) as f64;
     let (least, end) = if signed { (-count / 2.0, count / 2.0) } else { (0.0, count) };
-    match value > least - 0.5 && value < end - 0.5 {
-        true if signed => Some((value + BELOW_HALF.copysign(value)) as i32 as i64),
-        // The mask tells the compiler what was tested.
-        true => Some((value + BELOW_HALF) as u32 as i64 & (count as i64 - 1)),
-        false => None,
+    if value > least - 0.5 && value < end - 0.5 { Some(rounded(value, width, signed)) } else { None }
+}
+
+/// Returns the integer nearest to `value`, which `width` bits, at most 32, hold.
+///
+/// Processors convert to 32 bits at less cost than to 64.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
+#[inline(always)]
+const fn rounded(value: f64, width: u8, signed: bool) -> i64 {
+    if signed {
+        return (value + BELOW_HALF.copysign(value)) as i32 as i64;
     }
+    // The mask tells the compiler what was tested.
+    (value + BELOW_HALF) as u32 as i64 & (1_i64.wrapping_shl(width as u32) - 1)
 }
 
 /// Returns the integer nearest to `value`, as [`nearest_of`] does with at most 22 bits.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
 #[expect(clippy::cast_precision_loss, reason = "22 bits are exact")]
 #[inline(always)]
 const fn nearest_of_f32(value: f32, width: u8, signed: bool) -> Option<i64> {
     let count = 1_u64.wrapping_shl(width as u32) as f32;
     let (least, end) = if signed { (-count / 2.0, count / 2.0) } else { (0.0, count) };
-    match value > least - 0.5 && value < end - 0.5 {
-        true if signed => Some((value + BELOW_HALF_F32.copysign(value)) as i32 as i64),
-        // The mask tells the compiler what was tested.
-        true => Some((value + BELOW_HALF_F32) as u32 as i64 & (count as i64 - 1)),
-        false => None,
+    if value > least - 0.5 && value < end - 0.5 { Some(rounded_f32(value, width, signed)) } else { None }
+}
+
+/// Returns the integer nearest to `value`, as [`rounded`] does with at most 22 bits.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the limits are tested first")]
+#[inline(always)]
+const fn rounded_f32(value: f32, width: u8, signed: bool) -> i64 {
+    if signed {
+        return (value + BELOW_HALF_F32.copysign(value)) as i32 as i64;
     }
+    // The mask tells the compiler what was tested.
+    (value + BELOW_HALF_F32) as u32 as i64 & (1_i64.wrapping_shl(width as u32) - 1)
 }
 
 /// Returns the integer nearest to `value`, as [`nearest`] does.
@@ -262,10 +287,14 @@ mod tests {
             for value in [half.next_down(), half, half.next_up()] {
                 for (width, least, most) in ends {
                     let held = |raw: &i64| (least..=most).contains(raw);
-                    assert_eq!(Scale::ONE.raw_of(value, width, least < 0), nearest(value).filter(held), "{value:?}");
+                    let raw = Scale::ONE.raw_of(value, width, least < 0);
+                    assert_eq!(raw, nearest(value).filter(held), "{value:?}");
+                    assert!(raw.is_none() || Scale::ONE.raw_held(value, width, least < 0) == raw, "{value:?}");
                     let single = value as f32;
                     let nearest = nearest_f32(single).filter(|raw| width > 22 || held(raw));
                     assert_eq!(Scale::ONE.raw_of_f32(single, width, least < 0), nearest, "{single:?}");
+                    let raw = nearest.filter(|raw| held(raw));
+                    assert!(raw.is_none() || Scale::ONE.raw_held_f32(single, width, least < 0) == raw, "{single:?}");
                 }
             }
         }

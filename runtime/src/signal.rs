@@ -250,12 +250,6 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests the value that limits apply to.
     #[inline(always)]
     fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
-        if value.is_finite() { self.check_finite(value, payload) } else { Err(self.not_finite(payload.message())) }
-    }
-
-    /// Tests a finite value against the limits.
-    #[inline(always)]
-    fn check_finite(&self, value: F, payload: &Payload) -> Result<(), Error> {
         if F::IS_RAW { self.check_limits(value, payload) } else { self.check_physical(value, payload) }
     }
 
@@ -266,13 +260,16 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         self.check_limits(value, payload)
     }
 
+    /// Tests a value against the limits. None lies between them that is not finite.
     #[inline(always)]
     fn check_limits(&self, value: F, payload: &Payload) -> Result<(), Error> {
         match self.limits_in(payload) {
-            Some((minimum, maximum)) if !value.is_within(minimum, maximum) => {
+            Some((minimum, maximum)) if value.is_within(minimum, maximum) => Ok(()),
+            None if value.is_finite() => Ok(()),
+            Some((minimum, maximum)) if value.is_finite() => {
                 Err(self.outside(value, minimum, maximum, payload.message()))
             }
-            _ => Ok(()),
+            _ => Err(self.not_finite(payload.message())),
         }
     }
 

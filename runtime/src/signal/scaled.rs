@@ -50,11 +50,17 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// would be rounded to a special raw value.
     #[inline(always)]
     pub fn encode(&self, physical: F, payload: &mut Payload) -> Result<(), Error> {
-        let raw = physical.raw_of(self.exact_scale(), self.place.width(), R::SIGNED);
+        let is_decided = payload.keeps_limits() && self.limits_decide(payload);
+        let raw = if is_decided {
+            self.check(physical, payload)?;
+            physical.raw_held(self.exact_scale(), self.place.width(), R::SIGNED)
+        } else {
+            physical.raw_of(self.exact_scale(), self.place.width(), R::SIGNED)
+        };
         let Some((raw, bits)) = raw.and_then(|raw| Some((raw, R::bits_of(raw)?))) else {
             return Err(self.unheld(physical, self.bits_on_models(physical), payload));
         };
-        if payload.keeps_limits() && self.check_model(bits, payload)? {
+        if payload.keeps_limits() && !is_decided && self.check_model(bits, payload)? {
             self.check_rounded(physical, raw, bits, payload)?;
         }
         if self.store(bits, payload) { Ok(()) } else { Err(self.unheld(physical, bits, payload)) }
@@ -97,18 +103,28 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
         match self.special(bits) {
             Some(_) if sent() == physical => Ok(()),
             Some(name) => {
-                self.check_finite(physical, payload)?;
+                self.check(physical, payload)?;
                 Err(self.hidden(Scaled::number(physical), name, payload.message()))
             }
             None => {
-                self.check_finite(physical, payload)?;
+                self.check(physical, payload)?;
                 if self.has_limits_on_steps(payload) || sent() == physical {
                     Ok(())
                 } else {
-                    self.check_finite(sent(), payload)
+                    self.check(sent(), payload)
                 }
             }
         }
+    }
+
+    /// Tests whether the limits alone decide which values are refused, and the compiler knows it.
+    ///
+    /// They are steps that the bits hold, and no value between them means something else.
+    #[inline(always)]
+    fn limits_decide(&self, payload: &Payload) -> bool {
+        let is_held = |limit: F| limit.raw_of(self.exact_scale(), self.place.width(), R::SIGNED).is_some();
+        let is_plain = self.specials.is_empty() && self.lacking.is_empty() && self.has_limits_on_steps(payload);
+        is_plain && self.limits.is_some_and(|(minimum, maximum)| is_held(minimum) && is_held(maximum))
     }
 
     /// Tests whether the limits are steps, and known when a program is compiled.
