@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::choice::{choice, matched, split};
-use super::parts::part_name;
+use super::parts::{inlining, part_name};
 use super::plan::recognition::{Candidate, Cases};
 use super::plan::rows::Arm;
 use super::plan::selector::Selectors;
@@ -24,7 +24,7 @@ pub fn recognising(
         let (own, next) = (part_name(name, index), part_name(name, index + 1));
         let otherwise = if index + 1 < parts.len() { quote!(Self::#next(frame)) } else { rest.clone() };
         let found = if arms.is_empty() { otherwise } else { matched(selectors, arms, &otherwise) };
-        let inlined = (index == 0).then(|| quote!(#[inline(always)]));
+        let inlined = inlining(index);
         quote!(#inlined fn #own(frame: &Incoming) -> Result<Received, Problem> { #found })
     });
     functions.collect()

@@ -33,6 +33,11 @@ pub fn part_name(name: &str, index: usize) -> Ident {
     if index == 0 { ident(name) } else { ident(&format!("{name}_{}", index + 1)) }
 }
 
+/// Returns how a part is inlined. The first becomes part of its caller, and another one may, also in another crate.
+pub fn inlining(index: usize) -> TokenStream {
+    if index == 0 { quote!(#[inline(always)]) } else { quote!(#[inline]) }
+}
+
 /// Returns what counts the lines of an arm in a function of an `impl`.
 fn height() -> impl Fn(&TokenStream) -> usize {
     let others = lines(None);

@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::derives::Derives;
 use super::dispatch::{measuring, recognising};
 use super::filter::normal;
-use super::parts::{part_name, parts};
+use super::parts::{inlining, part_name, parts};
 use super::plan::Plan;
 use super::plan::recognition::Direction;
 use super::plan::variant::Variant;
@@ -126,7 +126,7 @@ fn runs(carrying: Vec<&Ident>, empty: &TokenStream) -> Vec<TokenStream> {
 
 fn run(index: usize, task: &TokenStream, body: &TokenStream) -> TokenStream {
     let name = part_name("run", index);
-    let inlined = (index == 0).then(|| quote!(#[inline(always)]));
+    let inlined = inlining(index);
     quote!(#inlined fn #name<T: Task>(&self, #task: T) -> T::Output { #body })
 }
 
