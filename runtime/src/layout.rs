@@ -5,7 +5,7 @@ use crate::{AnySignal, Data, Error, Frame, Payload};
 /// The values that a kind of frame carries.
 pub trait Layout: Sized + 'static {
     /// The signals, by first byte.
-    const SIGNALS: &'static [&'static dyn AnySignal];
+    const SIGNALS: AnySignals;
     /// Reads the values from the data of such a frame.
     const DECODE: Decode<Self>;
     /// Writes the values to the data.
@@ -44,6 +44,9 @@ pub trait Layout: Sized + 'static {
     }
 }
 
+/// The type of [`Layout::SIGNALS`].
+pub type AnySignals = &'static [&'static dyn AnySignal];
+
 /// The same as [`Layout::decode`].
 pub type Decode<T> = fn(&Data) -> T;
 
@@ -52,7 +55,7 @@ pub type Encode<T> = fn(&T, &mut Payload) -> Result<(), Error>;
 
 /// Frames without signals.
 impl Layout for () {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[];
+    const SIGNALS: AnySignals = &[];
     const DECODE: Decode<Self> = |_| ();
     const ENCODE: Encode<Self> = |(), _| Ok(());
 }
@@ -72,7 +75,7 @@ pub trait Task {
 pub struct Signals;
 
 impl Task for Signals {
-    type Output = &'static [&'static dyn AnySignal];
+    type Output = AnySignals;
 
     fn run<L: Layout>(self, _: &L) -> Self::Output {
         L::SIGNALS

@@ -287,7 +287,6 @@ impl Level {
     pub const SET: Exchange = SET_ACCESS.of("level", FRAME.id(Identifier::COMMAND, 0x03));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -296,7 +295,7 @@ impl Level {
 }
 
 impl Layout for Level {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_percent, payload);
 }
@@ -319,7 +318,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -159,7 +159,7 @@ impl Cells {
 }
 
 impl Layout for Cells {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::VOLTAGE_0, &Self::GROUP_0, &Self::VOLTAGE_1, &Self::GROUP_1, &Self::VOLTAGE_2, &Self::GROUP_2];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const ENCODE: Encode<Self> = |message, payload| {
@@ -229,7 +229,7 @@ impl State {
 }
 
 impl Layout for State {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::CURRENT_1, &Self::VALVE_1, &Self::VALVE_2, &Self::VALVE_3, &Self::VALVE_4, &Self::CURRENT_2];
     const DECODE: Decode<Self> = |data| Self {
         current_a: [Self::CURRENT_1.decode(data), Self::CURRENT_2.decode(data)],
@@ -265,7 +265,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

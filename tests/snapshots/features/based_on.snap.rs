@@ -140,7 +140,6 @@ impl Speed {
     pub const READ: Exchange = READ_ACCESS.of("speed", FRAME.id(Identifier::COMMAND, 0x002)).length(2);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -149,7 +148,7 @@ impl Speed {
 }
 
 impl Layout for Speed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_rpm: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_rpm, payload);
 }
@@ -173,7 +172,6 @@ impl Temperature {
     pub const READ: Exchange = READ_ACCESS.of("temperature", FRAME.id(Identifier::COMMAND, 0x003)).length(2);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -182,7 +180,7 @@ impl Temperature {
 }
 
 impl Layout for Temperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
@@ -211,7 +209,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -150,7 +150,6 @@ impl Delivered {
         CHARGER_CYCLE_ACCESS.of("delivered", FRAME.id(Identifier::NUMBER, 0x01)).length(4);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -159,7 +158,7 @@ impl Delivered {
 }
 
 impl Layout for Delivered {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
@@ -184,7 +183,7 @@ impl Demanded {
 }
 
 impl Layout for Demanded {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
@@ -209,7 +208,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

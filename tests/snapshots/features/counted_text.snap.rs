@@ -87,7 +87,7 @@ impl NoteSize {
 }
 
 impl Layout for NoteSize {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::LETTERS];
+    const SIGNALS: AnySignals = &[&Self::LETTERS];
     const DECODE: Decode<Self> = |data| Self { letters: Self::LETTERS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::LETTERS.put(message.letters, payload);
 }
@@ -143,7 +143,7 @@ impl NotePart {
 }
 
 impl Layout for NotePart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
@@ -184,7 +184,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

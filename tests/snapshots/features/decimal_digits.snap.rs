@@ -219,7 +219,6 @@ impl Delay {
     pub const SET: Exchange = SET_ACCESS.of("delay", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -228,7 +227,7 @@ impl Delay {
 }
 
 impl Layout for Delay {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_min: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_min, payload);
 }
@@ -251,7 +250,6 @@ impl Month {
     pub const SET: Exchange = SET_ACCESS.of("month", FRAME.id(Identifier::COMMAND, 0x02));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -260,7 +258,7 @@ impl Month {
 }
 
 impl Layout for Month {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -285,7 +283,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -169,7 +169,6 @@ impl Battery {
     pub const READ: Exchange = READ_ACCESS.of("battery", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -178,7 +177,7 @@ impl Battery {
 }
 
 impl Layout for Battery {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT, &Self::LEVEL];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::LEVEL];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
         current_a: Self::CURRENT.decode(data),
@@ -211,7 +210,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -186,7 +186,6 @@ impl All {
     pub const SCAN: Exchange = SCAN_ACCESS.of("all", FRAME.id(Identifier::COMMAND, 0x04));
 
     /// Builds the request [`scan`](SCAN_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn scan(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -237,7 +236,7 @@ impl Heat {
 }
 
 impl Layout for Heat {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
@@ -261,7 +260,7 @@ impl Power {
 }
 
 impl Layout for Power {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -288,7 +287,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

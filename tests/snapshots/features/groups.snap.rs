@@ -160,7 +160,7 @@ impl State {
 }
 
 impl Layout for State {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::ALARMS_LEVEL,
         &Self::ALARMS_PACK,
         &Self::ALARMS_CELL_1,
@@ -208,7 +208,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -312,7 +312,6 @@ impl Maker {
     pub const READ: Exchange = READ_ACCESS.of("maker", FRAME.data(ITEM_SELECTOR.place, 0x10));
 
     /// Returns what sends the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<transfers::Sender<'static, Tp>, Error> {
@@ -345,7 +344,6 @@ impl Restart {
     pub const RESET: Exchange = RESET_ACCESS.of("restart", FRAME);
 
     /// Returns what sends the request [`reset`](RESET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn reset(route: impl Into<Route<Target>>) -> Result<transfers::Sender<'static, Tp>, Error> {
@@ -397,7 +395,6 @@ impl TpSingleFrame {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -406,7 +403,7 @@ impl TpSingleFrame {
 }
 
 impl Layout for TpSingleFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::SIZE,
         &Self::DATA_1,
         &Self::DATA_2,
@@ -493,7 +490,6 @@ impl TpFirstFrame {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -502,7 +498,7 @@ impl TpFirstFrame {
 }
 
 impl Layout for TpFirstFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { size: Self::SIZE.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::SIZE.put(message.size, payload)?;
@@ -556,7 +552,6 @@ impl TpConsecutiveFrame {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -565,7 +560,7 @@ impl TpConsecutiveFrame {
 }
 
 impl Layout for TpConsecutiveFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::NUMBER,
         &Self::DATA_1,
         &Self::DATA_2,
@@ -666,7 +661,6 @@ impl TpFlowControl {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -675,8 +669,7 @@ impl TpFlowControl {
 }
 
 impl Layout for TpFlowControl {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::STATUS, &Self::BLOCK, &Self::SEPARATION, &Self::PADDING];
+    const SIGNALS: AnySignals = &[&Self::STATUS, &Self::BLOCK, &Self::SEPARATION, &Self::PADDING];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const ENCODE: Encode<Self> = |message, payload| {
         payload.end_after(3);
@@ -750,7 +743,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -130,7 +130,7 @@ impl Measurement {
 }
 
 impl Layout for Measurement {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::VOLTAGE, &Self::CURRENT, &Self::TEMPERATURE, &Self::POWER, &Self::OUTPUT, &Self::MODE, &Self::COUNTER];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
@@ -170,7 +170,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

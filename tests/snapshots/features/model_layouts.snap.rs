@@ -167,7 +167,7 @@ impl SupplyAc {
 }
 
 impl Layout for SupplyAc {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
@@ -192,7 +192,7 @@ impl SupplyDc {
 }
 
 impl Layout for SupplyDc {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
@@ -217,7 +217,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -226,7 +225,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -196,7 +196,6 @@ impl SetSpeed {
         .models(&[Model::P10a as u8, Model::P48vDc as u8]);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -205,7 +204,6 @@ impl SetSpeed {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -215,7 +213,6 @@ impl SetSpeed {
 
 impl Within<SetSpeed> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -224,7 +221,7 @@ impl Within<SetSpeed> {
 }
 
 impl Layout for SetSpeed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SPEED, &Self::FLOW];
+    const SIGNALS: AnySignals = &[&Self::SPEED, &Self::FLOW];
     const DECODE: Decode<Self> =
         |data| Self { speed_rpm: Self::SPEED.get(data), flow_percent: Self::FLOW.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -251,7 +248,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -260,7 +256,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

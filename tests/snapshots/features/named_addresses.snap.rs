@@ -256,7 +256,6 @@ impl SwitchRelay {
     pub const SET: Exchange = SET_ACCESS.of("switch_relay", FRAME.id(Identifier::COMMAND, 0x91));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -265,7 +264,7 @@ impl SwitchRelay {
 }
 
 impl Layout for SwitchRelay {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
+    const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
 }
@@ -288,7 +287,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

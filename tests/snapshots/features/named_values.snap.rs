@@ -269,7 +269,6 @@ impl Switch {
     pub const SET: Exchange = SET_ACCESS.of("switch", FRAME.id(Identifier::COMMAND, 0x1A));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -278,7 +277,7 @@ impl Switch {
 }
 
 impl Layout for Switch {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER, &Self::LAMP];
+    const SIGNALS: AnySignals = &[&Self::POWER, &Self::LAMP];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data), lamp: Self::LAMP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::POWER.put(message.power, payload)?;
@@ -304,7 +303,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

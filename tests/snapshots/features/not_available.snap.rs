@@ -246,7 +246,6 @@ impl Limits {
     pub const SET: Exchange = SET_ACCESS.of("limits", FRAME.id(Identifier::COMMAND, 0x12)).length(5);
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -255,7 +254,7 @@ impl Limits {
 }
 
 impl Layout for Limits {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::VOLTAGE, &Self::TEMPERATURE, &Self::LAMP, &Self::READY, &Self::COUNTER, &Self::DAY];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const ENCODE: Encode<Self> = |message, payload| {
@@ -303,7 +302,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -180,8 +180,7 @@ impl State {
 }
 
 impl Layout for State {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::VOLTAGE, &Self::PHASE, &Self::ALLOWED, &Self::HOURS, &Self::CYCLES];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::PHASE, &Self::ALLOWED, &Self::HOURS, &Self::CYCLES];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const ENCODE: Encode<Self> = |message, payload| {
         payload.end_after(3);
@@ -234,7 +233,6 @@ impl Limit {
     pub const SET: Exchange = SET_ACCESS.of("limit", FRAME.id(Identifier::COMMAND, 0x13)).length(1);
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -243,7 +241,7 @@ impl Limit {
 }
 
 impl Layout for Limit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT, &Self::RAMP];
+    const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::RAMP];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const ENCODE: Encode<Self> = |message, payload| {
         payload.end_after(1);
@@ -283,7 +281,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

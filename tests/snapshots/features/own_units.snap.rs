@@ -178,7 +178,6 @@ impl SetDose {
     pub const SET: Exchange = SET_ACCESS.of("set_dose", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -187,7 +186,7 @@ impl SetDose {
 }
 
 impl Layout for SetDose {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FLOW, &Self::WEIGHT];
+    const SIGNALS: AnySignals = &[&Self::FLOW, &Self::WEIGHT];
     const DECODE: Decode<Self> =
         |data| Self { flow_l_per_min: Self::FLOW.decode(data), weight_kg: Self::WEIGHT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -214,7 +213,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -223,7 +221,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -161,7 +161,6 @@ impl State {
     pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -170,7 +169,7 @@ impl State {
 }
 
 impl Layout for State {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CELLS];
+    const SIGNALS: AnySignals = &[&Self::CELLS];
     const DECODE: Decode<Self> = |data| Self { cells: Self::CELLS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::CELLS.put(message.cells, payload);
 }
@@ -198,7 +197,6 @@ impl Cells {
     pub const GROUP: LongSignal<u8> = LongSignal::new(2, Signal::new("group", Place::byte(1).bits(7, 4))).every(2);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<CellsPart>, Error> {
@@ -248,7 +246,7 @@ impl CellsPart {
 }
 
 impl Layout for CellsPart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
@@ -294,7 +292,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -190,7 +190,6 @@ impl Label {
     pub const HOURS: LongSignal<u32> = LongSignal::new(8, Signal::new("hours", Place::bytes(0, 3)).unit("h"));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
@@ -234,7 +233,7 @@ impl LabelPart {
 }
 
 impl Layout for LabelPart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
@@ -276,7 +275,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -285,7 +283,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

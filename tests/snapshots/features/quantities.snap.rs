@@ -274,7 +274,6 @@ impl Control {
     pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x03)).length(4);
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -283,7 +282,7 @@ impl Control {
 }
 
 impl Layout for Control {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MODE, &Self::POWER, &Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::MODE, &Self::POWER, &Self::VOLTAGE];
     const DECODE: Decode<Self> =
         |data| Self { mode: Self::MODE.get(data), power: Self::POWER.get(data), voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -311,7 +310,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -201,7 +201,6 @@ impl VoltageLimit {
     pub const WRITE: Exchange = WRITE_ACCESS.of("voltage_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -209,7 +208,6 @@ impl VoltageLimit {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -218,7 +216,7 @@ impl VoltageLimit {
 }
 
 impl Layout for VoltageLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -243,7 +241,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -153,7 +153,6 @@ impl Voltage {
     pub const READ: Exchange = READ_ACCESS.of("voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -162,7 +161,7 @@ impl Voltage {
 }
 
 impl Layout for Voltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -190,7 +189,6 @@ impl Revision {
     pub const READ: Exchange = READ_ACCESS_2.of("revision", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -199,7 +197,7 @@ impl Revision {
 }
 
 impl Layout for Revision {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::HARDWARE, &Self::SOFTWARE];
+    const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::SOFTWARE];
     const DECODE: Decode<Self> = |data| Self { hardware: Self::HARDWARE.get(data), software: Self::SOFTWARE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::HARDWARE.put(message.hardware, payload)?;
@@ -231,7 +229,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

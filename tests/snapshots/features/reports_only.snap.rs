@@ -83,7 +83,7 @@ impl Voltage {
 }
 
 impl Layout for Voltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -106,7 +106,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -205,7 +205,6 @@ impl SetCurrent {
         .fill_reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]);
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -214,7 +213,7 @@ impl SetCurrent {
 }
 
 impl Layout for SetCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.encode(message.current_a, payload);
 }
@@ -241,7 +240,6 @@ impl Stop {
         .fill_reply([0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00]);
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -250,7 +248,7 @@ impl Stop {
 }
 
 impl Layout for Stop {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::REASON];
+    const SIGNALS: AnySignals = &[&Self::REASON];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::REASON.put(message.reason, payload);
 }
@@ -279,7 +277,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -232,7 +232,6 @@ impl SetLimits {
     pub const SET: Exchange = SET_ACCESS.of("set_limits", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -241,7 +240,6 @@ impl SetLimits {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -251,7 +249,6 @@ impl SetLimits {
 
 impl Within<SetLimits> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetLimits>, Error> {
@@ -260,7 +257,7 @@ impl Within<SetLimits> {
 }
 
 impl Layout for SetLimits {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT, &Self::HEATING, &Self::ALARMS];
+    const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::HEATING, &Self::ALARMS];
     const DECODE: Decode<Self> = |data| Self {
         current_a: Self::CURRENT.get(data),
         heating: Self::HEATING.get(data),
@@ -291,7 +288,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -300,7 +296,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

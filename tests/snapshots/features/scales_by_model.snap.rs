@@ -214,7 +214,6 @@ impl SetOutput {
     pub const SET: Exchange = SET_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x002)).length(4);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -223,7 +222,6 @@ impl SetOutput {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -237,7 +235,6 @@ impl SetOutput {
     }
 
     /// Sets `current` to a number of a device model.
-    ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_current(&mut self, model: Model, value: f64) -> Result<(), Error> {
@@ -253,7 +250,6 @@ impl SetOutput {
     }
 
     /// Sets `temperature` to a number of a device model.
-    ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_temperature(&mut self, model: Model, value: f64) -> Result<(), Error> {
@@ -266,7 +262,6 @@ impl SetOutput {
 
 impl Within<SetOutput> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -275,7 +270,7 @@ impl Within<SetOutput> {
 }
 
 impl Layout for SetOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT, &Self::TEMPERATURE];
+    const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::TEMPERATURE];
     const DECODE: Decode<Self> =
         |data| Self { current_raw: Self::CURRENT.get(data), temperature_raw: Self::TEMPERATURE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -302,7 +297,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -311,7 +305,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -186,7 +186,6 @@ impl KeepAlive {
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
     /// Builds the request [`tell`](TELL_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -195,7 +194,7 @@ impl KeepAlive {
 }
 
 impl Layout for KeepAlive {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::OUTPUTS];
+    const SIGNALS: AnySignals = &[&Self::OUTPUTS];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::OUTPUTS.put(message.outputs, payload);
 }
@@ -223,7 +222,6 @@ impl Drift {
     pub const ASK: Exchange = ASK_ACCESS.of("drift", FRAME).length(6);
 
     /// Builds the request [`ask`](ASK_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn ask(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -232,7 +230,7 @@ impl Drift {
 }
 
 impl Layout for Drift {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::DRIFT, &Self::TURNS];
+    const SIGNALS: AnySignals = &[&Self::DRIFT, &Self::TURNS];
     const DECODE: Decode<Self> = |data| Self { drift_v: Self::DRIFT.decode(data), turns_rpm: Self::TURNS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::DRIFT.encode(message.drift_v, payload)?;
@@ -262,7 +260,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -140,7 +140,6 @@ impl State {
     pub const READ: Exchange = READ_ACCESS.of("state", FRAME.id(Identifier::NUMBER, 0x001)).length(4);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -149,7 +148,7 @@ impl State {
 }
 
 impl Layout for State {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
@@ -172,7 +171,6 @@ impl Load {
     pub const TELL: Exchange = TELL_ACCESS.of("load", FRAME.id(Identifier::NUMBER, 0x002)).length(4);
 
     /// Builds the report [`tell`](TELL_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -181,7 +179,7 @@ impl Load {
 }
 
 impl Layout for Load {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
+    const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power_w: Self::POWER.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power_w, payload);
 }
@@ -208,7 +206,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -267,7 +267,6 @@ impl Failures {
     pub const READ: Exchange = READ_ACCESS.of("failures", FRAME.id(Identifier::COMMAND, 0x18));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -276,7 +275,7 @@ impl Failures {
 }
 
 impl Layout for Failures {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FAILURE, &Self::MAKER];
+    const SIGNALS: AnySignals = &[&Self::FAILURE, &Self::MAKER];
     const DECODE: Decode<Self> = |data| Self { failure: Self::FAILURE.get(data), maker: Self::MAKER.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::FAILURE.put(message.failure, payload)?;
@@ -304,7 +303,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -161,7 +161,6 @@ impl Version {
     pub const READ: Exchange = READ_ACCESS.of("version", FRAME.id(Identifier::COMMAND, 0x05));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -170,7 +169,7 @@ impl Version {
 }
 
 impl Layout for Version {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -198,7 +197,6 @@ impl Label {
     pub const READ: Exchange = READ_ACCESS.of("label", FRAME.id(Identifier::COMMAND, 0x06));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -207,7 +205,7 @@ impl Label {
 }
 
 impl Layout for Label {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FAMILY, &Self::CODE];
+    const SIGNALS: AnySignals = &[&Self::FAMILY, &Self::CODE];
     const DECODE: Decode<Self> = |data| Self { family: Self::FAMILY.get(data), code: Self::CODE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::FAMILY.put(message.family, payload)?;
@@ -239,7 +237,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -178,7 +178,6 @@ impl Temperature {
     pub const READ: Exchange = READ_ACCESS.of("temperature", FRAME.id(Identifier::COMMAND, 0x01)).length(4);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -187,7 +186,7 @@ impl Temperature {
 }
 
 impl Layout for Temperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
@@ -203,7 +202,6 @@ impl Alive {
     pub const TELL: Exchange = TELL_ACCESS.of("alive", FRAME.id(Identifier::COMMAND, 0x02)).length(4);
 
     /// Builds the request [`tell`](TELL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn tell(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -233,7 +231,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -272,7 +272,6 @@ impl Profile {
 
     /// Returns what sends the report [`of_charger`](OF_CHARGER_ACCESS) with these values. The data are
     /// written to `buffer`, for which `LONGEST` bytes are enough.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
     /// with too few bytes.
@@ -334,7 +333,6 @@ impl TpRequestToSend {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -343,7 +341,7 @@ impl TpRequestToSend {
 }
 
 impl Layout for TpRequestToSend {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self {
         size: Self::SIZE.get(data),
         packets: Self::PACKETS.get(data),
@@ -393,7 +391,6 @@ impl TpClearToSend {
         .fill_request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -402,7 +399,7 @@ impl TpClearToSend {
 }
 
 impl Layout for TpClearToSend {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -445,7 +442,6 @@ impl TpEndOfMessage {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -454,7 +450,7 @@ impl TpEndOfMessage {
 }
 
 impl Layout for TpEndOfMessage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -497,7 +493,6 @@ impl TpBroadcast {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -506,7 +501,7 @@ impl TpBroadcast {
 }
 
 impl Layout for TpBroadcast {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -545,7 +540,6 @@ impl TpAbort {
         .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -554,7 +548,7 @@ impl TpAbort {
 }
 
 impl Layout for TpAbort {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::REASON, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::REASON.put(message.reason, payload)?;
@@ -588,7 +582,6 @@ impl TpData {
         TP_OF_CONTROLLER_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -597,7 +590,7 @@ impl TpData {
 }
 
 impl Layout for TpData {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::NUMBER, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::NUMBER.put(message.number, payload)?;
@@ -652,7 +645,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -261,7 +261,7 @@ impl CellsFrame {
 }
 
 impl Layout for CellsFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::VOLTAGE_1,
         &Self::GROUP_1,
         &Self::VOLTAGE_2,
@@ -349,7 +349,6 @@ impl TpRequestToSend {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -358,7 +357,7 @@ impl TpRequestToSend {
 }
 
 impl Layout for TpRequestToSend {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self {
         size: Self::SIZE.get(data),
         packets: Self::PACKETS.get(data),
@@ -408,7 +407,6 @@ impl TpClearToSend {
         .fill_request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -417,7 +415,7 @@ impl TpClearToSend {
 }
 
 impl Layout for TpClearToSend {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -460,7 +458,6 @@ impl TpEndOfMessage {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -469,7 +466,7 @@ impl TpEndOfMessage {
 }
 
 impl Layout for TpEndOfMessage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -512,7 +509,6 @@ impl TpBroadcast {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -521,7 +517,7 @@ impl TpBroadcast {
 }
 
 impl Layout for TpBroadcast {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -560,7 +556,6 @@ impl TpAbort {
         .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -569,7 +564,7 @@ impl TpAbort {
 }
 
 impl Layout for TpAbort {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::REASON, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::REASON.put(message.reason, payload)?;
@@ -603,7 +598,6 @@ impl TpData {
         TP_OF_CONTROLLER_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -612,7 +606,7 @@ impl TpData {
 }
 
 impl Layout for TpData {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::NUMBER, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::NUMBER.put(message.number, payload)?;
@@ -668,7 +662,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -237,7 +237,6 @@ impl SetMode {
     pub const SET: Exchange = SET_ACCESS.of("set_mode", FRAME.id(Identifier::COMMAND, 0x003)).length(4);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -246,7 +245,6 @@ impl SetMode {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -256,7 +254,6 @@ impl SetMode {
 
 impl Within<SetMode> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetMode>, Error> {
@@ -265,7 +262,7 @@ impl Within<SetMode> {
 }
 
 impl Layout for SetMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MODE, &Self::DELAY];
+    const SIGNALS: AnySignals = &[&Self::MODE, &Self::DELAY];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data), delay_s: Self::DELAY.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::MODE.put(message.mode, payload)?;
@@ -291,7 +288,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -300,7 +296,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -139,7 +139,6 @@ impl Wanted {
     pub const DEMAND: Exchange = DEMAND_ACCESS.of("wanted", FRAME.id(Identifier::ID, 0x305));
 
     /// Builds the request [`demand`](DEMAND_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn demand(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -148,7 +147,7 @@ impl Wanted {
 }
 
 impl Layout for Wanted {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.put(message.current_a, payload);
 }
@@ -172,7 +171,7 @@ impl Limits {
 }
 
 impl Layout for Limits {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VOLTAGE.encode(message.voltage_v, payload);
 }
@@ -196,7 +195,6 @@ impl Cycles {
     pub const QUERY: Exchange = QUERY_ACCESS.of("cycles", FRAME);
 
     /// Builds the request [`query`](QUERY_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn query(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -205,7 +203,7 @@ impl Cycles {
 }
 
 impl Layout for Cycles {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::COUNT];
+    const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
 }
@@ -234,7 +232,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -853,7 +853,6 @@ impl PackValues {
     pub const READ: Exchange = READ_ACCESS.of("pack_values", FRAME.id(Identifier::COMMAND, 0x90));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -862,7 +861,7 @@ impl PackValues {
 }
 
 impl Layout for PackValues {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::CUMULATIVE_VOLTAGE, &Self::GATHERED_VOLTAGE, &Self::CURRENT, &Self::STATE_OF_CHARGE];
     const DECODE: Decode<Self> = |data| Self {
         cumulative_voltage_v: Self::CUMULATIVE_VOLTAGE.decode(data),
@@ -923,7 +922,6 @@ impl CellVoltageExtremes {
     pub const READ: Exchange = READ_ACCESS.of("cell_voltage_extremes", FRAME.id(Identifier::COMMAND, 0x91));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -932,7 +930,7 @@ impl CellVoltageExtremes {
 }
 
 impl Layout for CellVoltageExtremes {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_VOLTAGE, &Self::MAXIMUM_CELL, &Self::MINIMUM_VOLTAGE, &Self::MINIMUM_CELL];
     const DECODE: Decode<Self> = |data| Self {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode(data),
@@ -999,7 +997,6 @@ impl TemperatureExtremes {
     pub const READ: Exchange = READ_ACCESS.of("temperature_extremes", FRAME.id(Identifier::COMMAND, 0x92));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1008,7 +1005,7 @@ impl TemperatureExtremes {
 }
 
 impl Layout for TemperatureExtremes {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_TEMPERATURE, &Self::MAXIMUM_CELL, &Self::MINIMUM_TEMPERATURE, &Self::MINIMUM_CELL];
     const DECODE: Decode<Self> = |data| Self {
         maximum_temperature_c: Self::MAXIMUM_TEMPERATURE.decode(data),
@@ -1076,7 +1073,6 @@ impl ChargeState {
     pub const READ: Exchange = READ_ACCESS.of("charge_state", FRAME.id(Identifier::COMMAND, 0x93));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1085,7 +1081,7 @@ impl ChargeState {
 }
 
 impl Layout for ChargeState {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::STATE, &Self::CHARGE_MOS, &Self::DISCHARGE_MOS, &Self::LIFE, &Self::REMAINING_CAPACITY];
     const DECODE: Decode<Self> = |data| Self {
         state: Self::STATE.get(data),
@@ -1141,7 +1137,6 @@ impl StatusInformation {
     pub const READ: Exchange = READ_ACCESS.of("status_information", FRAME.id(Identifier::COMMAND, 0x94));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1150,7 +1145,7 @@ impl StatusInformation {
 }
 
 impl Layout for StatusInformation {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::CELL_COUNT, &Self::TEMPERATURE_COUNT, &Self::CHARGER, &Self::LOAD, &Self::INPUTS_OUTPUTS];
     const DECODE: Decode<Self> = |data| Self {
         cell_count: Self::CELL_COUNT.get(data),
@@ -1213,7 +1208,6 @@ impl CellVoltages {
     pub const READ: Exchange = READ_ACCESS.of("cell_voltages", FRAME.id(Identifier::COMMAND, 0x95));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1222,8 +1216,7 @@ impl CellVoltages {
 }
 
 impl Layout for CellVoltages {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::PART, &Self::VOLTAGE_1, &Self::VOLTAGE_2, &Self::VOLTAGE_3];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::VOLTAGE_1, &Self::VOLTAGE_2, &Self::VOLTAGE_3];
     const DECODE: Decode<Self> = |data| Self {
         part: Self::PART.get(data),
         voltage_v: [Self::VOLTAGE_1.decode(data), Self::VOLTAGE_2.decode(data), Self::VOLTAGE_3.decode(data)],
@@ -1294,7 +1287,6 @@ impl Temperatures {
     pub const READ: Exchange = READ_ACCESS.of("temperatures", FRAME.id(Identifier::COMMAND, 0x96));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1303,7 +1295,7 @@ impl Temperatures {
 }
 
 impl Layout for Temperatures {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::PART,
         &Self::TEMPERATURE_1,
         &Self::TEMPERATURE_2,
@@ -1356,7 +1348,6 @@ impl BalanceState {
     pub const READ: Exchange = READ_ACCESS.of("balance_state", FRAME.id(Identifier::COMMAND, 0x97));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1365,7 +1356,7 @@ impl BalanceState {
 }
 
 impl Layout for BalanceState {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::BALANCE];
+    const SIGNALS: AnySignals = &[&Self::BALANCE];
     const DECODE: Decode<Self> = |data| Self { balance: Self::BALANCE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::BALANCE.put(message.balance, payload);
 }
@@ -1396,7 +1387,6 @@ impl FailureStatus {
     pub const READ: Exchange = READ_ACCESS.of("failure_status", FRAME.id(Identifier::COMMAND, 0x98));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1405,7 +1395,7 @@ impl FailureStatus {
 }
 
 impl Layout for FailureStatus {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::FAILURES, &Self::FAULT_CODE];
+    const SIGNALS: AnySignals = &[&Self::FAILURES, &Self::FAULT_CODE];
     const DECODE: Decode<Self> =
         |data| Self { failures: Self::FAILURES.get(data), fault_code: Self::FAULT_CODE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1466,7 +1456,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

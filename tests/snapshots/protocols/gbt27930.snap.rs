@@ -1713,7 +1713,6 @@ impl Chm {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("chm", FRAME.id(Identifier::FORMAT, 0x26)).length(3);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1722,7 +1721,7 @@ impl Chm {
 }
 
 impl Layout for Chm {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VERSION_MINOR, &Self::VERSION_MAJOR];
+    const SIGNALS: AnySignals = &[&Self::VERSION_MINOR, &Self::VERSION_MAJOR];
     const DECODE: Decode<Self> =
         |data| Self { version_minor: Self::VERSION_MINOR.get(data), version_major: Self::VERSION_MAJOR.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1757,7 +1756,7 @@ impl Bhm {
 }
 
 impl Layout for Bhm {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MAXIMUM_VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::MAXIMUM_VOLTAGE];
     const DECODE: Decode<Self> = |data| Self { maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8) };
     const ENCODE: Encode<Self> =
         |message, payload| Self::MAXIMUM_VOLTAGE.encode_some(message.maximum_voltage_v, payload);
@@ -1803,7 +1802,6 @@ impl Crm {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("crm", FRAME.id(Identifier::FORMAT, 0x01));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1812,7 +1810,7 @@ impl Crm {
 }
 
 impl Layout for Crm {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::RESULT, &Self::CHARGER_NUMBER, &Self::AREA_CODE];
+    const SIGNALS: AnySignals = &[&Self::RESULT, &Self::CHARGER_NUMBER, &Self::AREA_CODE];
     const DECODE: Decode<Self> = |data| Self {
         result: Self::RESULT.get(data),
         charger_number: Self::CHARGER_NUMBER.get(data),
@@ -2266,7 +2264,6 @@ impl Cts {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cts", FRAME.id(Identifier::FORMAT, 0x07)).length(7);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -2275,8 +2272,7 @@ impl Cts {
 }
 
 impl Layout for Cts {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::SECOND, &Self::MINUTE, &Self::HOUR, &Self::DAY, &Self::MONTH, &Self::YEAR];
+    const SIGNALS: AnySignals = &[&Self::SECOND, &Self::MINUTE, &Self::HOUR, &Self::DAY, &Self::MONTH, &Self::YEAR];
     const DECODE: Decode<Self> = |data| Self {
         second: Self::SECOND.get_some(data, 8),
         minute: Self::MINUTE.get_some(data, 8),
@@ -2362,7 +2358,6 @@ impl Cml {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("cml", FRAME.id(Identifier::FORMAT, 0x08));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -2371,7 +2366,7 @@ impl Cml {
 }
 
 impl Layout for Cml {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE, &Self::MAXIMUM_CURRENT, &Self::MINIMUM_CURRENT];
     const DECODE: Decode<Self> = |data| Self {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.decode_some(data, 8),
@@ -2409,7 +2404,7 @@ impl Bro {
 }
 
 impl Layout for Bro {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::READINESS];
+    const SIGNALS: AnySignals = &[&Self::READINESS];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::READINESS.put(message.readiness, payload);
 }
@@ -2435,7 +2430,6 @@ impl Cro {
         CHARGER_CYCLE_ACCESS.of("cro", FRAME.id(Identifier::FORMAT, 0x0A)).length(1).send_id(Identifier::PRIORITY, 0x4);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -2444,7 +2438,7 @@ impl Cro {
 }
 
 impl Layout for Cro {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::READINESS];
+    const SIGNALS: AnySignals = &[&Self::READINESS];
     const DECODE: Decode<Self> = |data| Self { readiness: Self::READINESS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::READINESS.put(message.readiness, payload);
 }
@@ -2493,7 +2487,7 @@ impl Bcl {
 }
 
 impl Layout for Bcl {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT, &Self::MODE];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::MODE];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode_some(data, 8),
         current_a: Self::CURRENT.decode_some(data, 8),
@@ -2691,7 +2685,6 @@ impl Ccs {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x00]);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -2700,7 +2693,7 @@ impl Ccs {
 }
 
 impl Layout for Ccs {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::OUTPUT_VOLTAGE, &Self::OUTPUT_CURRENT, &Self::CHARGING_TIME, &Self::PERMISSION, &Self::BYTE_8];
     const DECODE: Decode<Self> = |data| <Self as Layout>::read_some(data, 8);
     const ENCODE: Encode<Self> = |message, payload| {
@@ -2846,7 +2839,7 @@ impl Bsm {
 }
 
 impl Layout for Bsm {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::HIGHEST_CELL,
         &Self::HIGHEST_TEMPERATURE,
         &Self::HIGHEST_TEMPERATURE_POINT,
@@ -3004,7 +2997,7 @@ impl BmvFrame {
 }
 
 impl Layout for BmvFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::CELL_VOLTAGE_1,
         &Self::CELL_GROUP_1,
         &Self::CELL_VOLTAGE_2,
@@ -3177,7 +3170,7 @@ impl BmtFrame {
 }
 
 impl Layout for BmtFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::TEMPERATURE_1,
         &Self::TEMPERATURE_2,
         &Self::TEMPERATURE_3,
@@ -3310,7 +3303,7 @@ impl BspFrame {
 }
 
 impl Layout for BspFrame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::RESERVED_1,
         &Self::RESERVED_2,
         &Self::RESERVED_3,
@@ -3486,7 +3479,7 @@ impl Bst {
 }
 
 impl Layout for Bst {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::TARGET_SOC,
         &Self::TOTAL_VOLTAGE,
         &Self::CELL_VOLTAGE,
@@ -3643,7 +3636,6 @@ impl Cst {
         .fill_request([0x00, 0x00, 0xF0, 0xF0, 0x00, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -3652,7 +3644,7 @@ impl Cst {
 }
 
 impl Layout for Cst {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::CONDITION_REACHED,
         &Self::MANUAL_STOP,
         &Self::FAULT_STOP,
@@ -3768,7 +3760,7 @@ impl Bsd {
 }
 
 impl Layout for Bsd {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::STATE_OF_CHARGE,
         &Self::LOWEST_CELL_VOLTAGE,
         &Self::HIGHEST_CELL_VOLTAGE,
@@ -3836,7 +3828,6 @@ impl Csd {
     pub const CHARGER_CYCLE: Exchange = CHARGER_CYCLE_ACCESS.of("csd", FRAME.id(Identifier::FORMAT, 0x1D));
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -3845,8 +3836,7 @@ impl Csd {
 }
 
 impl Layout for Csd {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::CHARGING_TIME, &Self::OUTPUT_ENERGY, &Self::CHARGER_NUMBER];
+    const SIGNALS: AnySignals = &[&Self::CHARGING_TIME, &Self::OUTPUT_ENERGY, &Self::CHARGER_NUMBER];
     const DECODE: Decode<Self> = |data| Self {
         charging_time_min: Self::CHARGING_TIME.get_some(data, 8),
         output_energy_wh: Self::OUTPUT_ENERGY.decode_some(data, 8),
@@ -3924,7 +3914,7 @@ impl Bem {
 }
 
 impl Layout for Bem {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::CRM_NOT_RECOGNISED,
         &Self::CRM_RECOGNISED,
         &Self::CTS_AND_CML,
@@ -4017,7 +4007,6 @@ impl Cem {
         .fill_request([0xFC, 0xF0, 0xC0, 0xFC, 0x00, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4026,8 +4015,7 @@ impl Cem {
 }
 
 impl Layout for Cem {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::BRM, &Self::BCP, &Self::BRO, &Self::BCS, &Self::BCL, &Self::BST, &Self::BSD];
+    const SIGNALS: AnySignals = &[&Self::BRM, &Self::BCP, &Self::BRO, &Self::BCS, &Self::BCL, &Self::BST, &Self::BSD];
     const DECODE: Decode<Self> = |data| Self {
         brm: Self::BRM.get(data),
         bcp: Self::BCP.get(data),
@@ -4101,7 +4089,6 @@ impl Dm1 {
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
     /// are written to `buffer`, for which `LONGEST` bytes are enough.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
     /// with too few bytes.
@@ -4203,7 +4190,6 @@ impl Dm1Frame {
     pub const RESERVED: Data = [0x00; 8];
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4212,7 +4198,7 @@ impl Dm1Frame {
 }
 
 impl Layout for Dm1Frame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::CODE_SPN_LOW_1,
         &Self::CODE_FMI_1,
         &Self::CODE_SPN_HIGH_1,
@@ -4319,7 +4305,6 @@ impl Dm2 {
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
     /// are written to `buffer`, for which `LONGEST` bytes are enough.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
     /// with too few bytes.
@@ -4421,7 +4406,6 @@ impl Dm2Frame {
     pub const RESERVED: Data = [0x00; 8];
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4430,7 +4414,7 @@ impl Dm2Frame {
 }
 
 impl Layout for Dm2Frame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::CODE_SPN_LOW_1,
         &Self::CODE_FMI_1,
         &Self::CODE_SPN_HIGH_1,
@@ -4507,7 +4491,6 @@ impl Dm3 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm3", FRAME.id(Identifier::FORMAT, 0x22)).length(2);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4516,7 +4499,7 @@ impl Dm3 {
 }
 
 impl Layout for Dm3 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4538,7 +4521,6 @@ impl Dm4 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm4", FRAME.id(Identifier::FORMAT, 0x23)).length(0);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4560,7 +4542,6 @@ impl Dm5 {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("dm5", FRAME.id(Identifier::FORMAT, 0x24)).length(0);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4594,7 +4575,6 @@ impl Dm6 {
 
     /// Returns what sends the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values. The data
     /// are written to `buffer`, for which `LONGEST` bytes are enough.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, undocumented addresses, and a buffer
     /// with too few bytes.
@@ -4654,7 +4634,6 @@ impl Dm6Frame {
     pub const RESERVED: Data = [0x00; 8];
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4663,7 +4642,7 @@ impl Dm6Frame {
 }
 
 impl Layout for Dm6Frame {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::DATA_1,
         &Self::DATA_2,
         &Self::DATA_3,
@@ -4746,7 +4725,6 @@ impl Rqst {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("rqst", FRAME.id(Identifier::FORMAT, 0xEA)).length(3);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4755,7 +4733,7 @@ impl Rqst {
 }
 
 impl Layout for Rqst {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PGN];
+    const SIGNALS: AnySignals = &[&Self::PGN];
     const DECODE: Decode<Self> = |data| Self { pgn: Self::PGN.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::PGN.put(message.pgn, payload);
 }
@@ -4791,7 +4769,6 @@ impl Ackm {
     pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("ackm", FRAME.id(Identifier::FORMAT, 0xE8));
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4800,7 +4777,7 @@ impl Ackm {
 }
 
 impl Layout for Ackm {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CONTROL, &Self::GROUP_FUNCTION, &Self::PGN];
+    const SIGNALS: AnySignals = &[&Self::CONTROL, &Self::GROUP_FUNCTION, &Self::PGN];
     const DECODE: Decode<Self> = |data| Self {
         control: Self::CONTROL.get(data),
         group_function: Self::GROUP_FUNCTION.get_some(data, 8),
@@ -4849,7 +4826,6 @@ impl TpRequestToSend {
         .send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4858,7 +4834,7 @@ impl TpRequestToSend {
 }
 
 impl Layout for TpRequestToSend {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::MOST, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self {
         size: Self::SIZE.get(data),
         packets: Self::PACKETS.get(data),
@@ -4909,7 +4885,6 @@ impl TpClearToSend {
         .fill_request([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4918,7 +4893,7 @@ impl TpClearToSend {
 }
 
 impl Layout for TpClearToSend {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::PACKETS, &Self::NEXT, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { packets: Self::PACKETS.get(data), next: Self::NEXT.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -4961,7 +4936,6 @@ impl TpEndOfMessage {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4970,7 +4944,7 @@ impl TpEndOfMessage {
 }
 
 impl Layout for TpEndOfMessage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -5017,7 +4991,6 @@ impl TpBroadcast {
         .fill_request([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -5026,7 +4999,7 @@ impl TpBroadcast {
 }
 
 impl Layout for TpBroadcast {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::SIZE, &Self::PACKETS, &Self::GROUP];
     const DECODE: Decode<Self> =
         |data| Self { size: Self::SIZE.get(data), packets: Self::PACKETS.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -5066,7 +5039,6 @@ impl TpAbort {
         .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -5075,7 +5047,7 @@ impl TpAbort {
 }
 
 impl Layout for TpAbort {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::REASON, &Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::REASON, &Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { reason: Self::REASON.get(data), group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::REASON.put(message.reason, payload)?;
@@ -5109,7 +5081,6 @@ impl TpData {
         TP_OF_CONTROLLER_ACCESS_2.of("tp_data", FRAME.id(Identifier::FORMAT, 0xEB)).send_id(Identifier::PRIORITY, 0x7);
 
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -5118,7 +5089,7 @@ impl TpData {
 }
 
 impl Layout for TpData {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::NUMBER, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::NUMBER.put(message.number, payload)?;
@@ -5250,7 +5221,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

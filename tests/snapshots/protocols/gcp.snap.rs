@@ -1067,7 +1067,6 @@ impl SystemOutput {
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1076,7 +1075,7 @@ impl SystemOutput {
 }
 
 impl Layout for SystemOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::VOLTAGE.put(message.voltage_v, payload)?;
@@ -1106,7 +1105,6 @@ impl ModuleCount {
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1115,7 +1113,7 @@ impl ModuleCount {
 }
 
 impl Layout for ModuleCount {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::COUNT];
+    const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
 }
@@ -1147,7 +1145,6 @@ impl ModuleOutput {
     pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1156,7 +1153,7 @@ impl ModuleOutput {
 }
 
 impl Layout for ModuleOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::VOLTAGE.put(message.voltage_v, payload)?;
@@ -1209,7 +1206,6 @@ impl ModuleStatus {
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1218,8 +1214,7 @@ impl ModuleStatus {
 }
 
 impl Layout for ModuleStatus {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0];
+    const SIGNALS: AnySignals = &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0];
     const DECODE: Decode<Self> = |data| Self {
         group: Self::GROUP.get(data),
         temperature_c: Self::TEMPERATURE.get(data),
@@ -1281,7 +1276,6 @@ impl InputVoltage {
     ]);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1290,7 +1284,7 @@ impl InputVoltage {
 }
 
 impl Layout for InputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::AB, &Self::BC, &Self::CA];
+    const SIGNALS: AnySignals = &[&Self::AB, &Self::BC, &Self::CA];
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1345,7 +1339,6 @@ impl InputVoltageDc {
         .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1354,7 +1347,7 @@ impl InputVoltageDc {
 }
 
 impl Layout for InputVoltageDc {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PLUS_MINUS, &Self::PLUS_PE, &Self::MINUS_PE];
+    const SIGNALS: AnySignals = &[&Self::PLUS_MINUS, &Self::PLUS_PE, &Self::MINUS_PE];
     const DECODE: Decode<Self> = |data| Self {
         plus_minus_v: Self::PLUS_MINUS.decode(data),
         plus_pe_v: Self::PLUS_PE.decode(data),
@@ -1401,7 +1394,6 @@ impl ExternalVoltage {
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1410,7 +1402,7 @@ impl ExternalVoltage {
 }
 
 impl Layout for ExternalVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1445,7 +1437,6 @@ impl LimitInputCurrent {
         .models(&[Model::PsM2_3ac1000dc30kw as u8, Model::Ps3ac500dc20kw as u8, Model::PsM2_3ac500dc20kw as u8]);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1454,7 +1445,6 @@ impl LimitInputCurrent {
     }
 
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1464,7 +1454,6 @@ impl LimitInputCurrent {
 
 impl Within<LimitInputCurrent> {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1473,7 +1462,7 @@ impl Within<LimitInputCurrent> {
 }
 
 impl Layout for LimitInputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { current_a: Self::CURRENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::CURRENT.put(message.current_a, payload);
 }
@@ -1527,7 +1516,6 @@ impl SetOperatingMode {
         .models(&[Model::PsM2_825dc1000dc30kw as u8]);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1536,7 +1524,6 @@ impl SetOperatingMode {
     }
 
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1546,7 +1533,6 @@ impl SetOperatingMode {
 
 impl Within<SetOperatingMode> {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1555,7 +1541,7 @@ impl Within<SetOperatingMode> {
 }
 
 impl Layout for SetOperatingMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MODE];
+    const SIGNALS: AnySignals = &[&Self::MODE];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::MODE.put(message.mode, payload);
 }
@@ -1616,7 +1602,6 @@ impl SetWalkIn {
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetWalkInReply>, Error> {
@@ -1625,7 +1610,7 @@ impl SetWalkIn {
 }
 
 impl Layout for SetWalkIn {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::WALK_IN, &Self::INTERVAL];
+    const SIGNALS: AnySignals = &[&Self::WALK_IN, &Self::INTERVAL];
     const DECODE: Decode<Self> =
         |data| Self { walk_in: Self::WALK_IN.get(data), interval_s: Self::INTERVAL.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1647,7 +1632,7 @@ impl SetWalkInReply {
 }
 
 impl Layout for SetWalkInReply {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&SetWalkIn::WALK_IN];
+    const SIGNALS: AnySignals = &[&SetWalkIn::WALK_IN];
     const DECODE: Decode<Self> = |data| Self { walk_in: SetWalkIn::WALK_IN.get(data) };
     const ENCODE: Encode<Self> = |message, payload| SetWalkIn::WALK_IN.put(message.walk_in, payload);
 }
@@ -1686,7 +1671,6 @@ impl SetLed {
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1695,7 +1679,7 @@ impl SetLed {
 }
 
 impl Layout for SetLed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::LED];
+    const SIGNALS: AnySignals = &[&Self::LED];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::LED.put(message.led, payload);
 }
@@ -1727,7 +1711,6 @@ impl SwitchModules {
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.id(Identifier::COMMAND, 0x1A));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1736,7 +1719,7 @@ impl SwitchModules {
 }
 
 impl Layout for SwitchModules {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
+    const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
 }
@@ -1772,7 +1755,6 @@ impl SetTotalOutput {
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1781,7 +1763,7 @@ impl SetTotalOutput {
 }
 
 impl Layout for SetTotalOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1820,7 +1802,6 @@ impl SetModuleOutput {
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1829,7 +1810,7 @@ impl SetModuleOutput {
 }
 
 impl Layout for SetModuleOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1898,7 +1879,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -1907,7 +1887,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

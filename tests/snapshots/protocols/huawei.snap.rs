@@ -1240,7 +1240,6 @@ impl MeasuredData {
     ]);
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1338,7 +1337,6 @@ impl OperatingHours {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1347,7 +1345,7 @@ impl OperatingHours {
 }
 
 impl Layout for OperatingHours {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_h, payload);
 }
@@ -1379,7 +1377,6 @@ impl InputPower {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1388,7 +1385,7 @@ impl InputPower {
 }
 
 impl Layout for InputPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
@@ -1417,7 +1414,6 @@ impl InputFrequency {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1426,7 +1422,7 @@ impl InputFrequency {
 }
 
 impl Layout for InputFrequency {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_hz, payload);
 }
@@ -1455,7 +1451,6 @@ impl InputCurrent {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1464,7 +1459,7 @@ impl InputCurrent {
 }
 
 impl Layout for InputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -1493,7 +1488,6 @@ impl OutputPower {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1502,7 +1496,7 @@ impl OutputPower {
 }
 
 impl Layout for OutputPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
@@ -1531,7 +1525,6 @@ impl Efficiency {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1540,7 +1533,7 @@ impl Efficiency {
 }
 
 impl Layout for Efficiency {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
@@ -1570,7 +1563,6 @@ impl OutputVoltage {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1579,7 +1571,7 @@ impl OutputVoltage {
 }
 
 impl Layout for OutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -1629,7 +1621,6 @@ impl MaximumOutputCurrent {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1643,7 +1634,6 @@ impl MaximumOutputCurrent {
     }
 
     /// Sets `value` to a number of a device model.
-    ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
@@ -1655,7 +1645,7 @@ impl MaximumOutputCurrent {
 }
 
 impl Layout for MaximumOutputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
 }
@@ -1687,7 +1677,6 @@ impl InputVoltage {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1696,7 +1685,7 @@ impl InputVoltage {
 }
 
 impl Layout for InputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -1725,7 +1714,6 @@ impl OutputTemperature {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1734,7 +1722,7 @@ impl OutputTemperature {
 }
 
 impl Layout for OutputTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
@@ -1768,7 +1756,6 @@ impl InputTemperature {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1777,7 +1764,7 @@ impl InputTemperature {
 }
 
 impl Layout for InputTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
@@ -1810,7 +1797,6 @@ impl OutputCurrent1 {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1819,7 +1805,7 @@ impl OutputCurrent1 {
 }
 
 impl Layout for OutputCurrent1 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -1852,7 +1838,6 @@ impl OutputCurrent2 {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1861,7 +1846,7 @@ impl OutputCurrent2 {
 }
 
 impl Layout for OutputCurrent2 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -1897,7 +1882,6 @@ impl Alarms {
         .answers(&[Some(Who::One), Some(Who::Each), None, None, None, None, None]);
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1906,7 +1890,7 @@ impl Alarms {
 }
 
 impl Layout for Alarms {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1941,7 +1925,6 @@ impl FanState {
     pub const GET: Exchange = GET_ACCESS.of("fan_state", FRAME.data(REGISTER_SELECTOR.place, 0x187));
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1950,7 +1933,7 @@ impl FanState {
 }
 
 impl Layout for FanState {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MINIMUM_DUTY, &Self::TARGET_DUTY, &Self::SPEED];
+    const SIGNALS: AnySignals = &[&Self::MINIMUM_DUTY, &Self::TARGET_DUTY, &Self::SPEED];
     const DECODE: Decode<Self> = |data| Self {
         minimum_duty_percent: Self::MINIMUM_DUTY.decode(data),
         target_duty_percent: Self::TARGET_DUTY.decode(data),
@@ -1989,7 +1972,6 @@ impl Information {
     pub const READ_ALL: Exchange = READ_ALL_ACCESS.of("information", FRAME.id(Identifier::COMMAND, 0x50));
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -2056,7 +2038,7 @@ impl CharacteristicData {
 }
 
 impl Layout for CharacteristicData {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2085,7 +2067,7 @@ impl SerialNumber {
 }
 
 impl Layout for SerialNumber {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2113,7 +2095,7 @@ impl Barcode1 {
 }
 
 impl Layout for Barcode1 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2141,7 +2123,7 @@ impl Barcode2 {
 }
 
 impl Layout for Barcode2 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2178,7 +2160,7 @@ impl Versions {
 }
 
 impl Layout for Versions {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
+    const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
     const DECODE: Decode<Self> =
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -2214,7 +2196,7 @@ impl HardwareAddress {
 }
 
 impl Layout for HardwareAddress {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2241,7 +2223,6 @@ impl ELabel {
     pub const TEXT: LongText<Text<1200>> = LongText::new(0, Signal::new("text", Place::byte(0))).at_least(0);
 
     /// Builds the request [`read_text`](READ_TEXT_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_text(route: impl Into<Route<Target>>) -> Result<Request<ELabelPart>, Error> {
@@ -2281,7 +2262,7 @@ impl ELabelPart {
 }
 
 impl Layout for ELabelPart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
@@ -2336,7 +2317,6 @@ impl OutputVoltageSetting {
     pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(REGISTER_SELECTOR.place, 0x100));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2345,7 +2325,6 @@ impl OutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2355,7 +2334,6 @@ impl OutputVoltageSetting {
 
 impl Within<OutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
@@ -2364,7 +2342,7 @@ impl Within<OutputVoltageSetting> {
 }
 
 impl Layout for OutputVoltageSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2401,7 +2379,6 @@ impl DefaultOutputVoltage {
     pub const SET: Exchange = SET_ACCESS.of("default_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x101));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2410,7 +2387,6 @@ impl DefaultOutputVoltage {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2420,7 +2396,6 @@ impl DefaultOutputVoltage {
 
 impl Within<DefaultOutputVoltage> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
@@ -2429,7 +2404,7 @@ impl Within<DefaultOutputVoltage> {
 }
 
 impl Layout for DefaultOutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2464,7 +2439,6 @@ impl OvervoltageProtection {
     pub const SET: Exchange = SET_ACCESS.of("overvoltage_protection", FRAME.data(REGISTER_SELECTOR.place, 0x102));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2473,7 +2447,6 @@ impl OvervoltageProtection {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2483,7 +2456,6 @@ impl OvervoltageProtection {
 
 impl Within<OvervoltageProtection> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtection>, Error> {
@@ -2492,7 +2464,7 @@ impl Within<OvervoltageProtection> {
 }
 
 impl Layout for OvervoltageProtection {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2546,7 +2518,6 @@ impl CurrentLimit {
     pub const SET: Exchange = SET_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x103));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2555,7 +2526,6 @@ impl CurrentLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2569,7 +2539,6 @@ impl CurrentLimit {
     }
 
     /// Sets `value` to a number of a device model.
-    ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
@@ -2581,7 +2550,6 @@ impl CurrentLimit {
 
 impl Within<CurrentLimit> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<CurrentLimit>, Error> {
@@ -2590,7 +2558,7 @@ impl Within<CurrentLimit> {
 }
 
 impl Layout for CurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
 }
@@ -2644,7 +2612,6 @@ impl DefaultCurrentLimit {
     pub const SET: Exchange = SET_ACCESS.of("default_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x104));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2653,7 +2620,6 @@ impl DefaultCurrentLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2667,7 +2633,6 @@ impl DefaultCurrentLimit {
     }
 
     /// Sets `value` to a number of a device model.
-    ///
     /// # Errors
     /// Refuses a model without a scale, and a value outside its limits.
     pub fn set_value(&mut self, model: Model, value: f64) -> Result<(), Error> {
@@ -2680,7 +2645,6 @@ impl DefaultCurrentLimit {
 
 impl Within<DefaultCurrentLimit> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultCurrentLimit>, Error> {
@@ -2689,7 +2653,7 @@ impl Within<DefaultCurrentLimit> {
 }
 
 impl Layout for DefaultCurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_raw: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_raw, payload);
 }
@@ -2723,7 +2687,6 @@ impl InputCurrentLimit {
     pub const SET: Exchange = SET_ACCESS.of("input_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x109));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2732,7 +2695,7 @@ impl InputCurrentLimit {
 }
 
 impl Layout for InputCurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::STATE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::STATE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { state: Self::STATE.get(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::STATE.put(message.state, payload)?;
@@ -2773,7 +2736,6 @@ impl FanDuty {
     pub const SET: Exchange = SET_ACCESS.of("fan_duty", FRAME.data(REGISTER_SELECTOR.place, 0x114));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2782,7 +2744,6 @@ impl FanDuty {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2792,7 +2753,6 @@ impl FanDuty {
 
 impl Within<FanDuty> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<FanDuty>, Error> {
@@ -2801,7 +2761,7 @@ impl Within<FanDuty> {
 }
 
 impl Layout for FanDuty {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_percent, payload);
 }
@@ -2824,7 +2784,6 @@ impl Standby {
     pub const SET: Exchange = SET_ACCESS.of("standby", FRAME.data(REGISTER_SELECTOR.place, 0x132));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2833,7 +2792,7 @@ impl Standby {
 }
 
 impl Layout for Standby {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2869,7 +2828,6 @@ impl FanMode {
     pub const GET: Exchange = GET_ACCESS.of("fan_mode", FRAME.data(REGISTER_SELECTOR.place, 0x134));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2877,7 +2835,6 @@ impl FanMode {
     }
 
     /// Builds the request [`get`](GET_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2886,7 +2843,7 @@ impl FanMode {
 }
 
 impl Layout for FanMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2921,7 +2878,7 @@ impl ReadyState {
 }
 
 impl Layout for ReadyState {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::READINESS, &Self::LOAD];
+    const SIGNALS: AnySignals = &[&Self::READINESS, &Self::LOAD];
     const DECODE: Decode<Self> =
         |data| Self { readiness: Self::READINESS.get(data), load_percent: Self::LOAD.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -2954,7 +2911,7 @@ impl CommonLoad {
 }
 
 impl Layout for CommonLoad {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::LOAD];
+    const SIGNALS: AnySignals = &[&Self::LOAD];
     const DECODE: Decode<Self> = |data| Self { load_percent: Self::LOAD.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::LOAD.encode(message.load_percent, payload);
 }
@@ -2991,7 +2948,7 @@ impl ActiveState {
 }
 
 impl Layout for ActiveState {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::ACTIVITY, &Self::LOAD];
+    const SIGNALS: AnySignals = &[&Self::ACTIVITY, &Self::LOAD];
     const DECODE: Decode<Self> =
         |data| Self { activity: Self::ACTIVITY.get(data), load_percent: Self::LOAD.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -3035,7 +2992,7 @@ impl StartUp10 {
 }
 
 impl Layout for StartUp10 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::NUMBER, &Self::CONTENT];
+    const SIGNALS: AnySignals = &[&Self::NUMBER, &Self::CONTENT];
     const DECODE: Decode<Self> = |data| Self { number: Self::NUMBER.get(data), content: Self::CONTENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::NUMBER.put(message.number, payload)?;
@@ -3074,7 +3031,7 @@ impl StartUp81 {
 }
 
 impl Layout for StartUp81 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3205,7 +3162,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -3214,7 +3170,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

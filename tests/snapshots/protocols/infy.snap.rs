@@ -1201,7 +1201,6 @@ impl SystemOutput {
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output", FRAME.id(Identifier::COMMAND, 0x01));
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1210,7 +1209,7 @@ impl SystemOutput {
 }
 
 impl Layout for SystemOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::VOLTAGE.put(message.voltage_v, payload)?;
@@ -1237,7 +1236,6 @@ impl ModuleCount {
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("module_count", FRAME.id(Identifier::COMMAND, 0x02));
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1246,7 +1244,7 @@ impl ModuleCount {
 }
 
 impl Layout for ModuleCount {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::COUNT];
+    const SIGNALS: AnySignals = &[&Self::COUNT];
     const DECODE: Decode<Self> = |data| Self { count: Self::COUNT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::COUNT.put(message.count, payload);
 }
@@ -1276,7 +1274,6 @@ impl ModuleOutput {
     pub const READ: Exchange = READ_ACCESS.of("module_output", FRAME.id(Identifier::COMMAND, 0x03));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1285,7 +1282,7 @@ impl ModuleOutput {
 }
 
 impl Layout for ModuleOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> = |data| Self { voltage_v: Self::VOLTAGE.get(data), current_a: Self::CURRENT.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::VOLTAGE.put(message.voltage_v, payload)?;
@@ -1333,7 +1330,6 @@ impl ModuleStatus {
     pub const READ: Exchange = READ_ACCESS.of("module_status", FRAME.id(Identifier::COMMAND, 0x04));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1342,8 +1338,7 @@ impl ModuleStatus {
 }
 
 impl Layout for ModuleStatus {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0];
+    const SIGNALS: AnySignals = &[&Self::GROUP, &Self::TEMPERATURE, &Self::STATUS_2, &Self::STATUS_1, &Self::STATUS_0];
     const DECODE: Decode<Self> = |data| Self {
         group: Self::GROUP.get(data),
         temperature_c: Self::TEMPERATURE.get(data),
@@ -1389,7 +1384,6 @@ impl InputVoltage {
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.id(Identifier::COMMAND, 0x06));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1398,7 +1392,7 @@ impl InputVoltage {
 }
 
 impl Layout for InputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::AB, &Self::BC, &Self::CA];
+    const SIGNALS: AnySignals = &[&Self::AB, &Self::BC, &Self::CA];
     const DECODE: Decode<Self> =
         |data| Self { ab_v: Self::AB.decode(data), bc_v: Self::BC.decode(data), ca_v: Self::CA.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1432,7 +1426,6 @@ impl SystemOutputFixed {
     pub const READ_TOTAL: Exchange = READ_TOTAL_ACCESS.of("system_output_fixed", FRAME.id(Identifier::COMMAND, 0x08));
 
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1441,7 +1434,7 @@ impl SystemOutputFixed {
 }
 
 impl Layout for SystemOutputFixed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1475,7 +1468,6 @@ impl ModuleOutputFixed {
     pub const READ: Exchange = READ_ACCESS.of("module_output_fixed", FRAME.id(Identifier::COMMAND, 0x09));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1484,7 +1476,7 @@ impl ModuleOutputFixed {
 }
 
 impl Layout for ModuleOutputFixed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1528,7 +1520,6 @@ impl ModuleLimits {
     pub const READ: Exchange = READ_ACCESS.of("module_limits", FRAME.id(Identifier::COMMAND, 0x0A));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1537,7 +1528,7 @@ impl ModuleLimits {
 }
 
 impl Layout for ModuleLimits {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE, &Self::MAXIMUM_CURRENT, &Self::RATED_POWER];
     const DECODE: Decode<Self> = |data| Self {
         maximum_voltage_v: Self::MAXIMUM_VOLTAGE.get(data),
@@ -1578,7 +1569,6 @@ impl Barcode {
     pub const READ: Exchange = READ_ACCESS.of("barcode", FRAME.id(Identifier::COMMAND, 0x0B));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1587,7 +1577,7 @@ impl Barcode {
 }
 
 impl Layout for Barcode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1629,7 +1619,6 @@ impl ExternalVoltage {
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.id(Identifier::COMMAND, 0x0C));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1638,7 +1627,7 @@ impl ExternalVoltage {
 }
 
 impl Layout for ExternalVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::ALLOWED_CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), allowed_current_a: Self::ALLOWED_CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1669,7 +1658,6 @@ impl SetWalkIn {
     pub const SET: Exchange = SET_ACCESS.of("set_walk_in", FRAME.id(Identifier::COMMAND, 0x13));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1678,7 +1666,7 @@ impl SetWalkIn {
 }
 
 impl Layout for SetWalkIn {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::WALK_IN];
+    const SIGNALS: AnySignals = &[&Self::WALK_IN];
     const DECODE: Decode<Self> = |data| Self { walk_in: Self::WALK_IN.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::WALK_IN.put(message.walk_in, payload);
 }
@@ -1703,7 +1691,6 @@ impl SetLed {
     pub const SET: Exchange = SET_ACCESS.of("set_led", FRAME.id(Identifier::COMMAND, 0x14));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1712,7 +1699,7 @@ impl SetLed {
 }
 
 impl Layout for SetLed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::LED];
+    const SIGNALS: AnySignals = &[&Self::LED];
     const DECODE: Decode<Self> = |data| Self { led: Self::LED.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::LED.put(message.led, payload);
 }
@@ -1744,7 +1731,6 @@ impl SetGroup {
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.id(Identifier::COMMAND, 0x16));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1753,7 +1739,7 @@ impl SetGroup {
 }
 
 impl Layout for SetGroup {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::GROUP.put(message.group, payload);
 }
@@ -1780,7 +1766,6 @@ impl SetSleep {
     pub const SET: Exchange = SET_ACCESS.of("set_sleep", FRAME.id(Identifier::COMMAND, 0x19));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1789,7 +1774,7 @@ impl SetSleep {
 }
 
 impl Layout for SetSleep {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::SLEEP];
+    const SIGNALS: AnySignals = &[&Self::SLEEP];
     const DECODE: Decode<Self> = |data| Self { sleep: Self::SLEEP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::SLEEP.put(message.sleep, payload);
 }
@@ -1825,7 +1810,6 @@ impl SwitchModules {
     ]);
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1834,7 +1818,7 @@ impl SwitchModules {
 }
 
 impl Layout for SwitchModules {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::POWER];
+    const SIGNALS: AnySignals = &[&Self::POWER];
     const DECODE: Decode<Self> = |data| Self { power: Self::POWER.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::POWER.put(message.power, payload);
 }
@@ -1877,7 +1861,6 @@ impl SetTotalOutput {
     pub const SET_TOTAL: Exchange = SET_TOTAL_ACCESS.of("set_total_output", FRAME.id(Identifier::COMMAND, 0x1B));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1886,7 +1869,6 @@ impl SetTotalOutput {
     }
 
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1896,7 +1878,6 @@ impl SetTotalOutput {
 
 impl Within<SetTotalOutput> {
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<SetTotalOutput>, Error> {
@@ -1905,7 +1886,7 @@ impl Within<SetTotalOutput> {
 }
 
 impl Layout for SetTotalOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -1956,7 +1937,6 @@ impl SetModuleOutput {
     pub const SET: Exchange = SET_ACCESS.of("set_module_output", FRAME.id(Identifier::COMMAND, 0x1C));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -1965,7 +1945,6 @@ impl SetModuleOutput {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1975,7 +1954,6 @@ impl SetModuleOutput {
 
 impl Within<SetModuleOutput> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetModuleOutput>, Error> {
@@ -1984,7 +1962,7 @@ impl Within<SetModuleOutput> {
 }
 
 impl Layout for SetModuleOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT];
     const DECODE: Decode<Self> =
         |data| Self { voltage_v: Self::VOLTAGE.decode(data), current_a: Self::CURRENT.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -2022,7 +2000,6 @@ impl SetAddressMode {
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.id(Identifier::COMMAND, 0x1F));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2031,7 +2008,7 @@ impl SetAddressMode {
 }
 
 impl Layout for SetAddressMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MODE];
+    const SIGNALS: AnySignals = &[&Self::MODE];
     const DECODE: Decode<Self> = |data| Self { mode: Self::MODE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::MODE.put(message.mode, payload);
 }
@@ -2108,7 +2085,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -2117,7 +2093,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -1887,7 +1887,6 @@ impl CharacteristicWord {
         READ_ALL_INHERENT_INFORMATION_ACCESS.of("characteristic_word", FRAME.data(SIGNAL_SELECTOR.place, 0x001));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1896,7 +1895,7 @@ impl CharacteristicWord {
 }
 
 impl Layout for CharacteristicWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[
+    const SIGNALS: AnySignals = &[
         &Self::SUPPLY,
         &Self::PHASES,
         &Self::INPUT_TYPE,
@@ -1968,7 +1967,6 @@ impl Versions {
         READ_ALL_INHERENT_INFORMATION_ACCESS.of("versions", FRAME.data(SIGNAL_SELECTOR.place, 0x005));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1977,7 +1975,7 @@ impl Versions {
 }
 
 impl Layout for Versions {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
+    const SIGNALS: AnySignals = &[&Self::HARDWARE, &Self::DCDC, &Self::PFC];
     const DECODE: Decode<Self> =
         |data| Self { hardware: Self::HARDWARE.get(data), dcdc: Self::DCDC.get(data), pfc: Self::PFC.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -2035,7 +2033,6 @@ impl HardwareAddress {
         READ_ALL_INHERENT_INFORMATION_ACCESS.of("hardware_address", FRAME.data(SIGNAL_SELECTOR.place, 0x006));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2044,7 +2041,7 @@ impl HardwareAddress {
 }
 
 impl Layout for HardwareAddress {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::GROUP, &Self::SLAVE];
+    const SIGNALS: AnySignals = &[&Self::GROUP, &Self::SLAVE];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data), slave: Self::SLAVE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::GROUP.put(message.group, payload)?;
@@ -2081,7 +2078,6 @@ impl OutputVoltageSetting {
     pub const SET: Exchange = SET_ACCESS.of("output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x100));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2090,7 +2086,6 @@ impl OutputVoltageSetting {
     }
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2098,7 +2093,6 @@ impl OutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2108,7 +2102,6 @@ impl OutputVoltageSetting {
 
 impl Within<OutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
@@ -2117,7 +2110,7 @@ impl Within<OutputVoltageSetting> {
 }
 
 impl Layout for OutputVoltageSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2159,7 +2152,6 @@ impl DefaultOutputVoltage {
     pub const STORE: Exchange = STORE_ACCESS.of("default_output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x101));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2168,7 +2160,6 @@ impl DefaultOutputVoltage {
     }
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2176,7 +2167,6 @@ impl DefaultOutputVoltage {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2184,7 +2174,6 @@ impl DefaultOutputVoltage {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2194,7 +2183,6 @@ impl DefaultOutputVoltage {
 
 impl Within<DefaultOutputVoltage> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
@@ -2202,7 +2190,6 @@ impl Within<DefaultOutputVoltage> {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
@@ -2211,7 +2198,7 @@ impl Within<DefaultOutputVoltage> {
 }
 
 impl Layout for DefaultOutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2245,7 +2232,6 @@ impl OvervoltageProtectionPoint {
         STORE_ACCESS.of("overvoltage_protection_point", FRAME.data(SIGNAL_SELECTOR.place, 0x102));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -2254,7 +2240,6 @@ impl OvervoltageProtectionPoint {
     }
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2262,7 +2247,6 @@ impl OvervoltageProtectionPoint {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2270,7 +2254,6 @@ impl OvervoltageProtectionPoint {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2280,7 +2263,6 @@ impl OvervoltageProtectionPoint {
 
 impl Within<OvervoltageProtectionPoint> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtectionPoint>, Error> {
@@ -2288,7 +2270,6 @@ impl Within<OvervoltageProtectionPoint> {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtectionPoint>, Error> {
@@ -2297,7 +2278,7 @@ impl Within<OvervoltageProtectionPoint> {
 }
 
 impl Layout for OvervoltageProtectionPoint {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2328,7 +2309,6 @@ impl CurrentLimitSetting {
     pub const SET: Exchange = SET_ACCESS.of("current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x103));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2336,7 +2316,6 @@ impl CurrentLimitSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2345,7 +2324,7 @@ impl CurrentLimitSetting {
 }
 
 impl Layout for CurrentLimitSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
@@ -2379,7 +2358,6 @@ impl DefaultCurrentLimit {
     pub const STORE: Exchange = STORE_ACCESS.of("default_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x104));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2387,7 +2365,6 @@ impl DefaultCurrentLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2395,7 +2372,6 @@ impl DefaultCurrentLimit {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2404,7 +2380,7 @@ impl DefaultCurrentLimit {
 }
 
 impl Layout for DefaultCurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
@@ -2435,7 +2411,6 @@ impl WalkInTime {
     pub const STORE: Exchange = STORE_ACCESS.of("walk_in_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10C));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2443,7 +2418,6 @@ impl WalkInTime {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2451,7 +2425,6 @@ impl WalkInTime {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2460,7 +2433,7 @@ impl WalkInTime {
 }
 
 impl Layout for WalkInTime {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_s, payload);
 }
@@ -2495,7 +2468,6 @@ impl TotalRunningTime {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("total_running_time", FRAME.data(SIGNAL_SELECTOR.place, 0x10E));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2503,7 +2475,6 @@ impl TotalRunningTime {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2511,7 +2482,6 @@ impl TotalRunningTime {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2520,7 +2490,7 @@ impl TotalRunningTime {
 }
 
 impl Layout for TotalRunningTime {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_h, payload);
 }
@@ -2547,7 +2517,6 @@ impl SwitchModules {
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(SIGNAL_SELECTOR.place, 0x132));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2556,7 +2525,7 @@ impl SwitchModules {
 }
 
 impl Layout for SwitchModules {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2578,7 +2547,6 @@ impl ResetOvervoltageLockout {
     pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage_lockout", FRAME.data(SIGNAL_SELECTOR.place, 0x133));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2587,7 +2555,7 @@ impl ResetOvervoltageLockout {
 }
 
 impl Layout for ResetOvervoltageLockout {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2611,7 +2579,6 @@ impl FlashGreenLight {
     pub const SET: Exchange = SET_ACCESS.of("flash_green_light", FRAME.data(SIGNAL_SELECTOR.place, 0x135));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2620,7 +2587,7 @@ impl FlashGreenLight {
 }
 
 impl Layout for FlashGreenLight {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2647,7 +2614,6 @@ impl AssignAddresses {
     pub const SET: Exchange = SET_ACCESS.of("assign_addresses", FRAME.data(SIGNAL_SELECTOR.place, 0x13A));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2656,7 +2622,7 @@ impl AssignAddresses {
 }
 
 impl Layout for AssignAddresses {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2686,7 +2652,6 @@ impl ControlLights {
     pub const SET: Exchange = SET_ACCESS.of("control_lights", FRAME.data(SIGNAL_SELECTOR.place, 0x140));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2695,7 +2660,7 @@ impl ControlLights {
 }
 
 impl Layout for ControlLights {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::RED, &Self::YELLOW, &Self::GREEN];
+    const SIGNALS: AnySignals = &[&Self::RED, &Self::YELLOW, &Self::GREEN];
     const DECODE: Decode<Self> =
         |data| Self { red: Self::RED.get(data), yellow: Self::YELLOW.get(data), green: Self::GREEN.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -2731,7 +2696,6 @@ impl ShieldAlarms {
     pub const SET: Exchange = SET_ACCESS.of("shield_alarms", FRAME.data(SIGNAL_SELECTOR.place, 0x142));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2740,7 +2704,7 @@ impl ShieldAlarms {
 }
 
 impl Layout for ShieldAlarms {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::EXTENDED, &Self::ALARMS];
+    const SIGNALS: AnySignals = &[&Self::EXTENDED, &Self::ALARMS];
     const DECODE: Decode<Self> = |data| Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::EXTENDED.put(message.extended, payload)?;
@@ -2768,7 +2732,6 @@ impl ShieldCommunicationAlarm {
     pub const STORE: Exchange = STORE_ACCESS.of("shield_communication_alarm", FRAME.data(SIGNAL_SELECTOR.place, 0x143));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2776,7 +2739,6 @@ impl ShieldCommunicationAlarm {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2785,7 +2747,7 @@ impl ShieldCommunicationAlarm {
 }
 
 impl Layout for ShieldCommunicationAlarm {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2812,7 +2774,6 @@ impl InputPower {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("input_power", FRAME.data(SIGNAL_SELECTOR.place, 0x170));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2821,7 +2782,7 @@ impl InputPower {
 }
 
 impl Layout for InputPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
@@ -2848,7 +2809,6 @@ impl InputFrequency {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("input_frequency", FRAME.data(SIGNAL_SELECTOR.place, 0x171));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2857,7 +2817,7 @@ impl InputFrequency {
 }
 
 impl Layout for InputFrequency {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_hz, payload);
 }
@@ -2884,7 +2844,6 @@ impl InputCurrent {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("input_current", FRAME.data(SIGNAL_SELECTOR.place, 0x172));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2893,7 +2852,7 @@ impl InputCurrent {
 }
 
 impl Layout for InputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -2920,7 +2879,6 @@ impl OutputPower {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("output_power", FRAME.data(SIGNAL_SELECTOR.place, 0x173));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2929,7 +2887,7 @@ impl OutputPower {
 }
 
 impl Layout for OutputPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
@@ -2956,7 +2914,6 @@ impl OutputVoltage {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("output_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x175));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2965,7 +2922,7 @@ impl OutputVoltage {
 }
 
 impl Layout for OutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -2992,7 +2949,6 @@ impl ActualCurrentLimit {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("actual_current_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x176));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3001,7 +2957,7 @@ impl ActualCurrentLimit {
 }
 
 impl Layout for ActualCurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -3027,7 +2983,6 @@ impl ActualPowerLimit {
     pub const READ: Exchange = READ_ACCESS.of("actual_power_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x177));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3036,7 +2991,7 @@ impl ActualPowerLimit {
 }
 
 impl Layout for ActualPowerLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_w, payload);
 }
@@ -3067,7 +3022,6 @@ impl InputVoltage {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("input_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x178));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3076,7 +3030,7 @@ impl InputVoltage {
 }
 
 impl Layout for InputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -3107,7 +3061,6 @@ impl AmbientTemperature {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("ambient_temperature", FRAME.data(SIGNAL_SELECTOR.place, 0x180));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3116,7 +3069,7 @@ impl AmbientTemperature {
 }
 
 impl Layout for AmbientTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
@@ -3143,7 +3096,6 @@ impl OutputCurrent {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("output_current", FRAME.data(SIGNAL_SELECTOR.place, 0x182));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3152,7 +3104,7 @@ impl OutputCurrent {
 }
 
 impl Layout for OutputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -3185,7 +3137,6 @@ impl ModuleStatus {
         READ_ALL_REAL_TIME_DATA_ACCESS.of("module_status", FRAME.data(SIGNAL_SELECTOR.place, 0x183));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3194,7 +3145,7 @@ impl ModuleStatus {
 }
 
 impl Layout for ModuleStatus {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::EXTENDED, &Self::ALARMS];
+    const SIGNALS: AnySignals = &[&Self::EXTENDED, &Self::ALARMS];
     const DECODE: Decode<Self> = |data| Self { extended: Self::EXTENDED.get(data), alarms: Self::ALARMS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::EXTENDED.put(message.extended, payload)?;
@@ -3223,7 +3174,6 @@ impl ExternalVoltage {
     pub const READ: Exchange = READ_ACCESS.of("external_voltage", FRAME.data(SIGNAL_SELECTOR.place, 0x184));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3232,7 +3182,7 @@ impl ExternalVoltage {
 }
 
 impl Layout for ExternalVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -3254,7 +3204,6 @@ impl RatedCurrent {
     pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(SIGNAL_SELECTOR.place, 0x188));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3263,7 +3212,7 @@ impl RatedCurrent {
 }
 
 impl Layout for RatedCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -3296,7 +3245,6 @@ impl AddressModeSwitch {
         STORE_ACCESS.of("address_mode_switch", FRAME.data(SIGNAL_SELECTOR.place, 0x21D)).models(&[Model::V48 as u8]);
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -3305,7 +3253,6 @@ impl AddressModeSwitch {
     }
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3313,7 +3260,6 @@ impl AddressModeSwitch {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3321,7 +3267,6 @@ impl AddressModeSwitch {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3331,7 +3276,6 @@ impl AddressModeSwitch {
 
 impl Within<AddressModeSwitch> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<AddressModeSwitch>, Error> {
@@ -3339,7 +3283,6 @@ impl Within<AddressModeSwitch> {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<AddressModeSwitch>, Error> {
@@ -3348,7 +3291,7 @@ impl Within<AddressModeSwitch> {
 }
 
 impl Layout for AddressModeSwitch {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3378,7 +3321,6 @@ impl BarcodeVersion {
     pub const STORE: Exchange = STORE_ACCESS.of("barcode_version", FRAME.data(SIGNAL_SELECTOR.place, 0x222));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3386,7 +3328,6 @@ impl BarcodeVersion {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3394,7 +3335,6 @@ impl BarcodeVersion {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3403,7 +3343,7 @@ impl BarcodeVersion {
 }
 
 impl Layout for BarcodeVersion {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3433,7 +3373,6 @@ impl Barcode1 {
     pub const STORE: Exchange = STORE_ACCESS.of("barcode_1", FRAME.data(SIGNAL_SELECTOR.place, 0x223));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3441,7 +3380,6 @@ impl Barcode1 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3449,7 +3387,6 @@ impl Barcode1 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3458,7 +3395,7 @@ impl Barcode1 {
 }
 
 impl Layout for Barcode1 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3488,7 +3425,6 @@ impl Barcode2 {
     pub const STORE: Exchange = STORE_ACCESS.of("barcode_2", FRAME.data(SIGNAL_SELECTOR.place, 0x224));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3496,7 +3432,6 @@ impl Barcode2 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3504,7 +3439,6 @@ impl Barcode2 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3513,7 +3447,7 @@ impl Barcode2 {
 }
 
 impl Layout for Barcode2 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3543,7 +3477,6 @@ impl Barcode3 {
     pub const STORE: Exchange = STORE_ACCESS.of("barcode_3", FRAME.data(SIGNAL_SELECTOR.place, 0x225));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3551,7 +3484,6 @@ impl Barcode3 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3559,7 +3491,6 @@ impl Barcode3 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3568,7 +3499,7 @@ impl Barcode3 {
 }
 
 impl Layout for Barcode3 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3598,7 +3529,6 @@ impl Barcode4 {
     pub const STORE: Exchange = STORE_ACCESS.of("barcode_4", FRAME.data(SIGNAL_SELECTOR.place, 0x226));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3606,7 +3536,6 @@ impl Barcode4 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3614,7 +3543,6 @@ impl Barcode4 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3623,7 +3551,7 @@ impl Barcode4 {
 }
 
 impl Layout for Barcode4 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3645,7 +3573,6 @@ impl FanDutyCycle {
     pub const READ: Exchange = READ_ACCESS.of("fan_duty_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x22B));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3654,7 +3581,7 @@ impl FanDutyCycle {
 }
 
 impl Layout for FanDutyCycle {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_percent, payload);
 }
@@ -3683,7 +3610,6 @@ impl RectifierCurrentLimitSetting {
         SET_ACCESS.of("rectifier_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22D));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3691,7 +3617,6 @@ impl RectifierCurrentLimitSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3700,7 +3625,7 @@ impl RectifierCurrentLimitSetting {
 }
 
 impl Layout for RectifierCurrentLimitSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
@@ -3727,7 +3652,6 @@ impl PvCurrentLimitSetting {
     pub const SET: Exchange = SET_ACCESS.of("pv_current_limit_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22E));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3735,7 +3659,6 @@ impl PvCurrentLimitSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3744,7 +3667,7 @@ impl PvCurrentLimitSetting {
 }
 
 impl Layout for PvCurrentLimitSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value, payload);
 }
@@ -3782,7 +3705,6 @@ impl RectifierOutputVoltageSetting {
         SET_ACCESS.of("rectifier_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x22F));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -3791,7 +3713,6 @@ impl RectifierOutputVoltageSetting {
     }
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3799,7 +3720,6 @@ impl RectifierOutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3809,7 +3729,6 @@ impl RectifierOutputVoltageSetting {
 
 impl Within<RectifierOutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<RectifierOutputVoltageSetting>, Error> {
@@ -3818,7 +3737,7 @@ impl Within<RectifierOutputVoltageSetting> {
 }
 
 impl Layout for RectifierOutputVoltageSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -3850,7 +3769,6 @@ impl PvOutputVoltageSetting {
     pub const SET: Exchange = SET_ACCESS.of("pv_output_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x230));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -3859,7 +3777,6 @@ impl PvOutputVoltageSetting {
     }
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3867,7 +3784,6 @@ impl PvOutputVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3877,7 +3793,6 @@ impl PvOutputVoltageSetting {
 
 impl Within<PvOutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<PvOutputVoltageSetting>, Error> {
@@ -3886,7 +3801,7 @@ impl Within<PvOutputVoltageSetting> {
 }
 
 impl Layout for PvOutputVoltageSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -3912,7 +3827,6 @@ impl PfcAlarmWord {
     pub const READ: Exchange = READ_ACCESS.of("pfc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x236));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3921,7 +3835,7 @@ impl PfcAlarmWord {
 }
 
 impl Layout for PfcAlarmWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3943,7 +3857,6 @@ impl PfcFaultWord {
     pub const READ: Exchange = READ_ACCESS.of("pfc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x237));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3952,7 +3865,7 @@ impl PfcFaultWord {
 }
 
 impl Layout for PfcFaultWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -3974,7 +3887,6 @@ impl PfcStatusWord {
     pub const READ: Exchange = READ_ACCESS.of("pfc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x238));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -3983,7 +3895,7 @@ impl PfcStatusWord {
 }
 
 impl Layout for PfcStatusWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4005,7 +3917,6 @@ impl DcdcAlarmWord {
     pub const READ: Exchange = READ_ACCESS.of("dcdc_alarm_word", FRAME.data(SIGNAL_SELECTOR.place, 0x239));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4014,7 +3925,7 @@ impl DcdcAlarmWord {
 }
 
 impl Layout for DcdcAlarmWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4036,7 +3947,6 @@ impl DcdcFaultWord {
     pub const READ: Exchange = READ_ACCESS.of("dcdc_fault_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23A));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4045,7 +3955,7 @@ impl DcdcFaultWord {
 }
 
 impl Layout for DcdcFaultWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4067,7 +3977,6 @@ impl DcdcStatusWord {
     pub const READ: Exchange = READ_ACCESS.of("dcdc_status_word", FRAME.data(SIGNAL_SELECTOR.place, 0x23B));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4076,7 +3985,7 @@ impl DcdcStatusWord {
 }
 
 impl Layout for DcdcStatusWord {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4107,7 +4016,6 @@ impl AutoBootSetting {
     pub const STORE: Exchange = STORE_ACCESS.of("auto_boot_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x24E));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4115,7 +4023,6 @@ impl AutoBootSetting {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4124,7 +4031,7 @@ impl AutoBootSetting {
 }
 
 impl Layout for AutoBootSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4152,7 +4059,6 @@ impl PvVoltageSetting {
     pub const SET: Exchange = SET_ACCESS.of("pv_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x270));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4160,7 +4066,6 @@ impl PvVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4169,7 +4074,7 @@ impl PvVoltageSetting {
 }
 
 impl Layout for PvVoltageSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -4188,7 +4093,6 @@ impl Reserved271 {
     pub const READ: Exchange = READ_ACCESS.of("reserved_271", FRAME.data(SIGNAL_SELECTOR.place, 0x271));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4210,7 +4114,6 @@ impl Reserved272 {
     pub const READ: Exchange = READ_ACCESS.of("reserved_272", FRAME.data(SIGNAL_SELECTOR.place, 0x272));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -4238,7 +4141,6 @@ impl MpptSingleScan {
     pub const SET: Exchange = SET_ACCESS.of("mppt_single_scan", FRAME.data(SIGNAL_SELECTOR.place, 0x273));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4246,7 +4148,6 @@ impl MpptSingleScan {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4255,7 +4156,7 @@ impl MpptSingleScan {
 }
 
 impl Layout for MpptSingleScan {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4286,7 +4187,6 @@ impl MpptScanCycle {
     pub const STORE: Exchange = STORE_ACCESS.of("mppt_scan_cycle", FRAME.data(SIGNAL_SELECTOR.place, 0x274));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4294,7 +4194,6 @@ impl MpptScanCycle {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4302,7 +4201,6 @@ impl MpptScanCycle {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4311,7 +4209,7 @@ impl MpptScanCycle {
 }
 
 impl Layout for MpptScanCycle {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_s: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_s, payload);
 }
@@ -4339,7 +4237,6 @@ impl WindVoltageSetting {
     pub const SET: Exchange = SET_ACCESS.of("wind_voltage_setting", FRAME.data(SIGNAL_SELECTOR.place, 0x275));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4347,7 +4244,6 @@ impl WindVoltageSetting {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4356,7 +4252,7 @@ impl WindVoltageSetting {
 }
 
 impl Layout for WindVoltageSetting {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -4384,7 +4280,6 @@ impl WindVoltageUpperLimit {
     pub const SET: Exchange = SET_ACCESS.of("wind_voltage_upper_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x276));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4392,7 +4287,6 @@ impl WindVoltageUpperLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4401,7 +4295,7 @@ impl WindVoltageUpperLimit {
 }
 
 impl Layout for WindVoltageUpperLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -4429,7 +4323,6 @@ impl WindVoltageLowerLimit {
     pub const SET: Exchange = SET_ACCESS.of("wind_voltage_lower_limit", FRAME.data(SIGNAL_SELECTOR.place, 0x277));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4437,7 +4330,6 @@ impl WindVoltageLowerLimit {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4446,7 +4338,7 @@ impl WindVoltageLowerLimit {
 }
 
 impl Layout for WindVoltageLowerLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -4476,7 +4368,6 @@ impl CustomerInformation1 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_1", FRAME.data(SIGNAL_SELECTOR.place, 0x301));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4484,7 +4375,6 @@ impl CustomerInformation1 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4492,7 +4382,6 @@ impl CustomerInformation1 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4501,7 +4390,7 @@ impl CustomerInformation1 {
 }
 
 impl Layout for CustomerInformation1 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4531,7 +4420,6 @@ impl CustomerInformation2 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_2", FRAME.data(SIGNAL_SELECTOR.place, 0x302));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4539,7 +4427,6 @@ impl CustomerInformation2 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4547,7 +4434,6 @@ impl CustomerInformation2 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4556,7 +4442,7 @@ impl CustomerInformation2 {
 }
 
 impl Layout for CustomerInformation2 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4586,7 +4472,6 @@ impl CustomerInformation3 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_3", FRAME.data(SIGNAL_SELECTOR.place, 0x303));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4594,7 +4479,6 @@ impl CustomerInformation3 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4602,7 +4486,6 @@ impl CustomerInformation3 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4611,7 +4494,7 @@ impl CustomerInformation3 {
 }
 
 impl Layout for CustomerInformation3 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4641,7 +4524,6 @@ impl CustomerInformation4 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_4", FRAME.data(SIGNAL_SELECTOR.place, 0x304));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4649,7 +4531,6 @@ impl CustomerInformation4 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4657,7 +4538,6 @@ impl CustomerInformation4 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4666,7 +4546,7 @@ impl CustomerInformation4 {
 }
 
 impl Layout for CustomerInformation4 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4696,7 +4576,6 @@ impl CustomerInformation5 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_5", FRAME.data(SIGNAL_SELECTOR.place, 0x305));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4704,7 +4583,6 @@ impl CustomerInformation5 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4712,7 +4590,6 @@ impl CustomerInformation5 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4721,7 +4598,7 @@ impl CustomerInformation5 {
 }
 
 impl Layout for CustomerInformation5 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4751,7 +4628,6 @@ impl CustomerInformation6 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_6", FRAME.data(SIGNAL_SELECTOR.place, 0x306));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4759,7 +4635,6 @@ impl CustomerInformation6 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4767,7 +4642,6 @@ impl CustomerInformation6 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4776,7 +4650,7 @@ impl CustomerInformation6 {
 }
 
 impl Layout for CustomerInformation6 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4806,7 +4680,6 @@ impl CustomerInformation7 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_7", FRAME.data(SIGNAL_SELECTOR.place, 0x307));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4814,7 +4687,6 @@ impl CustomerInformation7 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4822,7 +4694,6 @@ impl CustomerInformation7 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4831,7 +4702,7 @@ impl CustomerInformation7 {
 }
 
 impl Layout for CustomerInformation7 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4861,7 +4732,6 @@ impl CustomerInformation8 {
     pub const STORE: Exchange = STORE_ACCESS.of("customer_information_8", FRAME.data(SIGNAL_SELECTOR.place, 0x308));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4869,7 +4739,6 @@ impl CustomerInformation8 {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4877,7 +4746,6 @@ impl CustomerInformation8 {
     }
 
     /// Builds the request [`store`](STORE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -4886,7 +4754,7 @@ impl CustomerInformation8 {
 }
 
 impl Layout for CustomerInformation8 {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -4921,7 +4789,6 @@ impl InherentInformation {
 
     /// Builds the requests [`read_all`](READ_ALL_ACCESS), one for each member in the order in which they
     /// are sent.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<[Request<()>; 3], Error> {
@@ -5007,7 +4874,6 @@ impl RealTimeData {
     pub const READ_ALL: Exchange = READ_ALL_ACCESS_2.of("real_time_data", FRAME.id(Identifier::COMMAND, 0x40));
 
     /// Builds the request [`read_all`](READ_ALL_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -5333,7 +5199,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -5342,7 +5207,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -1054,7 +1054,6 @@ impl OutputVoltage {
     pub const READ: Exchange = READ_ACCESS.of("output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0001));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1063,7 +1062,7 @@ impl OutputVoltage {
 }
 
 impl Layout for OutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1085,7 +1084,6 @@ impl OutputCurrent {
     pub const READ: Exchange = READ_ACCESS.of("output_current", FRAME.data(REGISTER_SELECTOR.place, 0x0002));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1094,7 +1092,7 @@ impl OutputCurrent {
 }
 
 impl Layout for OutputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_a, payload);
 }
@@ -1121,7 +1119,6 @@ impl CurrentLimit {
     pub const READ: Exchange = READ_ACCESS.of("current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0003));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1130,7 +1127,7 @@ impl CurrentLimit {
 }
 
 impl Layout for CurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1156,7 +1153,6 @@ impl DcBoardTemperature {
     pub const READ: Exchange = READ_ACCESS.of("dc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0004));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1165,7 +1161,7 @@ impl DcBoardTemperature {
 }
 
 impl Layout for DcBoardTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
@@ -1190,7 +1186,6 @@ impl InputVoltage {
     pub const READ: Exchange = READ_ACCESS.of("input_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0005));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1199,7 +1194,7 @@ impl InputVoltage {
 }
 
 impl Layout for InputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1221,7 +1216,6 @@ impl Pfc0Voltage {
     pub const READ: Exchange = READ_ACCESS.of("pfc0_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0008));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1230,7 +1224,7 @@ impl Pfc0Voltage {
 }
 
 impl Layout for Pfc0Voltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1252,7 +1246,6 @@ impl Pfc1Voltage {
     pub const READ: Exchange = READ_ACCESS.of("pfc1_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000A));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1261,7 +1254,7 @@ impl Pfc1Voltage {
 }
 
 impl Layout for Pfc1Voltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1287,7 +1280,6 @@ impl AmbientTemperature {
     pub const READ: Exchange = READ_ACCESS.of("ambient_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x000B));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1296,7 +1288,7 @@ impl AmbientTemperature {
 }
 
 impl Layout for AmbientTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
@@ -1318,7 +1310,6 @@ impl PhaseAVoltage {
     pub const READ: Exchange = READ_ACCESS.of("phase_a_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000C));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1327,7 +1318,7 @@ impl PhaseAVoltage {
 }
 
 impl Layout for PhaseAVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1349,7 +1340,6 @@ impl PhaseBVoltage {
     pub const READ: Exchange = READ_ACCESS.of("phase_b_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000D));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1358,7 +1348,7 @@ impl PhaseBVoltage {
 }
 
 impl Layout for PhaseBVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1380,7 +1370,6 @@ impl PhaseCVoltage {
     pub const READ: Exchange = READ_ACCESS.of("phase_c_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x000E));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1389,7 +1378,7 @@ impl PhaseCVoltage {
 }
 
 impl Layout for PhaseCVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1415,7 +1404,6 @@ impl PfcBoardTemperature {
     pub const READ: Exchange = READ_ACCESS.of("pfc_board_temperature", FRAME.data(REGISTER_SELECTOR.place, 0x0010));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1424,7 +1412,7 @@ impl PfcBoardTemperature {
 }
 
 impl Layout for PfcBoardTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_c, payload);
 }
@@ -1446,7 +1434,6 @@ impl RatedPower {
     pub const READ: Exchange = READ_ACCESS.of("rated_power", FRAME.data(REGISTER_SELECTOR.place, 0x0011));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1455,7 +1442,7 @@ impl RatedPower {
 }
 
 impl Layout for RatedPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_w, payload);
 }
@@ -1477,7 +1464,6 @@ impl RatedCurrent {
     pub const READ: Exchange = READ_ACCESS.of("rated_current", FRAME.data(REGISTER_SELECTOR.place, 0x0012));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1486,7 +1472,7 @@ impl RatedCurrent {
 }
 
 impl Layout for RatedCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_a, payload);
 }
@@ -1521,7 +1507,6 @@ impl SetAltitude {
     pub const SET: Exchange = SET_ACCESS.of("set_altitude", FRAME.data(REGISTER_SELECTOR.place, 0x0017));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1530,7 +1515,7 @@ impl SetAltitude {
 }
 
 impl Layout for SetAltitude {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_m, payload);
 }
@@ -1557,7 +1542,6 @@ impl SetOutputCurrent {
     pub const SET: Exchange = SET_ACCESS.of("set_output_current", FRAME.data(REGISTER_SELECTOR.place, 0x001B));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1566,7 +1550,7 @@ impl SetOutputCurrent {
 }
 
 impl Layout for SetOutputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -1606,7 +1590,6 @@ impl SetGroup {
     pub const SET: Exchange = SET_ACCESS.of("set_group", FRAME.data(REGISTER_SELECTOR.place, 0x001E));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1615,7 +1598,7 @@ impl SetGroup {
 }
 
 impl Layout for SetGroup {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::GROUP];
+    const SIGNALS: AnySignals = &[&Self::GROUP];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::GROUP.put(message.group, payload);
 }
@@ -1646,7 +1629,6 @@ impl SetAddressMode {
     pub const SET: Exchange = SET_ACCESS.of("set_address_mode", FRAME.data(REGISTER_SELECTOR.place, 0x001F));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1655,7 +1637,7 @@ impl SetAddressMode {
 }
 
 impl Layout for SetAddressMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1678,7 +1660,6 @@ impl SetOutputPower {
     pub const SET: Exchange = SET_ACCESS_2.of("set_output_power", FRAME.data(REGISTER_SELECTOR.place, 0x0020));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1687,7 +1668,7 @@ impl SetOutputPower {
 }
 
 impl Layout for SetOutputPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1715,7 +1696,6 @@ impl SetOutputVoltage {
     pub const SET: Exchange = SET_ACCESS_2.of("set_output_voltage", FRAME.data(REGISTER_SELECTOR.place, 0x0021));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1724,7 +1704,7 @@ impl SetOutputVoltage {
 }
 
 impl Layout for SetOutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1761,7 +1741,6 @@ impl SetCurrentLimit {
     pub const SET: Exchange = SET_ACCESS_2.of("set_current_limit", FRAME.data(REGISTER_SELECTOR.place, 0x0022));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1770,7 +1749,7 @@ impl SetCurrentLimit {
 }
 
 impl Layout for SetCurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1796,7 +1775,6 @@ impl SetOvervoltagePoint {
     pub const SET: Exchange = SET_ACCESS_2.of("set_overvoltage_point", FRAME.data(REGISTER_SELECTOR.place, 0x0023));
 
     /// Builds the request [`set`](SET_ACCESS_2) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1805,7 +1783,7 @@ impl SetOvervoltagePoint {
 }
 
 impl Layout for SetOvervoltagePoint {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_v, payload);
 }
@@ -1833,7 +1811,6 @@ impl SwitchModules {
     pub const SET: Exchange = SET_ACCESS.of("switch_modules", FRAME.data(REGISTER_SELECTOR.place, 0x0030));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1842,7 +1819,7 @@ impl SwitchModules {
 }
 
 impl Layout for SwitchModules {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1865,7 +1842,6 @@ impl ResetOvervoltage {
     pub const SET: Exchange = SET_ACCESS.of("reset_overvoltage", FRAME.data(REGISTER_SELECTOR.place, 0x0031));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1874,7 +1850,7 @@ impl ResetOvervoltage {
 }
 
 impl Layout for ResetOvervoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1897,7 +1873,6 @@ impl SetOvervoltageRelevance {
     pub const SET: Exchange = SET_ACCESS.of("set_overvoltage_relevance", FRAME.data(REGISTER_SELECTOR.place, 0x003E));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1906,7 +1881,7 @@ impl SetOvervoltageRelevance {
 }
 
 impl Layout for SetOvervoltageRelevance {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1934,7 +1909,6 @@ impl ModuleStatus {
     pub const READ: Exchange = READ_ACCESS_2.of("module_status", FRAME.data(REGISTER_SELECTOR.place, 0x0040));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1943,7 +1917,7 @@ impl ModuleStatus {
 }
 
 impl Layout for ModuleStatus {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1972,7 +1946,6 @@ impl GroupAndAddress {
     pub const READ: Exchange = READ_ACCESS_2.of("group_and_address", FRAME.data(REGISTER_SELECTOR.place, 0x0043));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1981,7 +1954,7 @@ impl GroupAndAddress {
 }
 
 impl Layout for GroupAndAddress {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::GROUP, &Self::ADDRESS];
+    const SIGNALS: AnySignals = &[&Self::GROUP, &Self::ADDRESS];
     const DECODE: Decode<Self> = |data| Self { group: Self::GROUP.get(data), address: Self::ADDRESS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::GROUP.put(message.group, payload)?;
@@ -2007,7 +1980,6 @@ impl ResetShortCircuit {
     pub const SET: Exchange = SET_ACCESS.of("reset_short_circuit", FRAME.data(REGISTER_SELECTOR.place, 0x0044));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2016,7 +1988,7 @@ impl ResetShortCircuit {
 }
 
 impl Layout for ResetShortCircuit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2039,7 +2011,6 @@ impl SetInputMode {
     pub const SET: Exchange = SET_ACCESS.of("set_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x0046));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2048,7 +2019,7 @@ impl SetInputMode {
 }
 
 impl Layout for SetInputMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2070,7 +2041,6 @@ impl InputPower {
     pub const READ: Exchange = READ_ACCESS_2.of("input_power", FRAME.data(REGISTER_SELECTOR.place, 0x0048));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2079,7 +2049,7 @@ impl InputPower {
 }
 
 impl Layout for InputPower {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_w: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_w, payload);
 }
@@ -2103,7 +2073,6 @@ impl Altitude {
     pub const READ: Exchange = READ_ACCESS_2.of("altitude", FRAME.data(REGISTER_SELECTOR.place, 0x004A));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2112,7 +2081,7 @@ impl Altitude {
 }
 
 impl Layout for Altitude {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_m: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_m, payload);
 }
@@ -2134,7 +2103,6 @@ impl ActiveInputMode {
     pub const READ: Exchange = READ_ACCESS_2.of("active_input_mode", FRAME.data(REGISTER_SELECTOR.place, 0x004B));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2143,7 +2111,7 @@ impl ActiveInputMode {
 }
 
 impl Layout for ActiveInputMode {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2169,7 +2137,6 @@ impl SerialNumberLow {
     pub const READ: Exchange = READ_ACCESS_2.of("serial_number_low", FRAME.data(REGISTER_SELECTOR.place, 0x0054));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2178,7 +2145,7 @@ impl SerialNumberLow {
 }
 
 impl Layout for SerialNumberLow {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2204,7 +2171,6 @@ impl SerialNumberHigh {
     pub const READ: Exchange = READ_ACCESS_2.of("serial_number_high", FRAME.data(REGISTER_SELECTOR.place, 0x0055));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2213,7 +2179,7 @@ impl SerialNumberHigh {
 }
 
 impl Layout for SerialNumberHigh {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -2239,7 +2205,6 @@ impl DcdcVersion {
     pub const READ: Exchange = READ_ACCESS_2.of("dcdc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0056));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2248,7 +2213,7 @@ impl DcdcVersion {
 }
 
 impl Layout for DcdcVersion {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VERSION];
+    const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
 }
@@ -2274,7 +2239,6 @@ impl PfcVersion {
     pub const READ: Exchange = READ_ACCESS_2.of("pfc_version", FRAME.data(REGISTER_SELECTOR.place, 0x0057));
 
     /// Builds the request [`read`](READ_ACCESS_2).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -2283,7 +2247,7 @@ impl PfcVersion {
 }
 
 impl Layout for PfcVersion {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VERSION];
+    const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
 }
@@ -2422,7 +2386,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -883,7 +883,7 @@ impl MeasurementA {
 }
 
 impl Layout for MeasurementA {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::VOLTAGE, &Self::CURRENT, &Self::TEMPERATURE, &Self::POWER, &Self::OUTPUT, &Self::MODE, &Self::COUNTER];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
@@ -937,7 +937,7 @@ impl MeasurementB {
 }
 
 impl Layout for MeasurementB {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::INPUT, &Self::VOLTAGE, &Self::FAN_SPEED, &Self::LOAD];
+    const SIGNALS: AnySignals = &[&Self::INPUT, &Self::VOLTAGE, &Self::FAN_SPEED, &Self::LOAD];
     const DECODE: Decode<Self> = |data| Self {
         input: Self::INPUT.get(data),
         voltage_v: Self::VOLTAGE.decode(data),
@@ -987,7 +987,6 @@ impl VoltageSetPoint {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -995,7 +994,6 @@ impl VoltageSetPoint {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1004,7 +1002,7 @@ impl VoltageSetPoint {
 }
 
 impl Layout for VoltageSetPoint {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -1042,7 +1040,6 @@ impl CurrentLimit {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1050,7 +1047,6 @@ impl CurrentLimit {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1059,7 +1055,7 @@ impl CurrentLimit {
 }
 
 impl Layout for CurrentLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -1096,7 +1092,6 @@ impl OutputSwitch {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1104,7 +1099,6 @@ impl OutputSwitch {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1113,7 +1107,7 @@ impl OutputSwitch {
 }
 
 impl Layout for OutputSwitch {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1153,7 +1147,6 @@ impl MinimumFanSpeed {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1161,7 +1154,6 @@ impl MinimumFanSpeed {
     }
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1170,7 +1162,7 @@ impl MinimumFanSpeed {
 }
 
 impl Layout for MinimumFanSpeed {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_percent: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_percent, payload);
 }
@@ -1198,7 +1190,6 @@ impl OutputVoltage {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1207,7 +1198,7 @@ impl OutputVoltage {
 }
 
 impl Layout for OutputVoltage {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_v: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_v, payload);
 }
@@ -1235,7 +1226,6 @@ impl OutputCurrent {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1244,7 +1234,7 @@ impl OutputCurrent {
 }
 
 impl Layout for OutputCurrent {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_a: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_a, payload);
 }
@@ -1281,7 +1271,6 @@ impl HeatSinkTemperature {
         );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1290,7 +1279,7 @@ impl HeatSinkTemperature {
 }
 
 impl Layout for HeatSinkTemperature {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_c: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_c, payload);
 }
@@ -1318,7 +1307,6 @@ impl InputFrequency {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1327,7 +1315,7 @@ impl InputFrequency {
 }
 
 impl Layout for InputFrequency {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_hz: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value_hz, payload);
 }
@@ -1355,7 +1343,6 @@ impl OperatingTime {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1364,7 +1351,7 @@ impl OperatingTime {
 }
 
 impl Layout for OperatingTime {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value_h: Self::VALUE.decode(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.encode(message.value_h, payload);
 }
@@ -1392,7 +1379,6 @@ impl SerialNumber {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1401,7 +1387,7 @@ impl SerialNumber {
 }
 
 impl Layout for SerialNumber {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1429,7 +1415,6 @@ impl Firmware {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1438,7 +1423,7 @@ impl Firmware {
 }
 
 impl Layout for Firmware {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1466,7 +1451,6 @@ impl State {
     );
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -1475,7 +1459,7 @@ impl State {
 }
 
 impl Layout for State {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1498,7 +1482,7 @@ impl Refusal {
 }
 
 impl Layout for Refusal {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VALUE];
+    const SIGNALS: AnySignals = &[&Self::VALUE];
     const DECODE: Decode<Self> = |data| Self { value: Self::VALUE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VALUE.put(message.value, payload);
 }
@@ -1522,7 +1506,6 @@ impl KeepAlive {
     pub const TELL: Exchange = TELL_ACCESS.of("keep_alive", FRAME.data(SIGN_SELECTOR.place, 0x55)).length(2);
 
     /// Builds the request [`tell`](TELL_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -1531,7 +1514,7 @@ impl KeepAlive {
 }
 
 impl Layout for KeepAlive {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::OUTPUTS];
+    const SIGNALS: AnySignals = &[&Self::OUTPUTS];
     const DECODE: Decode<Self> = |data| Self { outputs: Self::OUTPUTS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::OUTPUTS.put(message.outputs, payload);
 }
@@ -1608,7 +1591,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -635,7 +635,7 @@ impl ReferenceValues {
 }
 
 impl Layout for ReferenceValues {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
+    const SIGNALS: AnySignals =
         &[&Self::MODE, &Self::OPERATION, &Self::NOMINAL_VOLTAGE, &Self::MAXIMUM_VOLTAGE, &Self::MINIMUM_VOLTAGE];
     const DECODE: Decode<Self> = |data| Self {
         mode: Self::MODE.get(data),
@@ -689,7 +689,7 @@ impl OutputValues {
 }
 
 impl Layout for OutputValues {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VOLTAGE, &Self::CURRENT, &Self::POWER, &Self::STATUS];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::CURRENT, &Self::POWER, &Self::STATUS];
     const DECODE: Decode<Self> = |data| Self {
         voltage_v: Self::VOLTAGE.decode(data),
         current_a: Self::CURRENT.decode(data),
@@ -739,7 +739,7 @@ impl TemperatureValues {
 }
 
 impl Layout for TemperatureValues {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::TEMPERATURE, &Self::FAN_1, &Self::FAN_2];
+    const SIGNALS: AnySignals = &[&Self::TEMPERATURE, &Self::FAN_1, &Self::FAN_2];
     const DECODE: Decode<Self> = |data| Self {
         temperature_c: Self::TEMPERATURE.get(data),
         fan_1_rpm: Self::FAN_1.get(data),
@@ -775,7 +775,7 @@ impl FirmwareVersion {
 }
 
 impl Layout for FirmwareVersion {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::VERSION];
+    const SIGNALS: AnySignals = &[&Self::VERSION];
     const DECODE: Decode<Self> = |data| Self { version: Self::VERSION.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::VERSION.put(message.version, payload);
 }
@@ -806,7 +806,7 @@ impl RunningTime {
 }
 
 impl Layout for RunningTime {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::RUNNING, &Self::TOTAL];
+    const SIGNALS: AnySignals = &[&Self::RUNNING, &Self::TOTAL];
     const DECODE: Decode<Self> = |data| Self { running_min: Self::RUNNING.get(data), total_min: Self::TOTAL.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::RUNNING.put(message.running_min, payload)?;
@@ -839,7 +839,7 @@ impl ReplacementAdvice {
 }
 
 impl Layout for ReplacementAdvice {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::ADVICE];
+    const SIGNALS: AnySignals = &[&Self::ADVICE];
     const DECODE: Decode<Self> = |data| Self { advice: Self::ADVICE.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::ADVICE.put(message.advice, payload);
 }
@@ -896,7 +896,6 @@ impl Control {
     pub const SET: Exchange = SET_ACCESS.of("control", FRAME.id(Identifier::COMMAND, 0x10));
 
     /// Returns the values for a device model if it takes them.
-    ///
     /// # Errors
     /// Refuses a model that does not have the message, and values outside its limits.
     pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -905,7 +904,6 @@ impl Control {
     }
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -915,7 +913,6 @@ impl Control {
 
 impl Within<Control> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -924,7 +921,7 @@ impl Within<Control> {
 }
 
 impl Layout for Control {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::MODE, &Self::OPERATION, &Self::VOLTAGE];
+    const SIGNALS: AnySignals = &[&Self::MODE, &Self::OPERATION, &Self::VOLTAGE];
     const DECODE: Decode<Self> = |data| Self {
         mode: Self::MODE.get(data),
         operation: Self::OPERATION.get(data),
@@ -963,7 +960,6 @@ impl SetAddress {
     pub const SET: Exchange = SET_ACCESS.of("set_address", FRAME.id(Identifier::COMMAND, 0x11));
 
     /// Builds the request [`set`](SET_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
@@ -972,7 +968,7 @@ impl SetAddress {
 }
 
 impl Layout for SetAddress {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::ADDRESS];
+    const SIGNALS: AnySignals = &[&Self::ADDRESS];
     const DECODE: Decode<Self> = |data| Self { address: Self::ADDRESS.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::ADDRESS.put(message.address, payload);
 }
@@ -1009,7 +1005,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]
@@ -1018,7 +1013,6 @@ impl Message {
     }
 
     /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -100,7 +100,6 @@ pub fn special_value(Special { constant, comment, value }: &Special, signal: &Si
 fn within(Within { exchange, .. }: &Within) -> TokenStream {
     quote! {
         /// Returns the values for a device model if it takes them.
-        ///
         /// # Errors
         /// Refuses a model that does not have the message, and values outside its limits.
         pub fn within(self, model: Model) -> Result<Within<Self>, Error> {
@@ -159,7 +158,7 @@ fn layout(message: &Message, own: &Struct) -> Option<TokenStream> {
     let encode = if is_short { quote!(#last) } else { quote!({ #end #(#others?;)* #last }) };
     Some(quote! {
         impl Layout for #name {
-            const SIGNALS: &'static [&'static dyn AnySignal] = &[#(&#owner::#constants),*];
+            const SIGNALS: AnySignals = &[#(&#owner::#constants),*];
             const DECODE: Decode<Self> = |data| #decode;
             const ENCODE: Encode<Self> = |message, payload| #encode;
             #sized

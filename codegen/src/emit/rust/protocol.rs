@@ -34,7 +34,6 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
 
         impl Message {
             /// Recognises a frame.
-            ///
             /// # Errors
             /// Says why the frame is not recognised.
             #[inline]
@@ -54,7 +53,6 @@ pub fn protocol(plan: &Plan, derives: Derives) -> [TokenStream; 2] {
 fn decode_for() -> TokenStream {
     quote! {
         /// Recognises a frame of a device model: of messages that look the same, the one that it has.
-        ///
         /// # Errors
         /// Says why the frame is not recognised.
         #[inline]

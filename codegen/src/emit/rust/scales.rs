@@ -58,7 +58,6 @@ pub fn methods(signal: &Signal, owner: &TokenStream) -> Option<TokenStream> {
         }
 
         #[doc = #sets]
-        ///
         /// # Errors
         /// Refuses a model without a scale, and a value outside its limits.
         pub fn #set(&mut self, model: Model, value: #kind) -> Result<(), Error> {

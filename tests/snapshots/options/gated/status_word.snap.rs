@@ -272,7 +272,6 @@ impl Status {
     pub const READ: Exchange = READ_ACCESS.of("status", FRAME.id(Identifier::COMMAND, 0x04));
 
     /// Builds the request [`read`](READ_ACCESS).
-    ///
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -281,7 +280,7 @@ impl Status {
 }
 
 impl Layout for Status {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::STATE, &Self::RED, &Self::GREEN];
+    const SIGNALS: AnySignals = &[&Self::STATE, &Self::RED, &Self::GREEN];
     const DECODE: Decode<Self> =
         |data| Self { state: Self::STATE.get(data), red: Self::RED.get(data), green: Self::GREEN.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -324,7 +323,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

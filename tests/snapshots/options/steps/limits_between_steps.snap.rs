@@ -156,7 +156,6 @@ impl SetLimit {
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_limit", FRAME.id(Identifier::COMMAND, 0x003));
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -165,7 +164,7 @@ impl SetLimit {
 }
 
 impl Layout for SetLimit {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::CURRENT, &Self::INTERVAL, &Self::SLOPE, &Self::COLD];
+    const SIGNALS: AnySignals = &[&Self::CURRENT, &Self::INTERVAL, &Self::SLOPE, &Self::COLD];
     const DECODE: Decode<Self> = |data| Self {
         current_raw: Self::CURRENT.get(data),
         interval_s: Self::INTERVAL.get(data),
@@ -198,7 +197,6 @@ impl SetTotal {
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_total", FRAME.id(Identifier::COMMAND, 0x004));
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -207,7 +205,7 @@ impl SetTotal {
 }
 
 impl Layout for SetTotal {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::TOTAL];
+    const SIGNALS: AnySignals = &[&Self::TOTAL];
     const DECODE: Decode<Self> = |data| Self { total: Self::TOTAL.get(data) };
     const ENCODE: Encode<Self> = |message, payload| Self::TOTAL.put(message.total, payload);
 }
@@ -232,7 +230,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

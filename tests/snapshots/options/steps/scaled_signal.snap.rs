@@ -205,7 +205,6 @@ impl SetOutput {
     pub const WRITE: Exchange = WRITE_ACCESS.of("set_output", FRAME.id(Identifier::COMMAND, 0x0012));
 
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
-    ///
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
@@ -214,8 +213,7 @@ impl SetOutput {
 }
 
 impl Layout for SetOutput {
-    const SIGNALS: &'static [&'static dyn AnySignal] =
-        &[&Self::VOLTAGE, &Self::TEMPERATURE, &Self::DELAY, &Self::POWER];
+    const SIGNALS: AnySignals = &[&Self::VOLTAGE, &Self::TEMPERATURE, &Self::DELAY, &Self::POWER];
     const DECODE: Decode<Self> = |data| Self {
         voltage_raw: Self::VOLTAGE.get(data),
         temperature_raw: Self::TEMPERATURE.get(data),
@@ -248,7 +246,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -12,7 +12,7 @@ const WIDTH: usize = 100;
 /// What an item of a list begins with; no text of a spec does.
 const ITEM: &str = "- ";
 
-/// What a heading begins with, behind which no line is left empty; no text of a spec does.
+/// What a heading begins with, around which no line is left empty; no text of a spec does.
 const HEADING: &str = "# ";
 
 /// A documentation comment, line by line.
@@ -22,11 +22,11 @@ pub struct Comment {
 }
 
 impl Comment {
-    /// Makes a comment of paragraphs, with an empty line between two of them, but none where a [`list`] begins.
+    /// Makes a comment of paragraphs, with an empty line between two of them, but none before a [`list`] or a heading.
     pub fn new(paragraphs: impl IntoIterator<Item = String>) -> Self {
         let mut lines: Vec<String> = Vec::new();
         for paragraph in paragraphs {
-            let is_set_off = !paragraph.starts_with(ITEM);
+            let is_set_off = ![ITEM, HEADING].iter().any(|start| paragraph.starts_with(start));
             if is_set_off && lines.last().is_some_and(|last| !last.starts_with(HEADING)) {
                 lines.push(String::new());
             }

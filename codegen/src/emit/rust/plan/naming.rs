@@ -10,12 +10,13 @@ use crate::emit::Scaled;
 use crate::model::{Message, Signal};
 
 /// Types that generated code takes from the runtime or the prelude, or that every module has.
-const TAKEN: [&str; 99] = [
+const TAKEN: [&str; 100] = [
     "Address",
     "AddressType",
     "Addressed",
     "Addressing",
     "AnySignal",
+    "AnySignals",
     "Bcd",
     "Bits",
     "Bytes",
