@@ -40,7 +40,7 @@ impl Workload {
     pub const COUNTED: usize = 20_000;
     /// How many frames of a kind are timed.
     pub const TIMED: usize = 1_000_000;
-    /// The sets of frames that are timed: so many distinct ones, and a loop of few that stay in the cache.
+    /// The sets of frames that are timed, with their sizes: distinct frames, and a loop that stays in the cache.
     pub const SETS: [(&'static str, usize); 2] = [("distinct", Self::TIMED), ("loop", 16)];
 
     /// Returns the names of the works.
