@@ -13,7 +13,8 @@ pub trait Destination: Copy {
     /// Returns the mode as an index into [`Protocol::MODES`].
     fn mode(self) -> usize;
 
-    /// Returns what the identifier of a request shows. `sender` is the sender's own address, unless it is the usual one.
+    /// Returns what the identifier of a request shows. `sender` is the sender's own address, unless it is the
+    /// usual one.
     ///
     /// # Errors
     ///

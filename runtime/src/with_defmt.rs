@@ -1,4 +1,5 @@
-//! `defmt` for words, texts, elements, frames, times and sets of modules, behind the feature `defmt`. Generated code calls it.
+//! `defmt` for words, texts, elements, frames, times and sets of modules, behind the feature `defmt`. Generated code
+//! calls it.
 
 use defmt::{Display2Format, Format, Formatter, write};
 

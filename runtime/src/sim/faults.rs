@@ -3,7 +3,7 @@
 use super::Random;
 
 /// Faults of one device: how many of a hundred frames have each, and when the device fails.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Faults {
     /// Requests that do not reach it.
     pub deaf: u8,
