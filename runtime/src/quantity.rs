@@ -11,7 +11,7 @@ mod tests;
 
 pub use path::{ReadPath, SetPath, States};
 
-use crate::{Destination, Error, Protocol, Received, Request, Route};
+use crate::{Destination, Error, Kind, Protocol, Received, Request, Route};
 
 /// The name of what a device measures or takes. It is the same for every vendor.
 ///
@@ -186,5 +186,19 @@ impl<P: Quantities> Received<P> {
     pub fn setting(&self, quantity: Quantity) -> Option<i32> {
         let path = P::SETS.iter().find(|path| path.quantity == quantity && path.is_in(self))?;
         if self.is_error_reply() { None } else { path.read(self.frame()) }
+    }
+
+    /// Tests whether the reply says that all quantities which a request sets are in effect. Values of a unit may differ
+    /// by `tolerance` thousandths of it.
+    ///
+    /// It is false if the request sets nothing, or the reply does not say all of it.
+    pub fn confirms(&self, request: &Self, tolerance: u32) -> bool {
+        let mut paths = P::SETS.iter().filter(|path| path.is_in(request)).peekable();
+        let is_said = |path: &SetPath| {
+            let tolerance = if path.unit.is_some() { tolerance } else { 0 };
+            let both = request.setting(path.quantity).zip(self.setting(path.quantity));
+            both.is_some_and(|(asked, said)| asked.abs_diff(said) <= tolerance)
+        };
+        self.kind() == Kind::Reply && paths.peek().is_some() && paths.all(is_said)
     }
 }

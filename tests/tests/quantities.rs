@@ -203,6 +203,25 @@ fn what_a_request_sets_and_its_reply_says_is_shown() {
 }
 
 #[test]
+fn an_echo_confirms_what_was_asked_within_a_tolerance() {
+    fn confirms<P: Quantities>(asked: (u32, u64), said: (u32, u64), tolerance: u32) -> bool {
+        let [asked, said] = [asked, said].map(|(id, data)| Received::<P>::decode(&frame(id, data)).expect("printed"));
+        said.confirms(&asked, tolerance)
+    }
+    let infy = confirms::<infy::Message>;
+    // Section 2.4, 0x1C: the module says 199.985 V to 200 V.
+    let (asked, said) = ((0x029C_00F0, 0x0003_0D40_0000_1388), (0x029C_F000, 0x0003_0D31_0000_1388));
+    assert_eq!([14, 15, 16].map(|tolerance| infy(asked, said, tolerance)), [false, true, true]);
+    assert!(!infy(asked, (0x029C_F000, 0x0003_0D40_0000_1770), 999), "6 A, not 5 A");
+    assert!(!infy(asked, asked, 100), "it is no reply");
+    assert!(!infy(asked, (0x1E9C_F000, 0x0003_0D40_0000_1388), 100), "it is an error reply");
+    // A switch has no tolerance, and what only reads confirms nothing.
+    let (off, on) = (0x0100_0000_0000_0000, 0);
+    assert_eq!([off, on].map(|said| infy((0x029A_00F0, off), (0x029A_F000, said), 9999)), [true, false]);
+    assert!(!infy((0x0283_00F0, 0), (0x0283_F000, 0x43FA_0000_4060_0000), 100));
+}
+
+#[test]
 fn an_output_is_switched_on_after_its_set_points_only() {
     let (early, set) = (Err(Error::TooEarly { quantity: "delivering" }), sets::<mxr::Message>);
     let module = mxr::Target::Module(1);
