@@ -22,7 +22,7 @@
 //!     }
 //!     loop {
 //!         match client.poll(now) {
-//!             Step::Send(frame) => send(frame),
+//!             Step::Send { frame, .. } => send(frame),
 //!             Step::Lost(ticket) => println!("{ticket:?}: nobody answers"),
 //!             // Requests that nobody answers, or each of several, and how modules are.
 //!             Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
@@ -34,7 +34,8 @@
 //!
 //! Every request ends once: as answered, as refused, as lost, or as done if nobody or each module of
 //! several answers it. If it is asked [again and again](Client::every), each round ends so.
-//! What a device must go on doing is [held](Client::hold).
+//! What a device must go on doing is [held](Client::hold). What the program itself cancels, replaces or
+//! passes ends without an event.
 //!
 //! Two requests that one frame could answer are never under way at once. The second one waits until
 //! no answer to the first can come. So an answer that comes late is never taken for another one, if
@@ -52,13 +53,14 @@ mod group;
 mod health;
 mod hold;
 mod nodes;
+mod order;
 mod pace;
 #[cfg(test)]
 mod tests;
 
 pub use entry::Ticket;
 pub use group::NoMembers;
-pub use hold::{Agrees, NotHeld};
+pub use hold::{Agrees, NotHeld, repeats};
 pub use nodes::Nodes;
 pub use pace::Pace;
 
@@ -78,10 +80,10 @@ const LONGEST: u32 = (1 << 31) - 1;
 /// A request keeps its room until no answer to it can come any more, and for ever if it is asked again
 /// and again.
 ///
-/// A client takes 96 bytes. Each request takes 100 on a processor of 32 bits, and 112 on one of 64 bits.
-/// Each group takes 108.
+/// A client takes 96 bytes. Each request takes 108 on a processor of 32 bits, and 120 on one of 64 bits.
+/// Each group takes 112.
 #[derive(Clone, Copy, Debug)]
-pub struct Client<P, const N: usize, const G: usize = 0> {
+pub struct Client<P: Protocol, const N: usize, const G: usize = 0> {
     pace: Pace,
     model: Option<u8>,
     entries: [Option<Entry<P>>; N],
@@ -98,8 +100,13 @@ pub struct Client<P, const N: usize, const G: usize = 0> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub enum Step {
-    /// It sends this frame now.
-    Send(Frame),
+    /// It sends a frame now.
+    Send {
+        /// The request.
+        ticket: Ticket,
+        /// The frame.
+        frame: Frame,
+    },
     /// A request is lost: it was sent as often as it may be, and no answer came. If it is held, none came
     /// that agrees.
     Lost(Ticket),
@@ -151,7 +158,7 @@ pub enum Heard<P: Protocol> {
     ShortRefusal(Ticket),
     /// It would answer a request if it had the right length. The request waits on.
     Broken(Ticket),
-    /// It answers a request that was lost, or could answer what was held before.
+    /// It answers a request that was lost or cancelled, or could answer what a held one replaced.
     Late {
         /// The request.
         ticket: Ticket,
@@ -202,10 +209,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Asks once.
     ///
     /// What is [held](Self::hold) of the same message by the same access ends, if the request goes to one
-    /// of its modules or may do so. Its ticket ends without an event. So no renewal undoes a stop of all
-    /// modules. To read something ends nothing that is set.
+    /// of its modules or may do so, and says something else. Its ticket ends without an event. So no renewal
+    /// undoes a stop of all modules. To read something ends nothing that is set.
     ///
-    /// The request waits until no answer to what was held can be taken for one to it. To hold the new value
+    /// The request waits until no answer to an earlier one can be taken for one to it. To hold the new value
     /// instead is faster.
     ///
     /// # Errors
@@ -244,7 +251,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// each period.
     ///
     /// A round that has waited for a gap goes before all others but hurried ones. So it is at most two gaps
-    /// late, and one more for each other module whose round is due. It is later while its last round is sent
+    /// late, and one more for each other module whose round is due, or which something held in an
+    /// [order](Self::hold_after) goes to. It is later while its last round is sent
     /// again. It is also later while an answer to another request could be taken for one to it.
     ///
     /// It ends what [`ask`](Self::ask) would end.
@@ -268,24 +276,29 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     }
 
     /// Sends a request before all others that are due, if it is due: a stop, for instance. It counts for one
-    /// sending. It keeps the gap between requests. It also waits until no answer to another request could be taken for one to it, but
-    /// not for answers to what it replaced. Of a group whose members are known, it waits until the round of
-    /// another request to that group has ended.
+    /// sending. It keeps the gap between requests. It also waits until no answer to another request could be
+    /// taken for one to it, but not for answers to what it replaced. Of a group whose members are known, it
+    /// waits until the round of another request to that group has ended.
     ///
-    /// An older request that is still due is sent after it. [Cancel](Self::cancel) one that would undo a stop.
+    /// What was asked once, by the same message and access, and waits to be sent to no other modules, ends
+    /// without an event. Otherwise a switch-on would come after the stop. An older request to other modules,
+    /// too, is sent after it. [Cancel](Self::cancel) one that would undo a stop.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
-        let due = self.entries.iter_mut().flatten().find(|entry| entry.ticket == ticket && entry.due(now).is_some());
-        if let Some(entry) = due {
+        let mut entries = self.entries.iter_mut().flatten();
+        if let Some(entry) = entries.find(|entry| entry.ticket == ticket && entry.due(now).is_some()) {
             entry.is_hurried = true;
+            let request = *entry;
+            self.overtake(&request);
         }
     }
 
-    /// Asks no more. An answer that still comes is late.
+    /// Asks no more, and ends what [follows](Self::hold_after) it. An answer that still comes is late.
     pub fn cancel(&mut self, ticket: Ticket) {
         let entries = self.entries.iter_mut();
         for slot in entries.filter(|slot| slot.is_some_and(|entry| entry.ticket == ticket)) {
             *slot = slot.and_then(Entry::cancelled);
         }
+        self.end_followers();
     }
 
     /// Says what to do next.
@@ -294,7 +307,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         for slot in &mut self.entries {
             *slot = slot.and_then(|entry| entry.rested(now));
         }
-        let ended = self.ended(now).or_else(|| self.health.news());
+        let ended = self.ended(now);
+        if let Some(Step::Done(ticket)) = ended {
+            self.lead(ticket);
+        }
+        let ended = ended.or_else(|| self.health.news());
         ended.or_else(|| self.send(now)).unwrap_or_else(|| Step::Wait(self.deadline(now)))
     }
 
@@ -302,7 +319,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     fn ended(&mut self, now: u32) -> Option<Step> {
         let (entries, groups, health) = (&mut self.entries, &mut self.groups, &mut self.health);
         entries.iter_mut().flatten().find_map(|entry| {
-            let group = groups.answering(&entry.request).map(|group| &*group);
+            let group = groups.asked_by(entry).map(|group| &*group);
             let step = entry.ended(now, group)?;
             if matches!(step, Step::Lost(_) | Step::Missing { .. }) {
                 health.lost(&entry.silent(group));
@@ -328,9 +345,13 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         if let Some(entry) = awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
             let is_refusal = entry.request.refuses(frame) == Some(true);
             let begun = entry.begun;
-            let heard = entry.answered(received, is_refusal, self.model, self.groups.answering(&entry.request));
+            let heard = entry.answered(received, is_refusal, self.model, self.groups.asked_by(entry));
+            let is_over = entry.is_resting();
             if matches!(heard, Heard::Answer { .. } | Heard::Refusal { .. } | Heard::NotInEffect { .. }) {
                 self.put_off(node, begun);
+            }
+            if let (Heard::Answer { ticket, .. }, true) = (&heard, is_over) {
+                self.lead(*ticket);
             }
             return heard;
         }
@@ -353,7 +374,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ) -> Heard<P> {
         match awaiting.and_then(|place| self.entries.get_mut(place)?.as_mut()) {
             Some(entry) if problem == Problem::Length => {
-                let is_group_known = self.groups.answering(&entry.request).is_some();
+                let is_group_known = self.groups.is_asked_by(entry);
                 entry.answered_short(frame, is_group_known)
             }
             _ => Heard::Unrecognised(problem),
@@ -396,7 +417,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let entry = self.entries.get_mut(place)?.as_mut()?;
         entry.start(now, self.groups.answering(&entry.request));
         self.free = Some(now.wrapping_add(entry.pace.gap)).filter(|free| !has_come(*free, now));
-        Some(Step::Send(*entry.request.frame()))
+        let (ticket, frame) = (entry.ticket, *entry.request.frame());
+        if entry.sent == 1 {
+            self.hold_back(ticket);
+        }
+        Some(Step::Send { ticket, frame })
     }
 
     /// Tests whether another request, under way or to go first, has answers that could be taken for those to this.
@@ -406,9 +431,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let mut others = self.entries.iter().flatten().filter(|other| other.ticket != own.ticket);
         others.any(|other| {
             let is_like = self.groups.is_like(own, other);
-            let is_shared = self.groups.is_shared(&own.request, &other.request);
+            let is_shared = self.groups.is_shared(own, other);
             is_like && other.is_open(now)
-                || is_shared && other.awaits() && other.deaf().is_none()
+                || is_shared && self.groups.is_asked_by(other) && other.awaits() && other.deaf().is_none()
                 || (is_like || is_shared) && other.is_to_go_before(own, now)
         })
     }
@@ -416,7 +441,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns the next time at which something is to do.
     fn deadline(&self, now: u32) -> Option<u32> {
         let free = self.free.unwrap_or(now);
-        let times = self.entries.iter().flatten().map(|entry| match entry.state {
+        let own = self.entries.iter().flatten().filter(|entry| !entry.is_held_back());
+        let times = own.map(|entry| match entry.state {
             State::Due { from } if earlier(from, free, now) => free,
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => entry.until(),
         });

@@ -25,3 +25,8 @@ pub fn is_later(time: u32, other: u32) -> bool {
 pub fn later_of(one: u32, other: u32) -> u32 {
     if is_later(other, one) { other } else { one }
 }
+
+/// Returns the later one of two times, or the only one.
+pub fn latest_of(one: Option<u32>, other: Option<u32>) -> Option<u32> {
+    one.zip(other).map(|(one, other)| later_of(one, other)).or(one).or(other)
+}

@@ -4,6 +4,7 @@ use core::num::NonZeroU32;
 
 use super::group::Group;
 use super::hold::Hold;
+use super::order::Leader;
 use super::{Heard, Nodes, Pace, Step, has_one_answer};
 use crate::clock::{earlier, has_come, is_later, later_of};
 use crate::{Protocol, Received, Replies, Request};
@@ -15,7 +16,7 @@ pub struct Ticket(pub(super) u32);
 
 /// A request in the table.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry<P> {
+pub struct Entry<P: Protocol> {
     pub ticket: Ticket,
     pub request: Request<P, ()>,
     /// The module that it goes to, if it is one.
@@ -23,24 +24,26 @@ pub struct Entry<P> {
     pub pace: Pace,
     /// The time from one round to the next, if it is asked again and again.
     pub period: Option<NonZeroU32>,
-    /// Whether a round is left out if the module has heard something else.
+    /// Whether it only keeps a module alive: a round is put off if the module has heard something else.
     pub is_spare: bool,
     /// Whether it is sent before all others that are due.
     pub is_hurried: bool,
     /// How it is held, if it is.
     pub hold: Option<Hold<P>>,
+    /// The request after which it is sent, if there is one.
+    pub leader: Option<Leader>,
     pub state: State,
     /// When this round was due.
     pub round: u32,
-    /// When it, or what it replaced, was sent first since this round began or a module answered.
+    /// When it, or what it replaced, was first sent of those times that `unheard` counts.
     pub begun: u32,
     /// How often it was sent in this round.
     pub sent: u8,
     /// Whether the request was answered in this round.
     pub has_answer: bool,
-    /// How often it, and what it replaced, was sent since then.
+    /// How often it, and what it replaced, was sent since this round began or a module answered.
     pub unheard: u8,
-    /// Whether the module that it goes to has sent anything since then.
+    /// Whether the module that it goes to has sent anything since `begun`.
     pub is_heard: bool,
 }
 
@@ -77,6 +80,7 @@ impl<P: Protocol> Entry<P> {
             is_spare: false,
             is_hurried: false,
             hold: None,
+            leader: None,
             state: State::Due { from: now },
             round: now,
             begun: now,
@@ -90,18 +94,19 @@ impl<P: Protocol> Entry<P> {
     /// Returns since when the request is to be sent, if it is.
     pub fn due(&self, now: u32) -> Option<u32> {
         match self.state {
-            State::Due { from } => Some(from).filter(|from| has_come(*from, now)),
+            State::Due { from } => Some(from).filter(|from| has_come(*from, now) && !self.is_held_back()),
             State::Waiting { .. } | State::Resting { .. } => None,
         }
     }
 
     /// Tests whether both are due, and this is to be sent first.
     ///
-    /// First comes what is hurried, then what keeps a module alive and has waited for a gap. Then comes what
-    /// has waited longest.
+    /// First comes what is hurried. Then comes what keeps a module alive and has waited for a gap, or follows
+    /// another request. Then comes what has waited longest.
     pub fn is_before(&self, other: &Self, now: u32) -> bool {
         let Some((own, others)) = self.due(now).zip(other.due(now)) else { return false };
-        let [rank, other_rank] = [self, other].map(|entry| (entry.is_hurried, entry.is_overdue(now)));
+        let [rank, other_rank] =
+            [self, other].map(|entry| (entry.is_hurried, entry.leader.is_some() || entry.is_overdue(now)));
         rank > other_rank || rank == other_rank && earlier(own, others, now)
     }
 
@@ -145,11 +150,12 @@ impl<P: Protocol> Entry<P> {
             if self.unheard == 0 {
                 (self.begun, self.is_heard) = (now, false);
             }
-            if let Some(group) = group {
-                group.begin();
-            }
+        }
+        if let Some(group) = group {
+            group.ask(self.ticket, self.sent == 0);
         }
         let deaf = self.deaf();
+        self.wait_for_leader();
         self.is_hurried = false;
         self.sent = self.sent.saturating_add(1);
         self.unheard = self.unheard.saturating_add(1);
@@ -291,6 +297,9 @@ impl<P: Protocol> Entry<P> {
         match self.state {
             State::Resting { until, .. } if has_come(until, now) => {
                 let period = self.period?;
+                if self.leader.is_some() {
+                    return Some(self.anew(until));
+                }
                 let rounds = now.wrapping_sub(self.round) / period;
                 self.round = self.round.wrapping_add(period.get().wrapping_mul(rounds.max(1)));
                 Some(self.anew(self.round))
@@ -317,7 +326,7 @@ impl<P: Protocol> Entry<P> {
     }
 
     /// Ends the round, whose last wait is over at `until`.
-    fn rest(&mut self, until: u32, is_lost: bool) {
+    pub fn rest(&mut self, until: u32, is_lost: bool) {
         let late = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.late };
         let until = until.wrapping_add(late);
         let until = self.deaf().map_or(until, |deaf| later_of(until, deaf));

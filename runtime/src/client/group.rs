@@ -1,6 +1,6 @@
 //! The modules that answer a request to many.
 
-use super::{Client, Entry, Nodes};
+use super::{Client, Entry, Nodes, Ticket};
 use crate::filter::IdFilter;
 use crate::{Addressed, Destination, Error, Protocol, Replies, Request, Route};
 
@@ -9,7 +9,7 @@ use crate::{Addressed, Destination, Error, Protocol, Replies, Request, Route};
 pub enum NoMembers {
     /// There is no room for another group.
     Full,
-    /// The document does not name the target.
+    /// The document does not name the target, as the error says.
     Target(Error),
 }
 
@@ -34,6 +34,8 @@ pub struct Group {
     pub missing: Nodes,
     /// The members that have sent nothing in this round.
     unheard: Nodes,
+    /// The request whose round this is. It began when these members were known.
+    asked: Option<Ticket>,
 }
 
 /// Groups whose members are known.
@@ -45,8 +47,9 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
     /// done as soon as all of them have answered. It is sent again as long as some are missing. Nobody
     /// else answers it. There is room for `G` targets, and no members mean that they are not known.
     ///
-    /// One request to such a target is under way at a time, except one whose answers are late. Tell the client
-    /// of members before you hold something of one of them, since it then knows what contradicts what.
+    /// One request to such a target is under way at a time, except one whose answers are late. A round that is
+    /// under way when members are noted ends as it began: without them. Tell the client of members before you
+    /// hold something of one of them, since it then knows what contradicts what.
     ///
     /// # Errors
     ///
@@ -57,7 +60,8 @@ impl<P: Addressed, const N: usize, const G: usize> Client<P, N, G> {
         let groups = &mut self.groups.0;
         let known = groups.iter().position(|group| group.is_some_and(|group| group.target == target));
         let place = known.or_else(|| groups.iter().position(Option::is_none));
-        let group = (!members.is_empty()).then_some(Group { target, members, missing: members, unheard: members });
+        let group =
+            (!members.is_empty()).then_some(Group { target, members, missing: members, unheard: members, asked: None });
         match place.and_then(|place| groups.get_mut(place)) {
             Some(slot) => *slot = group,
             None if group.is_some() => return Err(NoMembers::Full),
@@ -78,6 +82,11 @@ impl<const G: usize> Groups<G> {
         let id = request.frame().raw_id();
         let group = self.0.iter_mut().flatten().find(|group| group.target.matches(id))?;
         Some(group).filter(|_| request.has_many_answers())
+    }
+
+    /// Returns the group that a request has asked in this round.
+    pub fn asked_by<P: Protocol>(&mut self, entry: &Entry<P>) -> Option<&mut Group> {
+        self.answering(&entry.request).filter(|group| group.asked == Some(entry.ticket))
     }
 
     /// Notes that a module has spoken.
@@ -115,16 +124,24 @@ impl<const G: usize> Groups<G> {
     }
 
     /// Tests whether two requests wait for the members of one group.
-    pub fn is_shared<P>(&self, one: &Request<P, ()>, other: &Request<P, ()>) -> bool {
-        let group = self.of(one).filter(|_| one.has_many_answers() && other.has_many_answers());
-        group.is_some_and(|group| group.target.matches(other.frame().raw_id()))
+    pub fn is_shared<P: Protocol>(&self, one: &Entry<P>, other: &Entry<P>) -> bool {
+        let have_many = one.request.has_many_answers() && other.request.has_many_answers();
+        let group = self.of(&one.request).filter(|_| have_many);
+        group.is_some_and(|group| group.target.matches(other.request.frame().raw_id()))
+    }
+
+    /// Tests whether a request has asked the members of its group in this round.
+    pub fn is_asked_by<P: Protocol>(&self, entry: &Entry<P>) -> bool {
+        self.of(&entry.request).is_some_and(|group| group.asked == Some(entry.ticket))
     }
 }
 
 impl Group {
-    /// Begins a round, in which nobody has answered.
-    pub fn begin(&mut self) {
-        (self.missing, self.unheard) = (self.members, self.members);
+    /// Notes that a request is sent. If it is not the last one, or begins anew, nobody has answered.
+    pub fn ask(&mut self, ticket: Ticket, is_anew: bool) {
+        if is_anew || self.asked != Some(ticket) {
+            (self.missing, self.unheard, self.asked) = (self.members, self.members, Some(ticket));
+        }
     }
 
     /// Notes that a member has answered, as it should or not. Returns whether that is new.

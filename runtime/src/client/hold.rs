@@ -5,11 +5,16 @@ use core::num::NonZeroU32;
 use super::entry::{Entry, State};
 use super::group::Groups;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
-use crate::clock::{earlier, has_come, later_of};
+use crate::clock::{earlier, has_come, latest_of};
 use crate::{Protocol, Received, Request};
 
-/// Says whether an echo agrees: whether the second message says what the first one asks for.
-pub type Agrees<P> = fn(&P, &P) -> bool;
+/// Says whether an echo agrees: whether the second frame says what the first one asks for.
+pub type Agrees<P> = fn(&Received<P>, &Received<P>) -> bool;
+
+/// Tests whether an echo says exactly what was asked for.
+pub fn repeats<P: Protocol + PartialEq>(asked: &Received<P>, said: &Received<P>) -> bool {
+    asked.content() == said.content()
+}
 
 /// Why a request is not held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +27,8 @@ pub enum NotHeld {
     /// Something else is held of some of the same modules, and of others. Or it is not known which modules
     /// that are, and the targets differ. Cancel that first.
     Torn(Ticket),
+    /// What it is to follow is not held, or would be replaced by it.
+    First,
 }
 
 impl core::fmt::Display for NotHeld {
@@ -29,6 +36,7 @@ impl core::fmt::Display for NotHeld {
         match self {
             Self::Full => Full.fmt(formatter),
             Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
+            Self::First => formatter.write_str("what it is to follow is not held, or is the same message"),
             Self::Torn(_) => formatter.write_str("something else is held of other modules that are partly the same"),
         }
     }
@@ -38,17 +46,17 @@ impl core::error::Error for NotHeld {}
 
 /// How an entry is held.
 #[derive(Clone, Copy, Debug)]
-pub struct Hold<P> {
-    agrees: Agrees<P>,
-    /// Until when an answer to what was held before can come, if it can.
+pub struct Hold<P: Protocol> {
+    pub agrees: Agrees<P>,
+    /// Until when an answer to what it replaced can come, if it can.
     pub deaf: Option<u32>,
 }
 
 impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Sends a request until its echo agrees, and renews it every `refresh` milliseconds, until it is
     /// [cancelled](Self::cancel) or replaced. `agrees(asked, said)` compares the request with its
-    /// reply. No document states how far an echo may differ, so the program says it. `PartialEq::eq`
-    /// allows no difference.
+    /// reply. No document states how far an echo may differ, so the program says it. [`repeats`] allows no
+    /// difference. [`Received::confirms`](crate::Received::confirms) compares quantities.
     ///
     /// Each round ends once. If the echo agrees, it is an [`Answer`](super::Heard::Answer). If it says
     /// something else, it is [`NotInEffect`](super::Heard::NotInEffect), and the request is sent again
@@ -58,9 +66,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// To hold what is held already changes nothing, and returns the same ticket. So a program may call
     /// this in a loop.
     ///
-    /// What is held of the same message by the same access is replaced, if the new request goes to the same
-    /// modules. It does not matter who answers, or which address of the controller asks. The client does not
-    /// send the old request after that. Its ticket ends without an event.
+    /// Every request of the same message by the same access is replaced, if the new one goes to all of its
+    /// modules: what is held, and what was asked once or again and again with other values. It does not matter who answers, or
+    /// which address of the controller asks. The client does not send the old request after that. Its ticket
+    /// ends without an event. So a stop that is held passes a switch-on that was asked.
     ///
     /// The new request does not wait for answers to the old one, and takes its place among those that are
     /// due. As long as an answer to the old one can come that could be taken for one to the new one, every
@@ -69,10 +78,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// however, if nobody answers.
     ///
     /// To [`ask`](Self::ask) for the same message and access ends what is held of the modules asked. What was
-    /// asked before and has not ended stays, and can be sent after a new value. Cancel it if it must not be.
+    /// asked before of other modules, too, stays and can be sent after a new value. Cancel it if it must not be.
     ///
     /// A device that restarts forgets what it was told. So hold all that it must do: the set-point, and
-    /// that it is on. Nothing says in which order two of them are renewed.
+    /// that it is on. [`hold_after`](Self::hold_after) sends the second one only after the first is in effect.
     ///
     /// Of several modules, each must agree, so the client must know its [`members`](Self::members). A round
     /// is [`Done`](super::Step::Done), or [`Missing`](super::Step::Missing) some. What is held of a group
@@ -92,14 +101,18 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         agrees: Agrees<P>,
         now: u32,
     ) -> Result<Ticket, NotHeld> {
-        let mut entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
+        let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
+        let (period, hold) = (NonZeroU32::new(refresh.clamp(1, LONGEST)), Some(Hold { agrees, deaf: None }));
+        self.hold_entry(Entry { period, hold, ..entry }, now)
+    }
+
+    /// Holds a request, and replaces others by it.
+    pub(super) fn hold_entry(&mut self, entry: Entry<P>, now: u32) -> Result<Ticket, NotHeld> {
         if !has_one_answer(&entry.request) && self.groups.answering(&entry.request).is_none() {
             return Err(NotHeld::Unconfirmed);
         }
-        entry.period = NonZeroU32::new(refresh.clamp(1, LONGEST));
-        entry.hold = Some(Hold { agrees, deaf: None });
         if let Some(same) = self.entries.iter_mut().flatten().find(|held| held.holds_the_same(&entry)) {
-            *same = Entry { period: entry.period, hold: same.hold.map(|hold| Hold { agrees, ..hold }), ..*same };
+            same.keep_as(&entry);
             return Ok(same.ticket);
         }
         let groups = self.groups;
@@ -108,12 +121,15 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         }
         let is_replaced = |slot: &Option<Entry<P>>| slot.is_some_and(|held| held.is_replaced_by(&entry, &groups));
         let mut new = entry;
-        for slot in self.entries.iter_mut().filter(|slot| is_replaced(slot)) {
-            if let Some(old) = slot.take() {
-                let is_like = groups.is_like(&old, &entry);
-                new = new.in_place_of(&old, is_like, now);
-                // Late answers that could not be taken for one to the new request are still told from others.
-                *slot = Some(old).filter(|_| !is_like).and_then(Entry::cancelled);
+        for place in 0..N {
+            let Some(slot) = self.entries.get_mut(place).filter(|slot| is_replaced(slot)) else { continue };
+            let Some(old) = slot.take() else { continue };
+            let is_like = groups.is_like(&old, &entry);
+            new = new.in_place_of(&old, is_like, now);
+            // Late answers that could not be taken for one to the new request are still told from others.
+            *slot = Some(old).filter(|_| !is_like).and_then(Entry::cancelled);
+            if old.is_held() {
+                self.lead_instead(old.ticket, entry.ticket);
             }
         }
         self.add(new).or_else(|Full| {
@@ -123,6 +139,14 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         })
     }
 
+    /// Ends what was asked earlier, is not sent yet, and would undo a request that is to be sent before it.
+    pub(super) fn overtake(&mut self, request: &Entry<P>) {
+        let groups = self.groups;
+        for slot in &mut self.entries {
+            *slot = slot.filter(|earlier| !earlier.would_undo(request, &groups));
+        }
+    }
+
     /// Ends what is held that a request would contradict.
     pub(super) fn release(&mut self, request: &Entry<P>) {
         let Self { entries, groups, .. } = self;
@@ -130,6 +154,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         for slot in entries.iter_mut().filter(|slot| is_released(slot)) {
             *slot = slot.and_then(Entry::cancelled);
         }
+        self.end_followers();
     }
 }
 
@@ -137,13 +162,13 @@ impl<P: Protocol> Hold<P> {
     /// Tests whether a reply shows that a request is in effect.
     pub fn agrees(&self, request: &Request<P, ()>, received: &Received<P>, model: Option<u8>) -> bool {
         let asked = Received::decode_by(model, request.frame());
-        asked.is_ok_and(|asked| (self.agrees)(asked.content(), received.content()))
+        asked.is_ok_and(|asked| (self.agrees)(&asked, received))
     }
 }
 
 impl<P: Protocol> Entry<P> {
     /// Tests whether it is held, and not cancelled.
-    const fn is_held(&self) -> bool {
+    pub const fn is_held(&self) -> bool {
         self.hold.is_some() && self.period.is_some()
     }
 
@@ -152,9 +177,25 @@ impl<P: Protocol> Entry<P> {
         self.is_held() && self.is_of_same_exchange(other) && self.request.frame() == other.request.frame()
     }
 
+    /// Goes on as it is, but is renewed, compared and led as another one that would hold the same.
+    fn keep_as(&mut self, other: &Self) {
+        let ticket = |entry: &Self| entry.leader.map(|leader| leader.ticket);
+        if ticket(self) != ticket(other) {
+            self.leader = other.leader;
+        }
+        let deaf = self.deaf();
+        (self.period, self.pace) = (other.period, other.pace);
+        self.hold = other.hold.map(|hold| Hold { deaf, ..hold });
+    }
+
     /// Tests whether both carry the same message by the same access.
     fn is_of_same_exchange(&self, other: &Self) -> bool {
         self.request.is_of_same_exchange(&other.request)
+    }
+
+    /// Tests whether both carry the same data.
+    fn says_the_same(&self, other: &Self) -> bool {
+        self.request.frame().bytes() == other.request.frame().bytes()
     }
 
     /// Tests whether another one asks all modules of this one.
@@ -177,14 +218,22 @@ impl<P: Protocol> Entry<P> {
         Some([self.request.module()?, other.request.module()?])
     }
 
-    /// Tests whether another one replaces this one, which is held or was.
-    fn is_replaced_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
-        self.hold.is_some() && self.is_of_same_exchange(other) && self.is_covered_by(other, groups)
+    /// Tests whether another one, which is to be held, replaces this one.
+    pub fn is_replaced_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        let is_other = self.hold.is_some() || !self.says_the_same(other);
+        is_other && self.is_of_same_exchange(other) && self.is_covered_by(other, groups)
+    }
+
+    /// Tests whether this is asked once, waits to be sent, and would tell all modules of another one something else.
+    fn would_undo<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        let is_waiting = matches!(self.state, State::Due { .. }) && !self.is_under_way() && self.period.is_none();
+        is_waiting && self.ticket != other.ticket && self.is_replaced_by(other, groups)
     }
 
     /// Tests whether this is held, and another one could tell one of its modules something else.
     fn is_contradicted_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
-        self.is_held() && self.is_of_same_exchange(other) && !self.is_apart_from(other, groups)
+        let is_other = self.is_held() && !self.says_the_same(other) && self.is_of_same_exchange(other);
+        is_other && !self.is_apart_from(other, groups)
     }
 
     /// Tests whether another one would contradict this one, but perhaps not for all of its modules.
@@ -192,7 +241,7 @@ impl<P: Protocol> Entry<P> {
         self.is_contradicted_by(other, groups) && !self.is_covered_by(other, groups)
     }
 
-    /// Takes over from what was held before: its place among those that wait, and how often nobody answered
+    /// Takes over from what was asked or held before: its place among those that wait, and how often nobody answered
     /// it. What can still answer it also comes over, if that could be taken for an answer to this.
     fn in_place_of(mut self, old: &Self, is_like: bool, now: u32) -> Self {
         if let Some(from) = old.due(now).filter(|from| earlier(*from, self.until(), now)) {
@@ -203,17 +252,17 @@ impl<P: Protocol> Entry<P> {
             (self.begun, self.unheard, self.is_heard) = (old.begun, old.unheard, old.is_heard);
         }
         let open = old.open_until().filter(|until| is_like && !has_come(*until, now));
-        let deaf = latest(self.deaf(), open);
+        let deaf = latest_of(self.deaf(), open);
         self.hold = self.hold.map(|hold| Hold { deaf, ..hold });
         self
     }
 
-    /// Returns until when an answer to what was held before can come, or counts as one to it.
+    /// Returns until when an answer to what it replaced can come, or counts as one to it.
     pub fn deaf(&self) -> Option<u32> {
         self.hold.as_ref()?.deaf
     }
 
-    /// Begins to listen when no answer to what was held before can come any more. The request is due again.
+    /// Begins to listen when no answer to what it replaced can come any more. The request is due again.
     pub fn listen(&mut self, now: u32) -> bool {
         let is_deaf = self.deaf().is_some();
         if is_deaf {
@@ -239,11 +288,6 @@ impl<P: Protocol> Entry<P> {
             }
             State::Due { .. } | State::Waiting { .. } => None,
         };
-        latest(until, self.deaf())
+        latest_of(until, self.deaf())
     }
-}
-
-/// Returns the later one of two times, or the only one.
-fn latest(one: Option<u32>, other: Option<u32>) -> Option<u32> {
-    one.zip(other).map(|(one, other)| later_of(one, other)).or(one).or(other)
 }

@@ -143,7 +143,7 @@ pub fn client<T: Destination<Protocol: Addressed<Target = T> + Unknown> + Unknow
     sink(client.members(unknown::<Route<T>>(), unknown::<[u8; 3]>()));
     for _ in 0..unknown::<u8>() {
         match client.poll(unknown()) {
-            Step::Send(frame) => sink(frame),
+            Step::Send { frame, .. } => sink(frame),
             step => sink(step),
         }
         match client.handle(&unknown_frame()) {

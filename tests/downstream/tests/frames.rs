@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::collections::VecDeque;
 
-use canspec_runtime::client::{Client, Heard, Pace, Step};
+use canspec_runtime::client::{Client, Heard, Pace, Step, repeats};
 use winch_driver::winch::embedded_can::nb::Can;
 use winch_driver::winch::embedded_can::{self, ExtendedId, Frame as _};
 use winch_driver::winch::{Brake, Frame, Message, Run, SetBrake, State, Status, Target};
@@ -73,7 +73,7 @@ fn a_client_asks_and_knows_the_answer() {
     let request = Status::read(Target::Winch(0x12)).expect("the winch is in range");
     let mut client: Client<Message, 8> = Client::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
     let asked = client.ask(request, 0).expect("there is room for eight requests");
-    assert_eq!(client.poll(0), Step::Send(*request.frame()));
+    assert_eq!(client.poll(0), Step::Send { ticket: asked, frame: *request.frame() });
     assert_eq!(client.poll(0), Step::Wait(Some(100)));
     let heard = client.handle(&frame(0x0B21_0112, [0x04, 0xD2, 0x41, 0x81]));
     assert!(matches!(heard, Heard::Answer { ticket, .. } if ticket == asked));
@@ -83,14 +83,14 @@ fn a_client_asks_and_knows_the_answer() {
 fn a_client_holds_a_speed_until_the_winch_has_it() {
     let mut client: Client<Message, 8> = Client::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
     let pull = |speed_rpm| Run { speed_rpm, ramp_s: 2.5 }.set(Target::Winch(0x12)).expect("it is slow enough");
-    client.hold(pull(600), 1000, PartialEq::eq, 0).expect("there is room, and the winch answers");
-    assert_eq!(client.poll(0), Step::Send(*pull(600).frame()));
-    let stop = client.hold(pull(0), 1000, PartialEq::eq, 5).expect("it takes the room of the old speed");
-    assert_eq!(client.poll(20), Step::Send(*pull(0).frame()));
+    let old = client.hold(pull(600), 1000, repeats, 0).expect("there is room, and the winch answers");
+    assert_eq!(client.poll(0), Step::Send { ticket: old, frame: *pull(600).frame() });
+    let stop = client.hold(pull(0), 1000, repeats, 5).expect("it takes the room of the old speed");
+    assert_eq!(client.poll(20), Step::Send { ticket: stop, frame: *pull(0).frame() });
     // This may be the answer to the old speed. So the client asks once more when none can come.
     let echo = frame(0x0B20_0112, [0x00, 0x00, 0x19, 0x00]);
     assert!(matches!(client.handle(&echo), Heard::Late { ticket, .. } if ticket == stop));
-    assert_eq!(client.poll(200), Step::Send(*pull(0).frame()));
+    assert_eq!(client.poll(200), Step::Send { ticket: stop, frame: *pull(0).frame() });
     assert!(matches!(client.handle(&echo), Heard::Answer { ticket, .. } if ticket == stop));
 }
 

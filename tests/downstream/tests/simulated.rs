@@ -1,7 +1,7 @@
 //! A simulated winch on a bus with faults.
 
 use canspec_runtime::Received;
-use canspec_runtime::client::{Client, Pace, Step};
+use canspec_runtime::client::{Client, Pace, Step, repeats};
 use canspec_runtime::sim::{Answer, Bench, Device, Event, Faults, Rules};
 use winch_driver::winch::{Message, Run, Target};
 
@@ -31,7 +31,7 @@ fn a_winch_runs_again_after_it_started_anew() {
         Faults { lost: 30, slowest: 50, restarts: Some(4000), ..Faults::NONE };
     let mut client: Client<Message, 8> = Client::new(Pace { gap: 20, wait: 100, tries: 3, late: 100 });
     let pull = Run { speed_rpm: 600, ramp_s: 2.5 }.set(Target::Winch(0x12)).expect("it is slow enough");
-    client.hold(pull, 1000, PartialEq::eq, 0).expect("there is room");
+    client.hold(pull, 1000, repeats, 0).expect("there is room");
     let mut speeds = Vec::new();
     for now in 0..6000 {
         while let Some(event) = bench.poll(now) {
@@ -40,7 +40,7 @@ fn a_winch_runs_again_after_it_started_anew() {
                 Event::Complaint(complaint) => panic!("{complaint}"),
             }
         }
-        while let Step::Send(frame) = client.poll(now) {
+        while let Step::Send { frame, .. } = client.poll(now) {
             bench.send(&frame, now);
         }
         let speed_rpm = bench.device(0x12).map(|winch| winch.speed_rpm);

@@ -159,7 +159,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             // What finds no room is asked later.
             let _ = self.ask(now);
             match self.client.poll(now) {
-                Step::Send(frame) => return Some(frame),
+                Step::Send { frame, .. } => return Some(frame),
                 Step::Lost(ticket) => self.asked(ticket).into_iter().for_each(|module| module.failed(true)),
                 // Groups are asked again, and modules say more than their silence does.
                 Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}

@@ -296,7 +296,7 @@ fn count_endings<P: Quantities + Addressed, const N: usize, const G: usize>(
         }
         loop {
             match client.poll(now) {
-                Step::Send(frame) => bus.bench.send(&frame, now),
+                Step::Send { frame, .. } => bus.bench.send(&frame, now),
                 Step::Lost(ticket) | Step::Done(ticket) | Step::Missing { ticket, .. } => {
                     *endings.get_mut(&ticket).expect("it was asked") += 1;
                 }

@@ -6,8 +6,8 @@ use std::vec::Vec;
 
 use embedded_can::Frame as _;
 
-use super::PACE;
-use crate::client::{Client, Full, Heard, Nodes, NotHeld, Pace, Step, Ticket};
+use super::{PACE, Polled, frame_sent};
+use crate::client::{Client, Full, Heard, Nodes, NotHeld, Pace, Step, Ticket, repeats};
 use crate::plumbing::Who;
 use crate::tests::heaters::{COMMAND, FRAME, FUNCTION, Heat, Message, To, frame};
 use crate::{Exchange, Frame, Request, Route};
@@ -38,7 +38,7 @@ fn read(target: To) -> Request<Message, Heat> {
 }
 
 fn sent(request: &Request<Message, Heat>) -> Step {
-    Step::Send(*request.frame())
+    frame_sent(*request.frame())
 }
 
 fn echo(heater: u8, steps: u8) -> Frame {
@@ -70,7 +70,7 @@ fn hold<const N: usize, const G: usize>(
     request: Request<Message, Heat>,
     now: u32,
 ) -> Result<Ticket, NotHeld> {
-    client.hold(request, REFRESH, PartialEq::eq, now)
+    client.hold(request, REFRESH, repeats, now)
 }
 
 /// Polls each millisecond, and gives the answers to what is sent. Returns the other steps, and when they came.
@@ -82,10 +82,10 @@ fn run<const N: usize, const G: usize>(
     let mut steps = Vec::new();
     for now in time {
         loop {
-            let step = client.poll(now);
+            let step = client.step(now);
             match step {
                 Step::Wait(_) => break,
-                Step::Send(frame) => reply(&frame).iter().for_each(|answer| {
+                Step::Send { frame, .. } => reply(&frame).iter().for_each(|answer| {
                     let _ = client.handle(answer);
                 }),
                 Step::Done(_) | Step::Lost(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
@@ -105,7 +105,7 @@ fn a_group_that_one_module_answers_for_replaces_what_is_held_of_its_members() {
     let mut client = asking();
     let old = hold(&mut client, power_by_one(To::Heater(4), 500.0), 0).expect("room");
     hold(&mut client, power_by_one(To::Heater(7), 100.0), 0).expect("room");
-    assert_eq!(client.poll(0), sent(&power_by_one(To::Heater(4), 500.0)));
+    assert_eq!(client.step(0), sent(&power_by_one(To::Heater(4), 500.0)));
     let off = power_by_one(GROUP, 0.0);
     let stop = hold(&mut client, off, 1).expect("room");
     // The group answers under another number, so an echo of heater 4 is still known as late.
@@ -123,9 +123,9 @@ fn to_replace_what_is_held_of_a_member_needs_no_room_although_it_still_waits() {
     let mut client: Client<Message, 1, 1> = Client::new(PACE);
     client.members(GROUP, [4]).expect("room");
     hold(&mut client, power_by_one(To::Heater(4), 500.0), 0).expect("room");
-    assert!(matches!(client.poll(0), Step::Send(_)));
+    assert!(matches!(client.step(0), Step::Send { .. }));
     assert!(hold(&mut client, power_by_one(GROUP, 0.0), 1).is_ok());
-    assert_eq!(client.poll(20), sent(&power_by_one(GROUP, 0.0)));
+    assert_eq!(client.step(20), sent(&power_by_one(GROUP, 0.0)));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn nothing_else_is_held_of_modules_that_may_be_the_same() {
     assert_eq!(hold(&mut client, group, 1), Err(NotHeld::Torn(held)));
     client.cancel(held);
     let held = hold(&mut client, group, 1).expect("room");
-    assert_eq!(hold(&mut client, power_by_one(To::Group(3), 0.0), 1), Err(NotHeld::Torn(held)));
+    assert_eq!(hold(&mut client, power_by_one(To::Group(3), 100.0), 1), Err(NotHeld::Torn(held)));
 }
 
 #[test]
@@ -187,11 +187,11 @@ fn a_client_waits_no_longer_than_until_what_is_held_listens() {
         hold(&mut client, power(To::Heater(1), power_w), 0).expect("room");
         hold(&mut client, power(GROUP, power_w), 0).expect("room");
         if power_w > 0.0 {
-            assert!(matches!((client.poll(0), client.poll(20)), (Step::Send(_), Step::Send(_))));
+            assert!(matches!((client.step(0), client.step(20)), (Step::Send { .. }, Step::Send { .. })));
         }
     }
     client.members(GROUP, [1, 4]).expect("room");
-    assert_eq!(client.poll(40), Step::Wait(Some(200)));
+    assert_eq!(client.step(40), Step::Wait(Some(200)));
 }
 
 /// Holds heater 4, asks five others, and stops a group of heater 4. From then on, nobody answers.
@@ -201,7 +201,7 @@ fn stopped_while_others_wait() -> (Client<Message, 12, 1>, Ticket) {
     client.ask(read(GROUP), 0).expect("room");
     let _ = run(&mut client, 0..400, |request| answers(request, &[4, 5]));
     hold(&mut client, power(To::Heater(4), 1500.0), 400).expect("room");
-    assert_eq!(client.poll(400), sent(&power(To::Heater(4), 1500.0)));
+    assert_eq!(client.step(400), sent(&power(To::Heater(4), 1500.0)));
     for heater in [1, 2, 3, 6, 7] {
         client.ask(read(To::Heater(heater)), 401).expect("room");
     }
@@ -266,46 +266,96 @@ fn a_ramp_does_not_keep_a_request_like_it_waiting() {
         run(client, now..now + 50, |request| answers(request, &[3]))
     };
     let _ = ramp(&mut client, 50);
-    let off = power(To::Heater(3), 0.0);
+    // Its answers look the same, and another access sets the value.
+    let off = power_by_one(To::Heater(3), 0.0);
     let ticket = client.ask(off, 90).expect("room");
     client.hurry(ticket, 90);
     let steps: Vec<_> = (2..30).flat_map(|step| ramp(&mut client, 50 * step)).collect();
     // An answer to the value of 50 ms can come until 250 ms.
     assert_eq!(when(&steps, sent(&off)), [250]);
-    let last = steps.iter().rfind(|(_, step)| matches!(step, Step::Send(_)));
+    let last = steps.iter().rfind(|(_, step)| matches!(step, Step::Send { .. }));
     assert!(last.is_some_and(|(now, _)| *now >= 1400));
 }
 
 #[test]
 fn what_is_held_and_not_sent_takes_no_answer_to_another_request() {
-    let mut client: Client<Message, 12> = Client::new(Pace { gap: 50, wait: 100, tries: 2, late: 50 });
-    hold(&mut client, power(To::Heater(3), 1500.0), 0).expect("room");
-    assert!(matches!(client.poll(0), Step::Send(_)));
-    for heater in [1, 2, 6, 7] {
-        client.ask(read(To::Heater(heater)), 1).expect("room");
+    let mut client: Client<Message, 12, 1> = Client::new(Pace { gap: 50, wait: 100, tries: 2, late: 50 });
+    client.members(GROUP, [3, 4]).expect("room");
+    for heater in [1, 2, 6] {
+        client.ask(read(To::Heater(heater)), 0).expect("room");
     }
-    let asked = client.ask(power(To::Heater(3), 300.0), 5).expect("room");
+    let asked = client.ask(power(GROUP, 300.0), 5).expect("room");
     hold(&mut client, power(To::Heater(3), 0.0), 10).expect("room");
-    for now in [50, 100, 150, 200] {
-        assert!(matches!(client.poll(now), Step::Send(_)));
+    for now in [10, 60, 110] {
+        assert!(matches!(client.step(now), Step::Send { .. }));
     }
-    assert_eq!(client.poll(250), sent(&power(To::Heater(3), 300.0)));
+    assert_eq!(client.step(160), sent(&power(GROUP, 300.0)));
     assert!(matches!(client.handle(&echo(3, 30)), Heard::Answer { ticket, .. } if ticket == asked));
+}
+
+#[test]
+fn a_stop_that_is_held_is_sent_at_once_and_no_switch_on_that_was_asked_comes_after_it() {
+    let (on, off) = (power(To::Heater(4), 1500.0), power(To::Heater(4), 0.0));
+    for target in [To::Heater(4), GROUP] {
+        // The switch-on waits to be sent, waits for its answer, or has had it.
+        for (stopped, is_sent) in [(0, false), (30, true), (90, true)] {
+            let mut client = asking();
+            client.ask(read(To::Heater(1)), 0).expect("room");
+            client.ask(on, 0).expect("room");
+            let steps =
+                run(&mut client, 0..stopped, |request| answers(request, if stopped == 90 { &[4] } else { &[] }));
+            assert_eq!(when(&steps, sent(&on)).len(), usize::from(is_sent));
+            let off = if target == GROUP { power(GROUP, 0.0) } else { off };
+            let stop = hold(&mut client, off, stopped).expect("room");
+            client.hurry(stop, stopped);
+            let steps = run(&mut client, stopped..3000, |request| answers(request, &[4, 5]));
+            let expected = if stopped == 30 { 40 } else { stopped };
+            assert_eq!(when(&steps, sent(&off)).first(), Some(&expected), "{target:?} at {stopped} ms");
+            assert_eq!(when(&steps, sent(&on)), []);
+        }
+    }
+}
+
+#[test]
+fn what_is_asked_again_and_again_ends_when_something_else_is_held() {
+    let mut client = asking();
+    client.every(500, power(To::Heater(3), 1500.0), 0).expect("room");
+    let _ = run(&mut client, 0..1200, |request| answers(request, &[3]));
+    hold(&mut client, power(To::Heater(3), 0.0), 1200).expect("room");
+    let steps = run(&mut client, 1200..4000, |request| answers(request, &[3]));
+    assert_eq!(when(&steps, sent(&power(To::Heater(3), 1500.0))), []);
+}
+
+#[test]
+fn a_hurried_stop_of_all_ends_what_was_asked_before_and_is_not_sent() {
+    let mut client = asking();
+    client.ask(read(To::Heater(1)), 0).expect("room");
+    let (on, off) = (power(GROUP, 1500.0), power(GROUP, 0.0));
+    client.ask(on, 0).expect("room");
+    client.ask(power(To::Heater(4), 1500.0), 0).expect("room");
+    let others = power(To::Heater(3), 500.0);
+    client.ask(others, 0).expect("room");
+    let stop = client.ask(off, 1).expect("room");
+    client.hurry(stop, 1);
+    let steps = run(&mut client, 1..3000, |request| answers(request, &[1, 3, 4, 5]));
+    assert_eq!(when(&steps, sent(&off)), [1]);
+    assert_eq!([on, power(To::Heater(4), 1500.0)].map(|on| when(&steps, sent(&on)).len()), [0, 0]);
+    assert_eq!(when(&steps, sent(&others)).len(), 1);
 }
 
 #[test]
 fn to_hurry_a_request_does_not_let_its_late_answers_be_taken_for_others() {
     let mut client = asking();
     let first = client.ask(power(To::Heater(3), 1500.0), 0).expect("room");
-    assert!(matches!(client.poll(0), Step::Send(_)));
+    assert!(matches!(client.step(0), Step::Send { .. }));
     client.ask(power(To::Heater(1), 100.0), 95).expect("room");
-    assert!(matches!(client.poll(95), Step::Send(_)));
+    assert!(matches!(client.step(95), Step::Send { .. }));
     // It is to be sent again at 100 ms, and waits for the gap.
-    assert_eq!(client.poll(100), Step::Wait(Some(115)));
+    assert_eq!(client.step(100), Step::Wait(Some(115)));
     client.hurry(first, 101);
     client.cancel(first);
     client.ask(power(To::Heater(3), 0.0), 102).expect("room");
-    assert!(matches!(client.poll(115), Step::Wait(_)));
+    assert!(matches!(client.step(115), Step::Wait(_)));
     assert!(matches!(client.handle(&echo(3, 150)), Heard::Late { ticket, .. } if ticket == first));
 }
 
@@ -333,4 +383,15 @@ fn a_module_is_kept_alive_although_others_fill_the_bus() {
     let times = when(&steps, sent(&alive));
     let longest = times.windows(2).map(|pair| pair[1] - pair[0]).max();
     assert!(longest.is_some_and(|longest| longest <= 1600 + 2 * 200), "{longest:?}");
+}
+
+#[test]
+fn what_says_the_same_is_no_contradiction() {
+    let mut client = asking();
+    let off = power(To::Heater(4), 0.0);
+    client.every(REFRESH, power(GROUP, 0.0), 0).expect("room");
+    hold(&mut client, off, 1).expect("room");
+    client.ask(power(To::All, 0.0), 2).expect("room");
+    let steps = run(&mut client, 2..3500, |request| answers(request, &[4, 5]));
+    assert_eq!([off, power(GROUP, 0.0)].map(|request| when(&steps, sent(&request)).len()), [4, 4]);
 }

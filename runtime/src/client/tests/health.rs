@@ -1,11 +1,11 @@
 //! Modules that are kept alive, that fall silent and that come back.
 
-use super::{Asking, PACE, answer, heat};
+use super::{Asking, PACE, Polled, answer, frame_sent, heat};
 use crate::client::{Heard, Nodes, Step};
 use crate::tests::heaters::{HEAT, To, frame};
 
 fn sent(heater: u8) -> Step {
-    Step::Send(*heat(heater).frame())
+    frame_sent(*heat(heater).frame())
 }
 
 #[test]
@@ -13,9 +13,9 @@ fn a_module_that_hears_nothing_else_is_kept_alive() {
     let mut client = Asking::new(PACE);
     client.keep_alive(heat(3), 3000, 0).expect("room");
     for round in [0, 3000, 6000] {
-        assert_eq!(client.poll(round), sent(3));
+        assert_eq!(client.step(round), sent(3));
         assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
-        assert_eq!(client.poll(round + 2999), Step::Wait(Some(round + 3000)));
+        assert_eq!(client.step(round + 2999), Step::Wait(Some(round + 3000)));
     }
 }
 
@@ -24,14 +24,14 @@ fn an_answered_request_puts_off_what_keeps_a_module_alive_and_a_lost_one_does_no
     let sent_at = |is_answered: bool, asked: u8| {
         let mut client = Asking::new(PACE);
         client.keep_alive(heat(3), 3000, 0).expect("room");
-        assert_eq!(client.poll(0), sent(3));
+        assert_eq!(client.step(0), sent(3));
         assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
         client.ask(heat(asked), 2000).expect("room");
-        assert_eq!(client.poll(2000), sent(asked));
+        assert_eq!(client.step(2000), sent(asked));
         if is_answered {
             assert!(matches!(client.handle(&answer(asked)), Heard::Answer { .. }));
         }
-        (2001..9000).find(|now| matches!(client.poll(*now), Step::Send(_)) && *now > 2300)
+        (2001..9000).find(|now| matches!(client.step(*now), Step::Send { .. }) && *now > 2300)
     };
     assert_eq!([sent_at(true, 3), sent_at(false, 3), sent_at(true, 4)], [Some(5000), Some(3000), Some(3000)]);
 }
@@ -41,9 +41,9 @@ fn what_keeps_a_module_alive_waits_for_what_was_answered_just_before() {
     let mut client = Asking::new(PACE);
     let ask = client.ask(heat(3), 0).expect("room");
     client.keep_alive(heat(3), 3000, 5).expect("room");
-    assert_eq!(client.poll(5), sent(3));
+    assert_eq!(client.step(5), sent(3));
     assert!(matches!(client.handle(&answer(3)), Heard::Answer { ticket, .. } if ticket == ask));
-    assert_eq!((6..9000).find(|now| matches!(client.poll(*now), Step::Send(_))), Some(3005));
+    assert_eq!((6..9000).find(|now| matches!(client.step(*now), Step::Send { .. })), Some(3005));
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn all_modules_together_are_kept_alive_in_each_period() {
     client.every(500, heat(3), 0).expect("room");
     let mut rounds = 0;
     for now in 0..9000 {
-        let step = client.poll(now);
+        let step = client.step(now);
         if step == sent(3) {
             assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
         }
@@ -67,14 +67,14 @@ fn all_modules_together_are_kept_alive_in_each_period() {
 fn a_module_is_silent_when_a_request_is_lost_and_back_when_it_sends_anything() {
     let mut client = Asking::new(PACE);
     let ticket = client.ask(heat(3), 0).expect("room");
-    let steps = [0, 100, 200, 200].map(|now| client.poll(now));
+    let steps = [0, 100, 200, 200].map(|now| client.step(now));
     assert_eq!(steps, [sent(3), sent(3), Step::Lost(ticket), Step::Silent(3)]);
     assert_eq!(*client.silent(), Nodes::from([3]));
     // The frame of another module changes nothing.
     assert!(matches!(client.handle(&frame(0x010B_F004, [0; 4])), Heard::Other(_)));
-    assert_eq!(client.poll(201), Step::Wait(Some(300)));
+    assert_eq!(client.step(201), Step::Wait(Some(300)));
     assert!(matches!(client.handle(&frame(0x0107_F003, [2, 0xF0, 0, 0])), Heard::Late { .. }));
-    assert_eq!([client.poll(202), client.poll(202)], [Step::Back(3), Step::Wait(Some(300))]);
+    assert_eq!([client.step(202), client.step(202)], [Step::Back(3), Step::Wait(Some(300))]);
     assert!(client.silent().is_empty());
 }
 
@@ -83,8 +83,8 @@ fn a_module_that_says_something_else_is_not_silent() {
     let mut client = Asking::new(PACE);
     let ticket = client.hold(heat(3), 1000, |_, _| false, 0).expect("room");
     for now in [0, 100] {
-        assert_eq!(client.poll(now), sent(3));
+        assert_eq!(client.step(now), sent(3));
         assert!(matches!(client.handle(&answer(3)), Heard::NotInEffect { .. }));
     }
-    assert_eq!([client.poll(200), client.poll(200)], [Step::Lost(ticket), Step::Wait(Some(300))]);
+    assert_eq!([client.step(200), client.step(200)], [Step::Lost(ticket), Step::Wait(Some(300))]);
 }

@@ -1,0 +1,131 @@
+//! What is held in an order: a request is sent only after another one was in effect.
+
+use super::entry::{Entry, State};
+use super::hold::Hold;
+use super::{Agrees, Client, NotHeld, Pace, Ticket};
+use crate::clock::latest_of;
+use crate::{Protocol, Request};
+
+/// The request that another one follows.
+#[derive(Clone, Copy, Debug)]
+pub struct Leader {
+    pub ticket: Ticket,
+    /// Whether it has not been in effect since the follower was sent.
+    pub is_awaited: bool,
+}
+
+impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
+    /// Holds a request that is sent only after another one was in effect: a switch-on after its set-point.
+    ///
+    /// Whenever a round of `first` has shown that it is in effect, the request is sent, once. So it is renewed
+    /// as often as `first` is, and each time after it. If its own answer does not come, or says something else,
+    /// its round is lost. The module may have restarted. So the request is not sent again before `first` is in
+    /// effect anew. A module is then never switched on without its set-point, if it takes longer to start than
+    /// the switch-on waits for the bus. What follows another request goes before others that are due, but for
+    /// hurried ones.
+    ///
+    /// Another request can follow this one, and so on. When a new round of `first` begins, all that follows it
+    /// waits anew, and its answers are late. So renew `first` more slowly than all of them can be answered.
+    /// What [replaces](Self::hold) `first` leads in its place. If `first` is [cancelled](Self::cancel), or
+    /// something that is asked ends it, what follows it ends, too, without an event.
+    ///
+    /// A request of the same message and access that is held without an order, such as a switch-off, replaces
+    /// this one and is sent at once.
+    ///
+    /// # Errors
+    ///
+    /// Refuses what [`hold`](Self::hold) refuses, and a `first` that is not held or would be replaced.
+    pub fn hold_after<R>(
+        &mut self,
+        first: Ticket,
+        request: Request<P, R>,
+        agrees: Agrees<P>,
+        now: u32,
+    ) -> Result<Ticket, NotHeld> {
+        let pace = Pace { tries: 1, ..self.pace };
+        let entry = Entry::new(self.ticket(), request.untyped(), pace, now);
+        let leader = self.entries.iter().flatten().find(|held| held.ticket == first && held.is_held());
+        let leader = leader.filter(|held| !held.is_replaced_by(&entry, &self.groups)).ok_or(NotHeld::First)?;
+        let (period, leader) = (leader.period, Some(Leader { ticket: first, is_awaited: true }));
+        self.hold_entry(Entry { period, leader, hold: Some(Hold { agrees, deaf: None }), ..entry }, now)
+    }
+
+    /// Lets those requests be sent that follow one which is in effect.
+    pub(super) fn lead(&mut self, first: Ticket) {
+        let begun = self.entries.iter().flatten().find(|entry| entry.ticket == first).map(|entry| entry.begun);
+        for follower in self.entries.iter_mut().flatten().filter(|entry| entry.follows(first)) {
+            follower.be_led(begun);
+        }
+    }
+
+    /// Lets all that follows a request wait until it is in effect anew.
+    pub(super) fn hold_back(&mut self, first: Ticket) {
+        for place in 0..N {
+            let is_behind = |slot: &Option<Entry<P>>| slot.is_some_and(|entry| self.is_behind(&entry, first));
+            if self.entries.get(place).is_some_and(is_behind) {
+                self.entries.get_mut(place).into_iter().flatten().for_each(Entry::wait_anew);
+            }
+        }
+    }
+
+    /// Tests whether a request follows another one, perhaps by way of others.
+    fn is_behind(&self, entry: &Entry<P>, first: Ticket) -> bool {
+        let of = |ticket: Ticket| self.entries.iter().flatten().find(|entry| entry.ticket == ticket);
+        let leaders = core::iter::successors(entry.leader, |leader| of(leader.ticket)?.leader);
+        leaders.take(N).any(|leader| leader.ticket == first)
+    }
+
+    /// Lets what follows a request follow another one instead.
+    pub(super) fn lead_instead(&mut self, old: Ticket, new: Ticket) {
+        for follower in self.entries.iter_mut().flatten().filter(|entry| entry.follows(old)) {
+            follower.leader = Some(Leader { ticket: new, is_awaited: true });
+        }
+        self.hold_back(new);
+    }
+
+    /// Ends what follows a request that is not held any more.
+    pub(super) fn end_followers(&mut self) {
+        let is_left = |slot: &&mut Option<Entry<P>>, held: &[Option<Entry<P>>; N]| {
+            let leads = |leader: Ticket| held.iter().flatten().any(|held| held.ticket == leader && held.is_held());
+            slot.is_some_and(|entry| entry.is_held() && entry.leader.is_some_and(|leader| !leads(leader.ticket)))
+        };
+        loop {
+            let held = self.entries;
+            let Some(slot) = self.entries.iter_mut().find(|slot| is_left(slot, &held)) else { return };
+            *slot = slot.and_then(Entry::cancelled);
+        }
+    }
+}
+
+impl<P: Protocol> Entry<P> {
+    /// Tests whether it is sent after another request.
+    fn follows(&self, first: Ticket) -> bool {
+        self.leader.is_some_and(|leader| leader.ticket == first)
+    }
+
+    /// Tests whether it is not to be sent before another request is in effect.
+    pub fn is_held_back(&self) -> bool {
+        self.sent == 0 && self.leader.is_some_and(|leader| leader.is_awaited)
+    }
+
+    /// Is to be sent, as what it follows is in effect. That was sent at a time.
+    fn be_led(&mut self, sent: Option<u32>) {
+        self.leader = self.leader.map(|leader| Leader { is_awaited: false, ..leader });
+        if let (State::Due { .. }, Some(from)) = (self.state, latest_of(sent, self.deaf())) {
+            self.state = State::Due { from };
+        }
+    }
+
+    /// Waits until what it follows is in effect anew. An answer that still comes is late.
+    pub fn wait_anew(&mut self) {
+        self.wait_for_leader();
+        if self.sent > 0 && !self.is_resting() {
+            self.rest(self.until(), true);
+        }
+    }
+
+    /// Notes that it is not sent again before what it follows is in effect anew.
+    pub fn wait_for_leader(&mut self) {
+        self.leader = self.leader.map(|leader| Leader { is_awaited: true, ..leader });
+    }
+}

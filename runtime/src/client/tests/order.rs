@@ -1,0 +1,178 @@
+//! Requests that are sent only after others are in effect.
+//!
+//! The heaters have one message to set. So a read takes the part of the switch-on.
+
+use std::vec::Vec;
+
+use super::{PACE, Polled, frame_sent};
+use crate::client::{Client, Heard, NotHeld, Step, Ticket, repeats};
+use crate::tests::heaters::{Heat, Message, To, frame};
+use crate::{Frame, Request};
+
+type Asking = Client<Message, 6, 1>;
+
+const REFRESH: u32 = 1000;
+
+fn set(power_w: f64) -> Request<Message, Heat> {
+    Heat { power_w }.set(To::Heater(3)).expect("a legal request")
+}
+
+fn on(heater: u8) -> Request<Message, Heat> {
+    Heat::ask(To::Heater(heater)).expect("a legal request")
+}
+
+fn echo(steps: u8) -> Frame {
+    frame(0x0107_F003, [2, 0xF0, 0, steps])
+}
+
+fn is_on(heater: u8) -> Frame {
+    frame(0x010C_F000 | u32::from(heater), [0; 4])
+}
+
+/// Holds a set-point, and then a switch-on.
+fn held() -> (Asking, [Ticket; 2]) {
+    let mut client = Asking::new(PACE);
+    let first = client.hold(set(1500.0), REFRESH, repeats, 0).expect("room");
+    let second = client.hold_after(first, on(3), |_, _| true, 0).expect("room");
+    (client, [first, second])
+}
+
+/// Polls until a time, and returns when what was sent.
+fn sent(client: &mut Asking, times: core::ops::Range<u32>) -> Vec<(u32, Frame)> {
+    let mut sent = Vec::new();
+    for now in times {
+        loop {
+            match client.poll(now) {
+                Step::Send { frame, .. } => sent.push((now, frame)),
+                Step::Wait(_) => break,
+                _ => {}
+            }
+        }
+    }
+    sent
+}
+
+fn answers(client: &mut Asking, frame: &Frame, to: Ticket) -> bool {
+    matches!(client.handle(frame), Heard::Answer { ticket, .. } if ticket == to)
+}
+
+#[test]
+fn the_second_is_sent_as_soon_as_the_first_is_in_effect_and_again_after_each_renewal() {
+    let (mut client, [first, second]) = held();
+    for round in [0, 1000, 2000] {
+        assert_eq!(client.step(round), frame_sent(*set(1500.0).frame()));
+        assert_eq!(sent(&mut client, round..round + 50), []);
+        assert!(answers(&mut client, &echo(150), first));
+        assert_eq!(sent(&mut client, round + 50..round + 60), [(round + 50, *on(3).frame())]);
+        assert!(answers(&mut client, &is_on(3), second));
+        assert_eq!(sent(&mut client, round + 60..round + 1000), []);
+    }
+}
+
+#[test]
+fn the_second_is_not_sent_while_the_first_is_not_in_effect() {
+    for wrong in [None, Some(echo(149)), Some(frame(0x0107_F003, [2, 0xF2, 0, 150]))] {
+        let (mut client, _) = held();
+        for now in 0..5000 {
+            if let Step::Send { frame, .. } = client.poll(now) {
+                assert_eq!(frame, *set(1500.0).frame());
+                wrong.into_iter().for_each(|wrong| assert!(!matches!(client.handle(&wrong), Heard::Answer { .. })));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_second_that_nobody_answers_is_sent_once_and_only_after_the_first_again() {
+    let (mut client, [first, second]) = held();
+    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    assert!(answers(&mut client, &echo(150), first));
+    let steps = [20, 120, 121, 300].map(|now| client.step(now));
+    assert_eq!(steps[..2], [frame_sent(*on(3).frame()), Step::Lost(second)]);
+    assert_eq!(sent(&mut client, 301..1050), [(1000, *set(1500.0).frame())]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(sent(&mut client, 1050..1100), [(1050, *on(3).frame())]);
+}
+
+#[test]
+fn a_second_that_was_not_sent_when_the_first_is_renewed_waits_for_it_anew() {
+    let (mut client, [first, _]) = held();
+    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    // The first is replaced while the second waits for the gap.
+    assert!(answers(&mut client, &echo(150), first));
+    let new = client.hold(set(500.0), REFRESH, repeats, 10).expect("it takes the room");
+    assert_eq!(sent(&mut client, 10..201), [(20, *set(500.0).frame()), (200, *set(500.0).frame())]);
+    assert!(answers(&mut client, &echo(50), new));
+    assert_eq!(sent(&mut client, 201..300), [(220, *on(3).frame())]);
+}
+
+#[test]
+fn an_answer_of_the_second_to_the_old_first_is_late() {
+    let (mut client, [first, second]) = held();
+    let third = client.hold_after(second, on(4), |_, _| true, 0).expect("room");
+    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(client.step(20), frame_sent(*on(3).frame()));
+    let new = client.hold(set(500.0), REFRESH, repeats, 30).expect("it takes the room");
+    assert!(matches!(client.handle(&is_on(3)), Heard::Late { ticket, .. } if ticket == second));
+    assert_eq!(sent(&mut client, 30..230), [(40, *set(500.0).frame()), (200, *set(500.0).frame())]);
+    assert!(answers(&mut client, &echo(50), new));
+    assert_eq!(sent(&mut client, 230..240), [(230, *on(3).frame())]);
+    assert!(answers(&mut client, &is_on(3), second));
+    assert_eq!(sent(&mut client, 240..260), [(250, *on(4).frame())]);
+    assert!(answers(&mut client, &is_on(4), third));
+}
+
+#[test]
+fn what_follows_ends_with_what_it_follows() {
+    let ends: [fn(&mut Asking, Ticket); 2] = [
+        |client, first| client.cancel(first),
+        |client, _| assert!(client.ask(Heat { power_w: 0.0 }.set(To::All).expect("a legal request"), 0).is_ok()),
+    ];
+    for end in ends {
+        let (mut client, [first, second]) = held();
+        client.hold_after(second, on(4), |_, _| true, 0).expect("room");
+        end(&mut client, first);
+        let frames = sent(&mut client, 0..5000);
+        assert!(frames.iter().all(|(_, frame)| [3, 4].iter().all(|heater| frame != on(*heater).frame())));
+        assert_eq!(client.hold_after(second, on(5), |_, _| true, 5000), Err(NotHeld::First));
+    }
+}
+
+#[test]
+fn what_is_held_without_an_order_replaces_what_follows_and_is_sent_at_once() {
+    let (mut client, [first, second]) = held();
+    let off = client.hold(on(3), REFRESH, |_, _| true, 0).expect("it takes the room");
+    assert_eq!(off, second, "it is the same request");
+    assert_eq!(sent(&mut client, 0..50), [(0, *set(1500.0).frame()), (20, *on(3).frame())]);
+    assert_eq!(client.hold_after(first, set(0.0), repeats, 50), Err(NotHeld::First));
+    // In a loop it is the same one.
+    let again = client.hold_after(first, on(3), |_, _| true, 50).expect("it is held");
+    assert_eq!(client.hold_after(first, on(3), |_, _| true, 51), Ok(again));
+}
+
+#[test]
+fn what_follows_a_group_is_sent_when_all_of_its_members_agree() {
+    let mut client = Asking::new(PACE);
+    client.members(To::Group(2), [3, 4]).expect("room");
+    let group = Heat { power_w: 1500.0 }.set(To::Group(2)).expect("a legal request");
+    let first = client.hold(group, REFRESH, repeats, 0).expect("the members are known");
+    client.hold_after(first, on(3), |_, _| true, 0).expect("room");
+    assert_eq!(sent(&mut client, 0..30), [(0, *group.frame())]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(sent(&mut client, 30..60), []);
+    assert!(answers(&mut client, &frame(0x0107_F004, [2, 0xF0, 0, 150]), first));
+    assert_eq!(client.step(60), Step::Done(first));
+    assert_eq!(client.step(60), frame_sent(*on(3).frame()));
+}
+
+#[test]
+fn what_follows_goes_before_others_that_wait() {
+    let (mut client, [first, _]) = held();
+    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    for heater in [1, 2] {
+        client.ask(on(heater), 0).expect("room");
+    }
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!([20, 40].map(|now| client.step(now)), [on(3), on(1)].map(|request| frame_sent(*request.frame())));
+}
