@@ -68,7 +68,7 @@ use core::num::NonZeroU32;
 
 use crate::clock::{earlier, has_come};
 use crate::{Frame, Problem, Protocol, Received, Replies, Request};
-use entry::{Entry, State};
+use entry::{Entry, State, Urgency};
 use group::Groups;
 use health::Health;
 
@@ -286,7 +286,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
         let mut entries = self.entries.iter_mut().flatten();
         if let Some(entry) = entries.find(|entry| entry.ticket == ticket && entry.due(now).is_some()) {
-            entry.is_hurried = true;
+            entry.urgency = Urgency::Hurried;
             let request = *entry;
             self.overtake(&request);
         }
@@ -308,6 +308,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             *slot = slot.and_then(|entry| entry.rested(now));
         }
         let ended = self.ended(now);
+        self.renew_leaders();
         if let Some(Step::Done(ticket)) = ended {
             self.lead(ticket);
         }

@@ -26,8 +26,7 @@ pub struct Entry<P: Protocol> {
     pub period: Option<NonZeroU32>,
     /// Whether it only keeps a module alive: a round is put off if the module has heard something else.
     pub is_spare: bool,
-    /// Whether it is sent before all others that are due.
-    pub is_hurried: bool,
+    pub urgency: Urgency,
     /// How it is held, if it is.
     pub hold: Option<Hold<P>>,
     /// The request after which it is sent, if there is one.
@@ -45,6 +44,15 @@ pub struct Entry<P: Protocol> {
     pub unheard: u8,
     /// Whether the module that it goes to has sent anything since `begun`.
     pub is_heard: bool,
+}
+
+/// Whether an entry is sent before all others that are due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Urgency {
+    /// It waits for its turn.
+    Usual,
+    /// It is sent first.
+    Hurried,
 }
 
 /// What an entry waits for.
@@ -78,7 +86,7 @@ impl<P: Protocol> Entry<P> {
             pace,
             period: None,
             is_spare: false,
-            is_hurried: false,
+            urgency: Urgency::Usual,
             hold: None,
             leader: None,
             state: State::Due { from: now },
@@ -106,7 +114,7 @@ impl<P: Protocol> Entry<P> {
     pub fn is_before(&self, other: &Self, now: u32) -> bool {
         let Some((own, others)) = self.due(now).zip(other.due(now)) else { return false };
         let [rank, other_rank] =
-            [self, other].map(|entry| (entry.is_hurried, entry.leader.is_some() || entry.is_overdue(now)));
+            [self, other].map(|entry| (entry.urgency, entry.leader.is_some() || entry.is_overdue(now)));
         rank > other_rank || rank == other_rank && earlier(own, others, now)
     }
 
@@ -146,17 +154,15 @@ impl<P: Protocol> Entry<P> {
 
     /// Notes that the request is sent.
     pub fn start(&mut self, now: u32, group: Option<&mut Group>) {
-        if self.sent == 0 {
-            if self.unheard == 0 {
-                (self.begun, self.is_heard) = (now, false);
-            }
+        if self.sent == 0 && self.unheard == 0 {
+            (self.begun, self.is_heard) = (now, false);
         }
         if let Some(group) = group {
             group.ask(self.ticket, self.sent == 0);
         }
         let deaf = self.deaf();
         self.wait_for_leader();
-        self.is_hurried = false;
+        self.urgency = Urgency::Usual;
         self.sent = self.sent.saturating_add(1);
         self.unheard = self.unheard.saturating_add(1);
         let wait = if self.request.replies() == Replies::Nobody { 0 } else { self.pace.wait };
@@ -183,6 +189,7 @@ impl<P: Protocol> Entry<P> {
         let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.is_answered();
         if !is_done && self.sent < self.pace.tries {
             self.state = State::Due { from: now };
+            self.want_leader();
             return None;
         }
         self.rest(until, !is_done);

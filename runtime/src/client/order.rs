@@ -2,7 +2,7 @@
 
 use super::entry::{Entry, State};
 use super::hold::Hold;
-use super::{Agrees, Client, NotHeld, Pace, Ticket};
+use super::{Agrees, Client, NotHeld, Ticket};
 use crate::clock::latest_of;
 use crate::{Protocol, Request};
 
@@ -12,6 +12,8 @@ pub struct Leader {
     pub ticket: Ticket,
     /// Whether it has not been in effect since the follower was sent.
     pub is_awaited: bool,
+    /// Whether the follower is to be sent again, and it before that.
+    pub is_wanted: bool,
 }
 
 impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
@@ -19,10 +21,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// Whenever a round of `first` has shown that it is in effect, the request is sent, once. So it is renewed
     /// as often as `first` is, and each time after it. If its own answer does not come, or says something else,
-    /// its round is lost. The module may have restarted. So the request is not sent again before `first` is in
-    /// effect anew. A module is then never switched on without its set-point, if it takes longer to start than
-    /// the switch-on waits for the bus. What follows another request goes before others that are due, but for
-    /// hurried ones.
+    /// the module may have restarted. Then both are sent again, `first` before it, as often as the pace says.
+    /// So a module is never switched on without its set-point, if it takes longer to start than the switch-on
+    /// waits for the bus. What follows another request goes before others that are due, but for hurried ones.
     ///
     /// Another request can follow this one, and so on. When a new round of `first` begins, all that follows it
     /// waits anew, and its answers are late. So renew `first` more slowly than all of them can be answered.
@@ -42,11 +43,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         agrees: Agrees<P>,
         now: u32,
     ) -> Result<Ticket, NotHeld> {
-        let pace = Pace { tries: 1, ..self.pace };
-        let entry = Entry::new(self.ticket(), request.untyped(), pace, now);
+        let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
         let leader = self.entries.iter().flatten().find(|held| held.ticket == first && held.is_held());
         let leader = leader.filter(|held| !held.is_replaced_by(&entry, &self.groups)).ok_or(NotHeld::First)?;
-        let (period, leader) = (leader.period, Some(Leader { ticket: first, is_awaited: true }));
+        let (period, leader) = (leader.period, Some(Leader { ticket: first, is_awaited: true, is_wanted: false }));
         self.hold_entry(Entry { period, leader, hold: Some(Hold { agrees, deaf: None }), ..entry }, now)
     }
 
@@ -68,17 +68,34 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         }
     }
 
+    /// Renews soon what others follow that are to be sent again.
+    pub(super) fn renew_leaders(&mut self) {
+        for place in 0..N {
+            let Some(Some(Entry { leader: Some(leader), .. })) = self.entries.get_mut(place) else { continue };
+            if core::mem::take(&mut leader.is_wanted) {
+                let leader = *leader;
+                let head = self.leaders(leader).last().map_or(leader.ticket, |leader| leader.ticket);
+                let mut entries = self.entries.iter_mut().flatten();
+                entries.find(|entry| entry.ticket == head).into_iter().for_each(Entry::renew_soon);
+            }
+        }
+    }
+
+    /// Returns what leads, and what leads that, and so on.
+    fn leaders(&self, leader: Leader) -> impl Iterator<Item = Leader> {
+        let of = |ticket: Ticket| self.entries.iter().flatten().find(move |entry| entry.ticket == ticket);
+        core::iter::successors(Some(leader), move |leader| of(leader.ticket)?.leader).take(N)
+    }
+
     /// Tests whether a request follows another one, perhaps by way of others.
     fn is_behind(&self, entry: &Entry<P>, first: Ticket) -> bool {
-        let of = |ticket: Ticket| self.entries.iter().flatten().find(|entry| entry.ticket == ticket);
-        let leaders = core::iter::successors(entry.leader, |leader| of(leader.ticket)?.leader);
-        leaders.take(N).any(|leader| leader.ticket == first)
+        entry.leader.is_some_and(|leader| self.leaders(leader).any(|leader| leader.ticket == first))
     }
 
     /// Lets what follows a request follow another one instead.
     pub(super) fn lead_instead(&mut self, old: Ticket, new: Ticket) {
         for follower in self.entries.iter_mut().flatten().filter(|entry| entry.follows(old)) {
-            follower.leader = Some(Leader { ticket: new, is_awaited: true });
+            follower.leader = Some(Leader { ticket: new, is_awaited: true, is_wanted: false });
         }
         self.hold_back(new);
     }
@@ -105,7 +122,7 @@ impl<P: Protocol> Entry<P> {
 
     /// Tests whether it is not to be sent before another request is in effect.
     pub fn is_held_back(&self) -> bool {
-        self.sent == 0 && self.leader.is_some_and(|leader| leader.is_awaited)
+        self.leader.is_some_and(|leader| leader.is_awaited)
     }
 
     /// Is to be sent, as what it follows is in effect. That was sent at a time.
@@ -119,9 +136,21 @@ impl<P: Protocol> Entry<P> {
     /// Waits until what it follows is in effect anew. An answer that still comes is late.
     pub fn wait_anew(&mut self) {
         self.wait_for_leader();
-        if self.sent > 0 && !self.is_resting() {
-            self.rest(self.until(), true);
+        if let State::Waiting { until } = self.state {
+            self.rest(until, true);
         }
+    }
+
+    /// Begins its next round when no answer to this one can come any more.
+    fn renew_soon(&mut self) {
+        if let (State::Resting { until, .. }, Some(period)) = (self.state, self.period) {
+            self.round = until.wrapping_sub(period.get());
+        }
+    }
+
+    /// Lets what it follows be sent again before it.
+    pub fn want_leader(&mut self) {
+        self.leader = self.leader.map(|leader| Leader { is_wanted: true, ..leader });
     }
 
     /// Notes that it is not sent again before what it follows is in effect anew.

@@ -27,10 +27,8 @@ trait Polled {
 
 impl<P: Protocol, const N: usize, const G: usize> Polled for Client<P, N, G> {
     fn step(&mut self, now: u32) -> Step {
-        match self.poll(now) {
-            Step::Send { frame, .. } => frame_sent(frame),
-            step => step,
-        }
+        let step = self.poll(now);
+        if let Step::Send { frame, .. } = step { frame_sent(frame) } else { step }
     }
 }
 

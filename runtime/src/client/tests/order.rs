@@ -45,7 +45,7 @@ fn sent(client: &mut Asking, times: core::ops::Range<u32>) -> Vec<(u32, Frame)> 
             match client.poll(now) {
                 Step::Send { frame, .. } => sent.push((now, frame)),
                 Step::Wait(_) => break,
-                _ => {}
+                Step::Lost(_) | Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
             }
         }
     }
@@ -76,22 +76,30 @@ fn the_second_is_not_sent_while_the_first_is_not_in_effect() {
         for now in 0..5000 {
             if let Step::Send { frame, .. } = client.poll(now) {
                 assert_eq!(frame, *set(1500.0).frame());
-                wrong.into_iter().for_each(|wrong| assert!(!matches!(client.handle(&wrong), Heard::Answer { .. })));
+                assert!(!wrong.is_some_and(|wrong| matches!(client.handle(&wrong), Heard::Answer { .. })));
             }
         }
     }
 }
 
 #[test]
-fn a_second_that_nobody_answers_is_sent_once_and_only_after_the_first_again() {
+fn a_second_that_nobody_answers_is_sent_again_after_the_first_is_in_effect_anew() {
     let (mut client, [first, second]) = held();
-    assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+    let (set, on) = (frame_sent(*set(1500.0).frame()), frame_sent(*on(3).frame()));
+    assert_eq!(client.step(0), set);
     assert!(answers(&mut client, &echo(150), first));
-    let steps = [20, 120, 121, 300].map(|now| client.step(now));
-    assert_eq!(steps[..2], [frame_sent(*on(3).frame()), Step::Lost(second)]);
-    assert_eq!(sent(&mut client, 301..1050), [(1000, *set(1500.0).frame())]);
+    // No answer to the set-point can come from 200 ms on.
+    assert_eq!(
+        [20, 120, 199, 200].map(|now| client.step(now)),
+        [on, Step::Wait(Some(200)), Step::Wait(Some(200)), set]
+    );
+    assert_eq!(sent(&mut client, 201..210), []);
     assert!(answers(&mut client, &echo(150), first));
-    assert_eq!(sent(&mut client, 1050..1100), [(1050, *on(3).frame())]);
+    assert_eq!([220, 320].map(|now| client.step(now)), [on, Step::Lost(second)]);
+    // The pace allows two tries. The next renewal is one period after the last round.
+    assert_eq!(sent(&mut client, 320..1250), [(1200, *self::set(1500.0).frame())]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(sent(&mut client, 1250..1260), [(1250, *self::on(3).frame())]);
 }
 
 #[test]
