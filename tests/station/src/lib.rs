@@ -1,28 +1,28 @@
 //! A controller of charging modules in groups, of any protocol that has the quantities.
 //!
-//! It asks each module in rounds. While a group delivers, a round is: the set-point, the switch-on, and what is to be
-//! read. The switch-on is sent once, and only after the echo of the set-point has agreed in the same round. So no module
-//! is switched on without its set-point after a restart. It only must take longer to start than the switch-on waits for
-//! the bus. The next round renews both. No module is left alone for longer than a round.
+//! The station holds what each module is to do. While a group delivers, that is the set-point, and after it the
+//! switch-on: it is sent only when the echo of the set-point has agreed, in each renewal anew. So a module that
+//! restarts is not switched on without its set-point. It only must take longer to start than the switch-on waits for
+//! the bus. What is held and what is read keeps modules alive.
 //!
-//! A stop goes to the group first, and then to each module in its rounds. Only what a module says of its output
+//! A stop goes to the group first, and then to each module, again and again. Only what a module says of its output
 //! afterwards shows that it is off. What says nothing is unknown.
 //!
 //! Requests that come from the bus are those of another controller. From then on the station only reads, until the
 //! program delivers or stops again. So the driver must not hand over the frames that the station itself has sent.
 #![no_std]
 
-use canspec_runtime::client::{Client, Full, Heard, Pace, Step, Ticket};
-use canspec_runtime::{Addressed, Error, Frame, Protocol, Quantities, Quantity, Received, Request, Severity};
+use canspec_runtime::client::{Client, Heard, Nodes, NotHeld, Pace, Step, Ticket};
+use canspec_runtime::{Addressed, Error, Frame, Protocol, Quantities, Quantity, Received, Severity};
 
-/// What is read in each round, the state last.
-const READINGS: [Quantity; 3] = [Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT, Quantity::DELIVERING];
+/// What is read in each round. The first one says whether a module delivers.
+const READINGS: [Quantity; 3] = [Quantity::DELIVERING, Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT];
 
-/// What a round sets at most, in the order in which it is sent.
-type Values = [(Quantity, i32); 3];
+/// What switches a module off.
+const OFF: [(Quantity, i32); 1] = [(Quantity::DELIVERING, 0)];
 
-/// The values of a module that is off. The last one switches it off.
-const OFF: Values = [(Quantity::OUTPUT_VOLTAGE, 0), (Quantity::OUTPUT_CURRENT, 0), (Quantity::DELIVERING, 0)];
+/// How far an echo may differ, in mV and mA. INFY prints one that differs by 15 mV.
+const TOLERANCE: u32 = 100;
 
 /// What a group is to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,24 +35,12 @@ enum Task {
     Stop,
 }
 
-impl Task {
-    /// Returns what a round sets while no more than a current is allowed, and the first value of it that is sent.
-    fn values(self, most_ma: i32) -> (Values, usize) {
-        let Self::Deliver { voltage_mv, current_ma } = self else {
-            return (OFF, if self == Self::Stop { 2 } else { OFF.len() });
-        };
-        let mut values = OFF.map(|(quantity, _)| (quantity, 1));
-        (values[0].1, values[1].1) = (voltage_mv, current_ma.min(most_ma));
-        (values, 0)
-    }
-}
-
 /// How a station works. Times are in milliseconds.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// How fast it asks.
     pub pace: Pace,
-    /// The time from one round of a module to the next: a part of the watchdog's, and more than two waits.
+    /// The time from one round of a module to the next: a part of the watchdog's, and more than all waits of a round.
     pub round: u32,
     /// How far the current rises from one round to the next, in mA.
     pub rise_ma: i32,
@@ -64,8 +52,8 @@ struct Group<T> {
     number: u8,
     target: T,
     task: Task,
-    /// When its stop is sent again.
-    due: u32,
+    /// Its stop, which goes to all of its modules.
+    stop: Option<Ticket>,
 }
 
 /// Why a group is not told to do something.
@@ -78,9 +66,12 @@ pub enum Refused {
 }
 
 /// Controls the modules at `M` addresses, in `G` groups, with room for `R` requests.
+///
+/// A module takes one request for each message that reads or sets something. An address without a module takes one, and
+/// so does a group that is stopped.
 pub struct Station<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> {
     settings: Settings,
-    client: Client<P, R>,
+    client: Client<P, R, G>,
     modules: [Module<P>; M],
     groups: [Group<P::Target>; G],
     has_rival: bool,
@@ -89,12 +80,11 @@ pub struct Station<P: Quantities + Addressed, const M: usize, const G: usize, co
 impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> Station<P, M, G, R> {
     /// Returns a station that only reads. It looks for modules at `addresses`. Each group has its number and its address.
     pub fn new(settings: Settings, addresses: [u8; M], groups: [(u8, P::Target); G]) -> Self {
-        let group = |(number, target)| Group { number, target, task: Task::Watch, due: 0 };
         Self {
             settings,
             client: Client::new(settings.pace),
             modules: addresses.map(Module::new),
-            groups: groups.map(group),
+            groups: groups.map(|(number, target)| Group { number, target, task: Task::Watch, stop: None }),
             has_rival: false,
         }
     }
@@ -121,15 +111,13 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     ///
     /// Refuses an unknown group, and what the document does not allow. The group then goes on as before.
     pub fn deliver(&mut self, group: u8, voltage_mv: i32, current_ma: i32, now: u32) -> Result<(), Refused> {
-        let task = Task::Deliver { voltage_mv, current_ma };
         let known = self.groups.iter().find(|known| known.number == group).ok_or(Refused::Group)?;
-        drop(P::set(&task.values(current_ma).0, known.target).map_err(Refused::Output)?);
+        drop(P::set(&output(voltage_mv, current_ma), known.target).map_err(Refused::Output)?);
         self.has_rival = false;
-        self.begin(group, task, now)
+        self.begin(group, Task::Deliver { voltage_mv, current_ma }, now)
     }
 
-    /// Switches a group off. It goes on to do so until each module has said that it is off, and as long as it has found
-    /// none.
+    /// Switches a group off, again and again, until the program lets it deliver.
     ///
     /// # Errors
     ///
@@ -141,70 +129,109 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
     /// Takes a frame from the bus.
     pub fn handle(&mut self, frame: &impl embedded_can::Frame, now: u32) {
         match self.client.handle(frame) {
-            Heard::Answer { ticket, received } => {
-                self.asked(ticket).into_iter().for_each(|module| module.answered(&received));
-            }
-            Heard::Refusal { ticket, .. } | Heard::ShortRefusal(ticket) => {
-                self.asked(ticket).into_iter().for_each(|module| module.failed(false));
-            }
+            Heard::Answer { ticket, received } => self.answered(Some(ticket), &received, now),
+            // A late answer tells of no request, but of the module.
+            Heard::Late { received, .. } => self.answered(None, &received, now),
             Heard::Other(received) if received.is_to_module() => self.give_way(now),
-            // The request waits on, or has ended before.
+            // What is held or read is asked again in the next round.
             _ => {}
         }
     }
 
     /// Returns the next frame to send. Call it until there is none, after all frames from the bus were handled.
     pub fn poll(&mut self, now: u32) -> Option<Frame> {
+        for place in 0..M {
+            if is_due(self.modules[place].due, now) {
+                self.modules[place].due = now.wrapping_add(self.settings.round);
+                // What finds no room is asked in the next round.
+                let _ = self.ask(place, now);
+            }
+        }
         loop {
-            // What finds no room is asked later.
-            let _ = self.ask(now);
             match self.client.poll(now) {
                 Step::Send { frame, .. } => return Some(frame),
-                Step::Lost(ticket) => self.asked(ticket).into_iter().for_each(|module| module.failed(true)),
-                // Groups are asked again, and modules say more than their silence does.
-                Step::Done(_) | Step::Missing { .. } | Step::Silent(_) | Step::Back(_) => {}
+                Step::Lost(ticket) => self.forget(|module| module.watch == Some(ticket)),
+                Step::Silent(node) => self.forget(|module| module.node == node),
+                // A module that is back tells its state, and groups are asked again.
+                Step::Done(_) | Step::Missing { .. } | Step::Back(_) => {}
                 Step::Wait(_) => return None,
             }
         }
     }
 
-    /// Asks what is due: stops of groups, then the modules.
-    fn ask(&mut self, now: u32) -> Result<(), Full> {
-        let once = Pace { tries: 1, ..self.settings.pace };
-        for (place, Group { number, target, task, due }) in self.groups.into_iter().enumerate() {
-            if task == Task::Stop && is_due(due, now) && !self.is_off(number) {
-                for request in P::set(&OFF[2..], target).into_iter().flatten() {
-                    let ticket = self.client.ask_at(once, request, now)?;
-                    self.client.hurry(ticket, now);
-                }
-                self.groups[place].due = now.wrapping_add(self.settings.round);
-            }
+    /// Looks for a module, or reads it and holds what its group is to do.
+    fn ask(&mut self, place: usize, now: u32) -> Result<(), NotHeld> {
+        let Self { client, groups, settings: Settings { pace, round, rise_ma }, .. } = self;
+        let module = &mut self.modules[place];
+        let Some(target) = P::module(module.node.into()) else { return Ok(()) };
+        let Some(group) = groups.iter().find(|group| module.group == Some(group.number)) else {
+            let once = Pace { tries: 1, ..*pace };
+            let requests = P::read(&[Quantity::GROUP], target).into_iter().flatten();
+            return requests
+                .map(|request| client.ask_at(once, request, now))
+                .try_for_each(|asked| asked.map(|_| ()).map_err(|_| NotHeld::Full));
+        };
+        for request in P::read(&READINGS, target).into_iter().flatten().skip(module.reads) {
+            let ticket = client.every(*round, request, now).map_err(|_| NotHeld::Full)?;
+            module.watch.get_or_insert(ticket);
+            module.reads += 1;
         }
-        for module in &mut self.modules {
-            let group = self.groups.iter().find(|group| module.group == Some(group.number));
-            let task = group.map_or(Task::Watch, |group| group.task);
-            if let Some(request) = module.next(task, &self.settings, now) {
-                let pace = if module.is_asked_once() { once } else { self.settings.pace };
-                module.asked = Some(self.client.ask_at(pace, request, now)?);
+        let values = match group.task {
+            Task::Watch => {
+                module.is_confirmed = true;
+                return Ok(());
             }
+            Task::Deliver { voltage_mv, current_ma } => {
+                module.step_ma = current_ma.min(module.reached_ma.saturating_add(*rise_ma));
+                &output(voltage_mv, module.step_ma)[..]
+            }
+            Task::Stop => &OFF,
+        };
+        let (mut first, mut last) = (None, None);
+        for request in P::set(values, target).into_iter().flatten() {
+            let held = match last {
+                None => client.hold(request, *round, agrees, now)?,
+                Some(last) => client.hold_after(last, request, agrees, now)?,
+            };
+            (first, last) = (first.or(Some(held)), Some(held));
         }
+        (module.first, module.last) = (first, last);
         Ok(())
     }
 
     /// Begins a task of a group.
     fn begin(&mut self, number: u8, task: Task, now: u32) -> Result<(), Refused> {
+        let Self { client, modules, settings, .. } = self;
         let group = self.groups.iter_mut().find(|group| group.number == number).ok_or(Refused::Group)?;
-        (group.task, group.due) = (task, now);
-        for module in self.modules.iter_mut().filter(|module| module.group == Some(number)) {
-            (module.state, module.step, module.round) = (State::Unknown, 0, now);
-            module.asked.take().into_iter().for_each(|ticket| self.client.cancel(ticket));
+        let members = modules.iter_mut().filter(|module| module.group == Some(number));
+        members.for_each(|module| module.begin(client, now));
+        group.task = task;
+        group.stop.take().into_iter().for_each(|ticket| client.cancel(ticket));
+        let stop = P::set(&OFF, group.target).into_iter().flatten().filter(|_| task == Task::Stop);
+        for request in stop {
+            group.stop = client.every(settings.round, request, now).ok();
+            group.stop.into_iter().for_each(|ticket| client.hurry(ticket, now));
         }
         Ok(())
     }
 
-    /// Returns the module to which a request goes, if it is not one to a group.
-    fn asked(&mut self, ticket: Ticket) -> Option<&mut Module<P>> {
-        self.modules.iter_mut().find(|module| module.asked == Some(ticket))
+    /// Takes what a module says.
+    fn answered(&mut self, ticket: Option<Ticket>, received: &Received<P>, now: u32) {
+        let node = received.node();
+        let Some(module) = self.modules.iter_mut().find(|module| node == Some(module.node.into())) else { return };
+        if let Some(ticket) = ticket {
+            module.answered(ticket, received);
+        }
+        let group = received.quantity(Quantity::GROUP).and_then(|group| u8::try_from(group).ok());
+        if group.is_some() && group != module.group {
+            module.group = group;
+            module.begin(&mut self.client, now);
+            for Group { number, target, .. } in self.groups {
+                let members = self.modules.iter().filter(|module| module.group == Some(number));
+                // There is room for each group.
+                let _ = self.client.members(target, members.map(|module| module.node).collect::<Nodes>());
+            }
+        }
     }
 
     /// Leaves the modules to another controller. What is stopped stays stopped.
@@ -215,6 +242,14 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
             let _ = self.begin(group.number, Task::Watch, now);
         }
     }
+
+    /// Knows no more of some modules than that they are there.
+    fn forget(&mut self, is_one: impl Fn(&Module<P>) -> bool) {
+        for module in self.modules.iter_mut().filter(|module| is_one(module)) {
+            (module.state, module.reached_ma, module.is_confirmed) = (State::Unknown, 0, false);
+            (module.voltage_mv, module.current_ma, module.status) = (None, None, None);
+        }
+    }
 }
 
 /// What is known of the output of a module.
@@ -222,7 +257,7 @@ impl<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> 
 pub enum State {
     /// Nothing: it is silent, or has not said anything since it was told something else.
     Unknown,
-    /// It has said that it is off. While its group is stopped, it has also confirmed the switch-off before.
+    /// It has said that it is off. If it is to be off, it has also confirmed the switch-off before.
     Off,
     /// It has said that it is on.
     On,
@@ -243,16 +278,18 @@ pub struct Module<P: Protocol> {
     pub current_ma: Option<i32>,
     /// What it has said of its state last, for [`Received::conditions`].
     pub status: Option<Received<P>>,
-    asked: Option<Ticket>,
-    /// When the round begins, or has begun.
-    round: u32,
-    step: usize,
-    /// What the round sets, the first value of it that is sent, and in how many requests.
-    values: (Values, usize),
-    sets: usize,
-    /// Whether every echo of the round has agreed so far.
+    /// When the next round begins.
+    due: u32,
+    /// What reads its state, and how many requests read it.
+    watch: Option<Ticket>,
+    reads: usize,
+    /// The first and the last request of what it is to do.
+    first: Option<Ticket>,
+    last: Option<Ticket>,
+    /// Whether the last one was in effect since the task began, or there is none.
     is_confirmed: bool,
-    /// The current that a whole round has set, in mA.
+    /// The current that is asked for, and the one that was in effect, in mA.
+    step_ma: i32,
     reached_ma: i32,
 }
 
@@ -265,12 +302,13 @@ impl<P: Quantities + Addressed> Module<P> {
             voltage_mv: None,
             current_ma: None,
             status: None,
-            asked: None,
-            round: 0,
-            step: 0,
-            values: (OFF, OFF.len()),
-            sets: 0,
+            due: 0,
+            watch: None,
+            reads: 0,
+            first: None,
+            last: None,
             is_confirmed: true,
+            step_ma: 0,
             reached_ma: 0,
         }
     }
@@ -280,81 +318,39 @@ impl<P: Quantities + Addressed> Module<P> {
         self.status.as_ref()?.conditions().filter_map(|bit| bit.severity).max()
     }
 
-    /// Returns the next request of the round, if one is due.
-    fn next(&mut self, task: Task, settings: &Settings, now: u32) -> Option<Request<P, ()>> {
-        if self.asked.is_some() || !is_due(self.round, now) {
-            return None;
-        }
-        if self.step == 0 {
-            (self.round, self.is_confirmed) = (now, true);
-            self.values = task.values(self.reached_ma.saturating_add(settings.rise_ma));
-        }
-        let target = P::module(self.node.into())?;
-        let sets = || P::set(&self.values.0[self.values.1..], target).into_iter().flatten();
-        let reads = P::read(if self.group.is_some() { &READINGS } else { &[Quantity::GROUP] }, target);
-        let request = sets().chain(reads.into_iter().flatten()).nth(self.step);
-        self.sets = sets().count();
-        if request.is_none() {
-            (self.step, self.round) = (0, self.round.wrapping_add(settings.round));
-        }
-        request
+    /// Ends what it was to do, as its group gets a task.
+    fn begin<const R: usize, const G: usize>(&mut self, client: &mut Client<P, R, G>, now: u32) {
+        self.first.take().into_iter().for_each(|ticket| client.cancel(ticket));
+        (self.state, self.last, self.is_confirmed, self.due) = (State::Unknown, None, false, now);
     }
 
-    /// Tests whether a request is not repeated before the next round: what sets something, and what looks for a module.
-    const fn is_asked_once(&self) -> bool {
-        self.is_set() || self.group.is_none()
-    }
-
-    /// Tests whether the request under way sets something.
-    const fn is_set(&self) -> bool {
-        self.step < self.sets
-    }
-
-    /// Takes the answer to the request under way.
-    fn answered(&mut self, received: &Received<P>) {
-        if self.is_set() && !self.agrees(received) {
-            return self.failed(false);
+    /// Takes an answer.
+    fn answered(&mut self, ticket: Ticket, received: &Received<P>) {
+        if self.last == Some(ticket) {
+            (self.is_confirmed, self.reached_ma) = (true, self.step_ma);
         }
         self.voltage_mv = received.quantity(Quantity::OUTPUT_VOLTAGE).or(self.voltage_mv);
         self.current_ma = received.quantity(Quantity::OUTPUT_CURRENT).or(self.current_ma);
         if let Some(is_on) = received.quantity(Quantity::DELIVERING) {
             self.status = Some(*received);
-            (self.state, self.reached_ma) = match (is_on, self.is_confirmed) {
-                (0, true) => (State::Off, 0),
-                (0, false) => (State::Unknown, 0),
-                (_, true) => (State::On, self.values.0[1].1),
-                (_, false) => (State::On, self.reached_ma),
+            self.state = match is_on {
+                0 if self.is_confirmed => State::Off,
+                0 => State::Unknown,
+                _ => State::On,
             };
+            self.reached_ma = if is_on == 0 { 0 } else { self.reached_ma };
         }
-        let group = received.quantity(Quantity::GROUP).and_then(|group| u8::try_from(group).ok()).or(self.group);
-        // The first round begins when the group is known.
-        self.step = if self.group.is_none() && group.is_some() { 0 } else { self.step + 1 };
-        (self.asked, self.group) = (None, group);
     }
+}
 
-    /// Goes on after a request that failed. What follows a set-point in the round is left out with it.
-    fn failed(&mut self, is_silent: bool) {
-        self.asked = None;
-        if self.is_set() {
-            (self.is_confirmed, self.step) = (false, self.sets);
-            return;
-        }
-        self.step += 1;
-        if is_silent {
-            (self.state, self.reached_ma) = (State::Unknown, 0);
-            (self.voltage_mv, self.current_ma, self.status) = (None, None, None);
-        }
-    }
+/// Returns what lets a module deliver, in the order in which it is sent.
+const fn output(voltage_mv: i32, current_ma: i32) -> [(Quantity, i32); 3] {
+    [(Quantity::OUTPUT_VOLTAGE, voltage_mv), (Quantity::OUTPUT_CURRENT, current_ma), (Quantity::DELIVERING, 1)]
+}
 
-    /// Tests whether an echo says what the round sets.
-    fn agrees(&self, received: &Received<P>) -> bool {
-        let said = |(quantity, value): &(Quantity, i32)| {
-            // INFY prints an echo that differs by 23 mV.
-            let tolerance = if *quantity == Quantity::DELIVERING { 0 } else { 100 };
-            Some(received.setting(*quantity)?.abs_diff(*value) <= tolerance)
-        };
-        self.values.0[self.values.1..].iter().filter_map(said).reduce(|one, other| one && other) == Some(true)
-    }
+/// Tests whether an echo says what was asked for.
+fn agrees<P: Quantities>(asked: &Received<P>, said: &Received<P>) -> bool {
+    said.confirms(asked, TOLERANCE)
 }
 
 /// Tests whether a time has come. It may lie up to 24 days back.

@@ -1,8 +1,10 @@
 //! A bus of simulated modules with a station.
 
+use core::time::Duration;
+
 use canspec_runtime::client::Pace;
 use canspec_runtime::sim::{Answer, Bench, Complaint, Device, Event, Faults, Rules};
-use canspec_runtime::{Addressed, Frame, Protocol, Quantities, Quantity, Received};
+use canspec_runtime::{Addressed, Frame, Protocol, Quantities, Quantity, Received, Time, Timing};
 use canspec_station::{Settings, State, Station};
 
 /// A module of any protocol: it keeps what is set, and tells it.
@@ -87,7 +89,7 @@ where
 
 /// A station, and the bus with its `N` modules.
 pub struct Bus<P: Quantities + Addressed, const N: usize, const G: usize> {
-    pub station: Station<P, 16, G, 40>,
+    pub station: Station<P, 16, G, 64>,
     pub bench: Bench<P, Charger<P>, N, 64>,
     pub now: u32,
     /// What the station has sent.
@@ -101,14 +103,13 @@ where
     pub fn new(
         groups: [(u8, P::Target); G],
         modules: [(u8, Charger<P>); N],
-        pace: Pace,
-        rules: Rules,
+        starting_up: Option<u64>,
         seed: u64,
     ) -> Self {
-        let settings = Settings { pace, round: 2000, rise_ma: RISE_MA };
+        let settings = Settings { pace: pace::<P>(), round: ROUND, rise_ma: RISE_MA };
         Self {
             station: Station::new(settings, core::array::from_fn(|node| u8::try_from(node).expect("below 16")), groups),
-            bench: Bench::new(modules, Rules { gap: pace.gap, ..rules }, seed),
+            bench: Bench::new(modules, rules::<P>(starting_up), seed),
             now: 0,
             sent: Vec::new(),
         }
@@ -147,12 +148,29 @@ where
     }
 }
 
+/// The time from one round to the next.
+pub const ROUND: u32 = 3000;
+
 /// How far the current rises in a round.
 pub const RISE_MA: i32 = 4000;
 
-/// The pace of the document, with the wait that it does not state.
-pub fn pace<P: Protocol>(gap: u32) -> Pace {
-    let timing = P::TIMING;
-    let stated = timing.request_gap.map_or(gap, |gap| u32::try_from(gap.shortest.as_millis()).expect("it is short"));
-    Pace { gap: stated, wait: 100, tries: 3, late: 100 }
+/// Returns the times of the document, and chooses those that it does not state.
+fn timing<P: Protocol>() -> Timing {
+    let Timing { request_gap, reply_timeout, tries, .. } = P::TIMING;
+    let chosen = |time: Option<Time>, milliseconds| time.unwrap_or(Time::of(Duration::from_millis(milliseconds)));
+    P::TIMING
+        .with_request_gap(chosen(request_gap, 20))
+        .with_reply_timeout(chosen(reply_timeout, 100))
+        .with_tries(tries.unwrap_or(3))
+}
+
+/// Returns the pace of the document, and chooses what it does not state.
+pub fn pace<P: Protocol>() -> Pace {
+    Pace::of(&timing::<P>(), 100).expect("what the document does not state is chosen")
+}
+
+/// Returns what the devices of the document expect.
+pub fn rules<P: Protocol>(starting_up: Option<u64>) -> Rules {
+    let watchdog = P::TIMING.watchdog.map(|time| u32::try_from(time.shortest.as_millis()).expect("it is short"));
+    Rules { gap: pace::<P>().gap, watchdog, boot: 1500, starting_up }
 }
