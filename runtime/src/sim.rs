@@ -30,6 +30,7 @@
 mod complaint;
 mod device;
 mod faults;
+mod keeper;
 mod node;
 mod random;
 #[cfg(test)]
@@ -39,6 +40,7 @@ mod wire;
 pub use complaint::Complaint;
 pub use device::{Answer, Device};
 pub use faults::Faults;
+pub use keeper::{Keeper, Tell};
 pub use random::Random;
 
 use core::marker::PhantomData;
@@ -116,7 +118,7 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
         self.nodes.iter().any(|known| known.number == node && known.is_up())
     }
 
-    /// Lets a device start anew.
+    /// Lets a device start anew, also one that has died.
     pub fn restart(&mut self, node: u8, now: u32) {
         let boot = self.rules.boot;
         if let Some(node) = self.node(node) {
@@ -154,8 +156,11 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
         for place in 0..N {
             let Some(node) = self.nodes.get_mut(place) else { continue };
             if node.tick(&self.rules, now) {
-                let node = node.number;
-                self.complaints.add(Complaint::Unfed { node });
+                self.complaints.add(Complaint::Unfed { node: node.number });
+            }
+            if let Some(report) = node.report(now) {
+                let Self { random, wire, .. } = self;
+                node.carry(report, random, |delay, frame| wire.send(now.wrapping_add(delay), frame));
             }
         }
         if let Some((frame, every, due)) = self.other.filter(|(_, _, due)| has_come(*due, now)) {

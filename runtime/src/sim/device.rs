@@ -1,6 +1,6 @@
 //! What a simulated device does.
 
-use crate::{Protocol, Received};
+use crate::{Frame, Protocol, Received};
 
 /// What a device answers. It goes to whom asked, if anybody answers in the addressing mode. The bench
 /// [complains](super::Complaint::Answer) about what is no reply to the request.
@@ -22,6 +22,12 @@ pub trait Device<P: Protocol> {
     /// Tests whether it belongs to those that a request to many addresses. By default it does.
     fn is_asked(&self, _request: &Received<P>) -> bool {
         true
+    }
+
+    /// Returns a frame that it sends by itself, from the module of this number. It is asked again as long as it
+    /// returns one. By default it sends nothing.
+    fn report(&mut self, _node: u8, _now: u32) -> Option<Frame> {
+        None
     }
 
     /// Lets time pass.

@@ -43,6 +43,8 @@ impl<D> Node<D> {
         D: Device<P>,
     {
         self.device.power_on(now);
+        self.faults.dies = self.faults.dies.filter(|time| !has_come(*time, now));
+        self.is_dead = false;
         (self.boots, self.heard, self.is_alone) = (Some(now.wrapping_add(boot)), now, false);
     }
 
@@ -69,6 +71,14 @@ impl<D> Node<D> {
             self.device.silence(now);
         }
         is_out
+    }
+
+    /// Returns what it sends by itself.
+    pub fn report<P: Protocol>(&mut self, now: u32) -> Option<Frame>
+    where
+        D: Device<P>,
+    {
+        if self.is_up() { self.device.report(self.number, now) } else { None }
     }
 
     /// Tests whether a request addresses it.
@@ -124,10 +134,16 @@ impl<D> Node<D> {
         request: &Received<P>,
         reply: Frame,
         random: &mut Random,
-        mut send: impl FnMut(u32, Frame),
+        send: impl FnMut(u32, Frame),
     ) {
-        let Faults { lost, twice, broken, disguised, slowest, .. } = self.faults;
-        let reply = if random.chance(disguised) { self.disguise(request, reply, random) } else { reply };
+        let is_disguised = random.chance(self.faults.disguised);
+        let reply = if is_disguised { self.disguise(request, reply, random) } else { reply };
+        self.carry(reply, random, send);
+    }
+
+    /// Puts the other faults of frames into one, and hands it over each time that it comes, with the time until then.
+    pub fn carry(&self, reply: Frame, random: &mut Random, mut send: impl FnMut(u32, Frame)) {
+        let Faults { lost, twice, broken, slowest, .. } = self.faults;
         let reply = if random.chance(broken) { cut(reply, random) } else { reply };
         for _ in 0..=u8::from(random.chance(twice)) {
             let delay = random.below(slowest.max(1)).saturating_add(1);

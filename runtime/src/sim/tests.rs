@@ -275,3 +275,39 @@ fn random_numbers_reach_every_value_below_their_limit() {
     assert!(counts.iter().all(|count| (850..1150).contains(count)), "{counts:?}");
     assert_eq!((random.below(0), random.chance(0), random.chance(100)), (0, false, true));
 }
+
+/// A device that reports its number each 10 ms.
+struct Reporter(u32);
+
+impl Device<Message> for Reporter {
+    fn answer(&mut self, _: &Received<Message>, _: u32) -> Answer<Message> {
+        Answer::Silence
+    }
+
+    fn report(&mut self, node: u8, now: u32) -> Option<Frame> {
+        if now < self.0 {
+            return None;
+        }
+        self.0 = now + 10;
+        Some(frame(0x010A_F000 | u32::from(node), [0; 4]))
+    }
+}
+
+#[test]
+fn a_device_that_is_up_reports_by_itself() {
+    let reports = |faults: Faults| -> Vec<usize> {
+        let mut bench: Bench<Message, Reporter, 1, 4> = Bench::new([(3, Reporter(0))], RULES, 1);
+        *bench.faults(3).expect("a device") = faults;
+        let is_report = |event: Event| event == Event::Frame(frame(0x010A_F003, [0; 4]));
+        (0..25).map(|now| core::iter::from_fn(|| bench.poll(now)).filter(|event| is_report(*event)).count()).collect()
+    };
+    let when = |times: &[usize], count| (0..25).map(|now| if times.contains(&now) { count } else { 0 }).collect();
+    let expected: [Vec<usize>; 4] = [when(&[1, 11, 21], 1), when(&[1, 11, 21], 2), when(&[], 0), when(&[1], 1)];
+    let faults = [
+        Faults::NONE,
+        Faults { twice: 100, ..Faults::NONE },
+        Faults { lost: 100, ..Faults::NONE },
+        Faults { dies: Some(5), ..Faults::NONE },
+    ];
+    assert_eq!(faults.map(reports), expected);
+}

@@ -133,7 +133,10 @@ pub fn client<T: Destination<Protocol: Addressed<Target = T> + Unknown> + Unknow
         ticket(client.ask_at(pace, request, unknown()));
         ticket(client.keep_alive(request, unknown(), unknown()));
         match client.hold(request, unknown(), |_, _| unknown(), unknown()) {
-            Ok(held) => client.hurry(held, unknown()),
+            Ok(held) => {
+                client.hurry(held, unknown());
+                sink(client.hold_after(held, request, |_, _| unknown(), unknown()));
+            }
             Err(error) => text(&error),
         }
         if let Ok(asked) = client.every(unknown(), request, unknown()) {

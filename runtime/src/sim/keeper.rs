@@ -1,0 +1,73 @@
+//! A device that keeps what it is told.
+
+use super::{Answer, Device};
+use crate::{Addressed, Quantities, Quantity, Received};
+
+/// Builds what a device says to a request that sets no quantity.
+pub type Tell<P, const Q: usize> = fn(&Received<P>, &Keeper<P, Q>) -> Answer<P>;
+
+/// A device that keeps the quantities which requests set, at most `Q` of them, and echoes such requests. A
+/// function builds its other answers from what it keeps.
+///
+/// It forgets all when it starts anew. It switches [`DELIVERING`](Quantity::DELIVERING) off when its watchdog runs
+/// out.
+///
+/// Each quantity takes 24 bytes on a processor of 64 bits, and 16 on one of 32 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Keeper<P: Addressed, const Q: usize> {
+    tell: Tell<P, Q>,
+    group: Option<P::Target>,
+    kept: [Option<(Quantity, i32)>; Q],
+}
+
+impl<P: Addressed, const Q: usize> Keeper<P, Q> {
+    /// Returns a device that keeps nothing yet. Any request to several devices is also for it.
+    pub const fn new(tell: Tell<P, Q>) -> Self {
+        Self { tell, group: None, kept: [None; Q] }
+    }
+
+    /// Returns the device in a group. Of requests to several devices, those to this target are for it.
+    #[must_use]
+    pub fn in_group(self, group: P::Target) -> Self {
+        Self { group: Some(group), ..self }
+    }
+
+    /// Returns the value of a quantity, if it keeps one.
+    pub fn value(&self, quantity: Quantity) -> Option<i32> {
+        self.kept.iter().flatten().find(|(kept, _)| *kept == quantity).map(|(_, value)| *value)
+    }
+
+    /// Keeps a value. It is dropped if there is no room for another quantity.
+    pub fn keep(&mut self, quantity: Quantity, value: i32) {
+        let place = self.kept.iter().position(|slot| slot.is_some_and(|(kept, _)| kept == quantity));
+        let place = place.or_else(|| self.kept.iter().position(Option::is_none));
+        if let Some(slot) = place.and_then(|place| self.kept.get_mut(place)) {
+            *slot = Some((quantity, value));
+        }
+    }
+}
+
+impl<P: Quantities + Addressed<Target: PartialEq>, const Q: usize> Device<P> for Keeper<P, Q> {
+    fn answer(&mut self, request: &Received<P>, _now: u32) -> Answer<P> {
+        let mut is_set = false;
+        for path in P::SETS {
+            if let Some(value) = request.setting(path.quantity) {
+                self.keep(path.quantity, value);
+                is_set = true;
+            }
+        }
+        if is_set { Answer::Values(*request.content()) } else { (self.tell)(request, self) }
+    }
+
+    fn is_asked(&self, request: &Received<P>) -> bool {
+        self.group.is_none_or(|group| request.target() == Some(group))
+    }
+
+    fn silence(&mut self, _now: u32) {
+        self.keep(Quantity::DELIVERING, 0);
+    }
+
+    fn power_on(&mut self, _now: u32) {
+        self.kept = [None; Q];
+    }
+}
