@@ -33,6 +33,14 @@ sweep:
 random-specs count="10000" first="0":
     cargo run --quiet --bin random_specs -- {{count}} {{first}}
 
+# A station whose modules fail, for some virtual minutes by each seed, and how often what happened.
+seeds count="10000" first="0" minutes="120":
+    cargo run --quiet --release --package canspec-station --example seeds -- {{count}} {{first}} {{minutes}}
+
+# Mistakes, planted in copies of the client and the station, and the seed by which each is found; a word chooses.
+mistakes word="":
+    cargo run --quiet --release --package canspec-station --example mistakes -- "{{word}}"
+
 # The comparison with other people's programs.
 peers:
     .ci/peers

@@ -33,6 +33,7 @@ mod faults;
 mod keeper;
 mod node;
 mod random;
+mod tally;
 #[cfg(test)]
 pub(crate) mod tests;
 mod wire;
@@ -42,6 +43,7 @@ pub use device::{Answer, Device};
 pub use faults::Faults;
 pub use keeper::{Keeper, Tell};
 pub use random::Random;
+pub use tally::Tally;
 
 use core::marker::PhantomData;
 
@@ -111,6 +113,13 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
     /// Returns the faults of a device.
     pub fn faults(&mut self, node: u8) -> Option<&mut Faults> {
         self.node(node).map(|node| &mut node.faults)
+    }
+
+    /// Returns how often faults happened.
+    pub fn tally(&self) -> Tally {
+        let mut sum = Tally::NONE;
+        self.nodes.iter().for_each(|node| sum += node.tally);
+        sum
     }
 
     /// Tests whether a device is on, and has started.

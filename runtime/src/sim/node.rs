@@ -1,6 +1,6 @@
 //! A device on the bus.
 
-use super::{Answer, Device, Faults, Random, Rules};
+use super::{Answer, Device, Faults, Random, Rules, Tally};
 use crate::clock::has_come;
 use crate::plumbing::Who;
 use crate::{Addressed, Destination, Error, Frame, Protocol, Received};
@@ -11,6 +11,7 @@ pub struct Node<D> {
     pub number: u8,
     pub device: D,
     pub faults: Faults,
+    pub tally: Tally,
     /// Whether it has died. It stays so when time wraps around.
     is_dead: bool,
     /// When it heard a request last.
@@ -23,7 +24,8 @@ pub struct Node<D> {
 
 impl<D> Node<D> {
     pub const fn new(number: u8, device: D) -> Self {
-        Self { number, device, faults: Faults::NONE, is_dead: false, heard: 0, boots: None, is_alone: false }
+        let (faults, tally) = (Faults::NONE, Tally::NONE);
+        Self { number, device, faults, tally, is_dead: false, heard: 0, boots: None, is_alone: false }
     }
 
     /// Tests whether it is on, and has started.
@@ -33,7 +35,9 @@ impl<D> Node<D> {
 
     /// Tests whether it has died by now.
     fn is_dead_at(&mut self, now: u32) -> bool {
-        self.is_dead |= self.faults.dies.is_some_and(|time| has_come(time, now));
+        let dies = !self.is_dead && self.faults.dies.is_some_and(|time| has_come(time, now));
+        self.is_dead |= dies;
+        count(&mut self.tally.deaths, dies);
         self.is_dead
     }
 
@@ -43,6 +47,7 @@ impl<D> Node<D> {
         D: Device<P>,
     {
         self.device.power_on(now);
+        count(&mut self.tally.restarts, true);
         self.faults.dies = self.faults.dies.filter(|time| !has_come(*time, now));
         self.is_dead = false;
         (self.boots, self.heard, self.is_alone) = (Some(now.wrapping_add(boot)), now, false);
@@ -103,19 +108,19 @@ impl<D> Node<D> {
     where
         D: Device<P>,
     {
-        if self.is_dead_at(now) || random.chance(self.faults.deaf) {
+        if self.is_dead_at(now) || happens(random, self.faults.deaf, &mut self.tally.lost) {
             return Ok(None);
         }
         (self.heard, self.is_alone) = (now, false);
         let answer = if self.boots.is_some() {
             rules.starting_up.map_or(Answer::Silence, Answer::Refusal)
-        } else if random.chance(self.faults.refused) {
+        } else if happens(random, self.faults.refused, &mut self.tally.refused) {
             Answer::Refusal(self.faults.code)
         } else {
             self.device.answer(request, now)
         };
         let reply = match answer {
-            Answer::Values(values) if random.chance(self.faults.drifted) => {
+            Answer::Values(values) if happens(random, self.faults.drifted, &mut self.tally.drifted) => {
                 request.answer(self.number, self.device.drift(values))
             }
             Answer::Values(values) => request.answer(self.number, values),
@@ -130,24 +135,26 @@ impl<D> Node<D> {
 
     /// Puts the faults of frames into a reply, and hands over each frame with the time until it comes.
     pub fn spoil<P: Addressed>(
-        &self,
+        &mut self,
         request: &Received<P>,
         reply: Frame,
         random: &mut Random,
         send: impl FnMut(u32, Frame),
     ) {
-        let is_disguised = random.chance(self.faults.disguised);
+        let is_disguised = happens(random, self.faults.disguised, &mut self.tally.disguised);
         let reply = if is_disguised { self.disguise(request, reply, random) } else { reply };
         self.carry(reply, random, send);
     }
 
     /// Puts the other faults of frames into one, and hands it over each time that it comes, with the time until then.
-    pub fn carry(&self, reply: Frame, random: &mut Random, mut send: impl FnMut(u32, Frame)) {
+    pub fn carry(&mut self, reply: Frame, random: &mut Random, mut send: impl FnMut(u32, Frame)) {
         let Faults { lost, twice, broken, slowest, .. } = self.faults;
-        let reply = if random.chance(broken) { cut(reply, random) } else { reply };
-        for _ in 0..=u8::from(random.chance(twice)) {
+        let is_broken = happens(random, broken, &mut self.tally.broken);
+        let reply = if is_broken { cut(reply, random) } else { reply };
+        for _ in 0..=u8::from(happens(random, twice, &mut self.tally.twice)) {
             let delay = random.below(slowest.max(1)).saturating_add(1);
-            if !random.chance(lost) {
+            if !happens(random, lost, &mut self.tally.lost) {
+                self.tally.delay = self.tally.delay.wrapping_add(delay.into());
                 send(delay, reply);
             }
         }
@@ -164,6 +171,18 @@ impl<D> Node<D> {
             sender.map(|address| address.bits().put(reply.raw_id().into(), address.kind().raw(other.into()).into()));
         id.map_or(reply, |id| reply.with_id(id))
     }
+}
+
+/// Counts something that happens.
+fn count(counter: &mut u64, happens: bool) {
+    *counter = counter.wrapping_add(happens.into());
+}
+
+/// Draws whether something happens, and counts it.
+fn happens(random: &mut Random, percent: u8, counter: &mut u64) -> bool {
+    let happens = random.chance(percent);
+    count(counter, happens);
+    happens
 }
 
 /// Takes a byte away or adds one.

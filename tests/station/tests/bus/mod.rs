@@ -1,4 +1,8 @@
 //! A bus of simulated modules with a station.
+#![allow(dead_code, reason = "tests and the example use different parts")]
+
+pub mod fleets;
+pub mod seeds;
 
 use core::time::Duration;
 
@@ -24,14 +28,14 @@ pub struct Charger<P: Addressed> {
     pub switched_on: u32,
     /// The most by which its current was raised at once.
     pub steepest_ma: i32,
-    /// When a set-point or a switch-on came last.
-    pub told: u32,
+    /// When it started last.
+    pub started: u32,
 }
 
 impl<P: Addressed> Charger<P> {
     pub fn new(group: (u8, P::Target), tell: fn(&Received<P>, &Self) -> Option<P>) -> Self {
         let (voltage_mv, current_ma, is_on, was_bare) = (None, None, false, false);
-        Self { group, tell, voltage_mv, current_ma, is_on, was_bare, switched_on: 0, steepest_ma: 0, told: 0 }
+        Self { group, tell, voltage_mv, current_ma, is_on, was_bare, switched_on: 0, steepest_ma: 0, started: 0 }
     }
 
     pub fn volts(&self) -> f32 {
@@ -52,7 +56,7 @@ impl<P: Quantities + Addressed> Device<P> for Charger<P>
 where
     P::Target: PartialEq,
 {
-    fn answer(&mut self, request: &Received<P>, now: u32) -> Answer<P> {
+    fn answer(&mut self, request: &Received<P>, _now: u32) -> Answer<P> {
         let [voltage_mv, current_ma, is_on] =
             [Quantity::OUTPUT_VOLTAGE, Quantity::OUTPUT_CURRENT, Quantity::DELIVERING]
                 .map(|quantity| request.setting(quantity));
@@ -68,9 +72,6 @@ where
         if voltage_mv.is_none() && current_ma.is_none() && is_on.is_none() {
             return (self.tell)(request, self).map_or(Answer::Silence, Answer::Values);
         }
-        if is_on != Some(0) {
-            self.told = now;
-        }
         Answer::Values(*request.content())
     }
 
@@ -82,7 +83,8 @@ where
         self.is_on = false;
     }
 
-    fn power_on(&mut self, _now: u32) {
+    fn power_on(&mut self, now: u32) {
+        self.started = now;
         (self.voltage_mv, self.current_ma, self.is_on) = (None, None, false);
     }
 }
@@ -92,8 +94,9 @@ pub struct Bus<P: Quantities + Addressed, const N: usize, const G: usize> {
     pub station: Station<P, 16, G, 64>,
     pub bench: Bench<P, Charger<P>, N, 64>,
     pub now: u32,
-    /// What the station has sent.
+    /// What the station has sent, and how many frames it has heard.
     pub sent: Vec<(u32, Frame)>,
+    pub heard: u64,
 }
 
 impl<P: Quantities + Addressed, const N: usize, const G: usize> Bus<P, N, G>
@@ -112,26 +115,36 @@ where
             bench: Bench::new(modules, rules::<P>(starting_up), seed),
             now: 0,
             sent: Vec::new(),
+            heard: 0,
         }
     }
 
     /// Lets time pass. The station must keep to the rules, and no module may be worse off than it says.
     pub fn run(&mut self, until: u32) {
         while self.now < until {
-            while let Some(event) = self.bench.poll(self.now) {
-                match event {
-                    Event::Frame(frame) => self.station.handle(&frame, self.now),
-                    // What it has not found yet, it cannot feed.
-                    Event::Complaint(Complaint::Unfed { node }) if self.state(node).is_none() => {}
-                    Event::Complaint(complaint) => panic!("at {} ms: {complaint}", self.now),
-                }
-            }
-            while let Some(frame) = self.station.poll(self.now) {
-                self.sent.push((self.now, frame));
-                self.bench.send(&frame, self.now);
-            }
+            self.turn().unwrap_or_else(|complaint| panic!("at {} ms: {complaint}", self.now));
             self.now += 1;
         }
+    }
+
+    /// Lets the station read and send what it has to, and fails if it breaks a rule.
+    pub fn turn(&mut self) -> Result<(), String> {
+        while let Some(event) = self.bench.poll(self.now) {
+            match event {
+                Event::Frame(frame) => {
+                    self.heard += 1;
+                    self.station.handle(&frame, self.now);
+                }
+                // What it has not found yet, it cannot feed.
+                Event::Complaint(Complaint::Unfed { node }) if self.state(node).is_none() => {}
+                Event::Complaint(complaint) => return Err(complaint.to_string()),
+            }
+        }
+        while let Some(frame) = self.station.poll(self.now) {
+            self.sent.push((self.now, frame));
+            self.bench.send(&frame, self.now);
+        }
+        Ok(())
     }
 
     /// Returns what the station says of a module, if it has found it.

@@ -1,0 +1,53 @@
+//! Runs a station for hours while its modules fail: `seeds COUNT [FIRST] [MINUTES]`.
+//!
+//! It prints how often what happened, and fails with the first seed at which the station breaks a promise.
+
+#[path = "../tests/bus/mod.rs"]
+mod bus;
+
+use std::process::ExitCode;
+use std::{env, thread};
+
+use bus::seeds::{Counts, run};
+
+#[expect(clippy::print_stdout, reason = "people read what happened")]
+fn main() -> ExitCode {
+    let numbers: Option<Vec<u64>> = env::args().skip(1).map(|text| text.parse().ok()).collect();
+    let numbers = numbers.unwrap_or_default();
+    let [count, first, minutes] =
+        [(0, 200), (1, 0), (2, 120)].map(|(place, usual)| *numbers.get(place).unwrap_or(&usual));
+    let end = u32::try_from(minutes * 60_000).unwrap_or(u32::MAX / 2);
+    let cores = thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
+    let runs = thread::scope(|scope| {
+        let part = |core: u64| {
+            move || {
+                (first..first + count).filter(|seed| seed % cores == core).try_fold(
+                    Counts::default(),
+                    |mut sum, seed| {
+                        sum += run(seed, end).map_err(|wrong| (seed, wrong))?;
+                        Ok(sum)
+                    },
+                )
+            }
+        };
+        let parts: Vec<_> = (0..cores).map(|core| scope.spawn(part(core))).collect();
+        parts
+            .into_iter()
+            .map(|part| part.join().expect("a run does not panic"))
+            .collect::<Vec<Result<Counts, (u64, String)>>>()
+    });
+    let mut sum = Counts::default();
+    let mut wrong = None;
+    for run in runs {
+        match run {
+            Ok(counts) => sum += counts,
+            Err(other) => wrong = wrong.filter(|known: &(u64, String)| known.0 < other.0).or(Some(other)),
+        }
+    }
+    if let Some((seed, wrong)) = wrong {
+        println!("seed {seed}: {wrong}");
+        return ExitCode::FAILURE;
+    }
+    println!("{sum}");
+    ExitCode::SUCCESS
+}
