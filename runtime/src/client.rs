@@ -208,8 +208,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Asks once.
     ///
-    /// What is [held](Self::hold) of the same message by the same access ends, if the request goes to one
-    /// of its modules or may do so, and says something else. Its ticket ends without an event. So no renewal
+    /// The request ends what is [held](Self::hold) of the same message by the same access and says something
+    /// else, if it goes to one of its modules or may do so. Such a ticket ends without an event. So no renewal
     /// undoes a stop of all modules. To read something ends nothing that is set.
     ///
     /// The request waits until no answer to an earlier one can be taken for one to it. To hold the new value
@@ -251,8 +251,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// each period.
     ///
     /// A round that has waited for a gap goes before all others but hurried ones. So it is at most two gaps
-    /// late, and one more for each other module whose round is due, or which something held in an
-    /// [order](Self::hold_after) goes to. It is later while its last round is sent
+    /// late, and one more for each other module whose round is due. What is held in an
+    /// [order](Self::hold_after) goes before others in the same way. It is later while its last round is sent
     /// again. It is also later while an answer to another request could be taken for one to it.
     ///
     /// It ends what [`ask`](Self::ask) would end.

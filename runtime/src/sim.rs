@@ -76,6 +76,8 @@ pub enum Event {
 }
 
 /// A bus with `N` devices, and with room for `W` frames under way to the client.
+///
+/// It takes at most 616 bytes, 128 for each device beside what that takes itself, and 24 for each frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Bench<P, D, const N: usize, const W: usize> {
     nodes: [Node<D>; N],

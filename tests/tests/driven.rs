@@ -1,4 +1,4 @@
-//! One program drives simulated power modules of every vendor, while they fail: it finds them, sets them by quantities,
+//! One program drives simulated power modules of every vendor, while they fail. It finds them, sets them by quantities,
 //! hears of their states and alarms, and stops them.
 
 use std::collections::HashMap;

@@ -66,8 +66,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// To hold what is held already changes nothing, and returns the same ticket. So a program may call
     /// this in a loop.
     ///
-    /// Every request of the same message by the same access is replaced, if the new one goes to all of its
-    /// modules: what is held, and what was asked once or again and again with other values. It does not matter who answers, or
+    /// A request of the same message by the same access is replaced, if the new one goes to all of its
+    /// modules. That is true of what is held, and of what was asked with other values. It does not matter who answers, or
     /// which address of the controller asks. The client does not send the old request after that. Its ticket
     /// ends without an event. So a stop that is held passes a switch-on that was asked.
     ///

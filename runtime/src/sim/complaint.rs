@@ -38,8 +38,8 @@ pub enum Complaint {
         /// The module.
         node: u8,
     },
-    /// The program lets a module answer with what is no reply to the request. It is another message, or it
-    /// has values or an error code that the reply cannot carry. The client hears nothing.
+    /// The program lets a module answer with what is no reply to the request. It is another message, or has
+    /// values or an error code that it cannot carry. The client hears nothing.
     Answer {
         /// The module.
         node: u8,

@@ -12,7 +12,7 @@ pub type Tell<P, const Q: usize> = fn(&Received<P>, &Keeper<P, Q>) -> Answer<P>;
 /// It forgets all when it starts anew. It switches [`DELIVERING`](Quantity::DELIVERING) off when its watchdog runs
 /// out.
 ///
-/// Each quantity takes 24 bytes on a processor of 64 bits, and 16 on one of 32 bits.
+/// Each quantity takes 24 bytes on a processor of 64 bits, and 12 on one of 32 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Keeper<P: Addressed, const Q: usize> {
     tell: Tell<P, Q>,

@@ -311,3 +311,11 @@ fn a_device_that_is_up_reports_by_itself() {
     ];
     assert_eq!(faults.map(reports), expected);
 }
+
+#[test]
+fn a_bench_takes_no_more_memory_than_its_documentation_says() {
+    type Sized<const N: usize, const W: usize> = Bench<Message, [u8; 0], N, W>;
+    let sizes = [size_of::<Sized<0, 0>>(), size_of::<Sized<1, 0>>(), size_of::<Sized<0, 1>>()];
+    let [none, device, frame] = sizes;
+    assert!(none <= 616 && device - none <= 128 && frame - none <= 24, "{sizes:?}");
+}

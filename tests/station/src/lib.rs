@@ -1,9 +1,9 @@
 //! A controller of charging modules in groups, of any protocol that has the quantities.
 //!
 //! The station holds what each module is to do. While a group delivers, that is the set-point, and after it the
-//! switch-on: it is sent only when the echo of the set-point has agreed, in each renewal anew. So a module that
-//! restarts is not switched on without its set-point. It only must take longer to start than the switch-on waits for
-//! the bus. What is held and what is read keeps modules alive.
+//! switch-on. The switch-on is sent only when the echo of the set-point has agreed, in each renewal anew. So a module
+//! that restarts is not switched on without its set-point. It only must take longer to start than the switch-on waits
+//! for the bus. What is held and what is read keeps modules alive.
 //!
 //! A stop goes to the group first, and then to each module, again and again. Only what a module says of its output
 //! afterwards shows that it is off. What says nothing is unknown.
@@ -67,8 +67,8 @@ pub enum Refused {
 
 /// Controls the modules at `M` addresses, in `G` groups, with room for `R` requests.
 ///
-/// A module takes one request for each message that reads or sets something. An address without a module takes one, and
-/// so does a group that is stopped.
+/// A module takes one request for each message that reads or sets something. An address without a module takes one,
+/// and a group that is stopped takes one.
 pub struct Station<P: Quantities + Addressed, const M: usize, const G: usize, const R: usize> {
     settings: Settings,
     client: Client<P, R, G>,
