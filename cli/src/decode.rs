@@ -285,14 +285,19 @@ impl Decode {
         channel: Option<&str>,
         assembled: Assembled<Mark>,
     ) -> io::Result<()> {
-        let Assembled { marks, frame, mut decoded, data, reserved, incomplete } = assembled;
+        let Assembled { marks, frame, mut decoded, data, reserved, counter, incomplete } = assembled;
         if !self.choice.keep(protocol, &mut decoded) {
             return Ok(());
         }
         let lines: Vec<_> = marks.iter().map(|mark| mark.line).collect();
         let last = marks.last();
-        let whole =
-            Whole { lines: &lines, data: data.as_deref(), reserved: &reserved, incomplete: incomplete.as_deref() };
+        let whole = Whole {
+            lines: &lines,
+            data: data.as_deref(),
+            reserved: &reserved,
+            counter: counter.as_ref().map(|(name, value)| (name.as_str(), *value)),
+            incomplete: incomplete.as_deref(),
+        };
         let (line, time) = (last.map_or(0, |mark| mark.line), last.and_then(|mark| mark.time.as_deref()));
         let (frame, decoded) = (&frame, &Ok(decoded));
         printer.frame(out, &Outcome { line, time, channel, frame, protocol, decoded, whole: Some(whole) })

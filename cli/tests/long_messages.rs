@@ -18,6 +18,9 @@ const LOG: &str = "\
 /// The spec whose parts have other numbers on each model.
 const BY_MODEL: &str = "parts_by_model.yaml";
 
+/// The spec of messages that begin with their length, and count.
+const PACKETS: &str = "fast_packets.yaml";
+
 /// The spec of a transport.
 const TRANSPORT: &str = "transport.yaml";
 
@@ -198,4 +201,45 @@ fn a_long_message_in_a_call_becomes_an_announcement_and_packets() {
         (frames.as_str(), complaints.as_str()),
         ("", "canspec: profile.current_3: 250.1 A is outside 0..250 A\n")
     );
+}
+
+#[test]
+fn a_fast_packet_is_whole_where_its_length_says_and_never_joined_to_another_one() {
+    // Two parts of four cells, a length of no message, a part that is lost, and a part of the next message.
+    let log = "\
+        (1.0) can0 19FF0123#200901E40CE50CE6\n\
+        (1.1) can0 19FF0123#210CE70CFFFFFFFF\n\
+        (1.2) can0 19FF0123#400401E40CE50CE6\n\
+        (1.3) can0 19FF0123#600901E40CE50CE6\n\
+        (1.4) can0 19FF0123#8101E40CE50CE6FF\n";
+    let (out, _) = canspec_with(PACKETS, &["decode", "--assemble", "--format", "jsonl", "-"], log);
+    let objects = out.lines().map(|line| serde_json::from_str(line).expect("a line is an object"));
+    let wholes: Vec<Value> = objects.filter(|line: &Value| line.get("lines").is_some()).collect();
+    let said: Vec<_> = wholes.iter().map(|whole| (&whole["lines"], &whole["incomplete"])).collect();
+    let never = "4 bytes are announced, which the message never has";
+    assert_eq!(
+        said,
+        [
+            (&json!([1, 2]), &Value::Null),
+            (&json!([3]), &json!(never)),
+            (&json!([4]), &json!("part 1 is missing")),
+            (&json!([5]), &json!("part 0 is missing")),
+        ]
+    );
+    assert_eq!((&wholes[0]["data"], &wholes[0]["selectors"]), (&json!("01E40CE50CE60CE70C"), &json!({"counter": 1})));
+    assert_eq!(wholes[0]["signals"]["voltage"]["raw"], json!([3300, 3301, 3302, 3303]));
+    let (frames, _) = canspec_with(PACKETS, &["encode", "--from", "jsonl"], &wholes[0].to_string());
+    assert_eq!(frames, "(1.1) can0 19FF0123#200901E40CE50CE6\n(1.1) can0 19FF0123#210CE70CFFFFFFFF\n");
+}
+
+#[test]
+fn what_fills_up_a_fast_packet_is_noted_unless_it_is_as_it_is_sent() {
+    // Behind the last cell the document wants FF.
+    let log = "(1.0) can0 19FF0123#000501E40CE50C00\n(1.1) can0 19FF0123#200501E40CE50CFF\n";
+    let (out, _) = canspec_with(PACKETS, &["decode", "--assemble", "--format", "jsonl", "-"], log);
+    let objects = out.lines().map(|line| serde_json::from_str(line).expect("a line is an object"));
+    let wholes: Vec<Value> = objects.filter(|line: &Value| line.get("lines").is_some()).collect();
+    let notes: Vec<_> = wholes.iter().map(|whole| &whole["notes"]).collect();
+    let text = "bytes behind the end of the message are not all 0xFF";
+    assert_eq!(notes, [&json!([{"rule": "reserved_bit", "text": text}]), &json!([])]);
 }

@@ -41,7 +41,7 @@ pub use id::{
 };
 pub use identifier::{Foreign, Identifier, IdentifierField, Selector, SelectorPlace};
 pub use lacking::{Lacking, only};
-pub use long::{Carrier, LongMessage, Parts, Varying};
+pub use long::{Announcement, Carrier, LongMessage, Parts, Varying};
 pub(crate) use message::first_bytes;
 pub use message::{Access, Answers, Constant, Exchange, FrameLayout, Kind, Message, Reserved, Side, Travel, Who};
 pub use note::NoteRule;

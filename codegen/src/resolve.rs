@@ -17,6 +17,7 @@ mod keys;
 mod lengths;
 mod long;
 mod messages;
+mod parts;
 mod patterns;
 mod printed;
 mod quantities;

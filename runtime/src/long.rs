@@ -19,6 +19,14 @@ pub use text::{ByteRun, LongText};
 #[cfg(test)]
 mod tests;
 
+/// Tests whether the fields of a message can have some number of data bytes if its constants end with the first `head`.
+fn has_size<L: LongLayout>(head: usize, size: usize) -> bool {
+    match L::ELEMENTS {
+        None => size == L::SHORTEST.max(head),
+        Some((least, most)) => (least..=most).any(|elements| L::BYTES(elements).max(head) == size),
+    }
+}
+
 /// The values that several frames carry together. Generated code implements it.
 pub trait LongLayout: Copy + 'static {
     /// Name of the message.

@@ -23,6 +23,8 @@ struct Bus<'a> {
     rng: Rng,
     /// How many parts each device has sent of its message.
     sent: [u64; 8],
+    /// How many messages each device has begun.
+    begun: [u64; 8],
     last: Option<Frame>,
 }
 
@@ -47,15 +49,31 @@ impl Bus<'_> {
             1 => self.sent[device] + 2,
             _ => self.sent[device] + 1,
         };
-        if self.sent[device] >= parts {
+        if self.sent[device] >= parts || self.rng.u8(..9) == 0 {
             self.sent[device] = 0;
         }
+        self.begun[device] += u64::from(self.sent[device] == 0 || self.rng.u8(..32) == 0);
         let number = (self.first + self.sent[device]).saturating_sub(u64::from(self.rng.u8(..32) == 0));
         let parts = self.long.parts().expect("its frames have numbers");
-        let values = [(parts.number, number), (parts.data, self.rng.u64(..))];
+        let mut values = vec![(parts.number, number), (parts.data, self.data(number))];
+        values.extend(parts.counter.map(|counter| (counter, self.begun[device])));
         self.sent_frame(self.long.message, Kind::Reply, device, &values)
             .or_else(|| self.sent_frame(self.long.message, Kind::Report, device, &values))
             .expect("modules send parts")
+    }
+
+    /// Returns the data of a part. The first one mostly announces a length that the message can have.
+    fn data(&mut self, number: u64) -> u64 {
+        let parts = self.long.parts().expect("its frames have numbers");
+        let any = self.rng.u64(..);
+        let Some(length) = parts.length.filter(|_| number == self.first && self.rng.u8(..12) > 0) else { return any };
+        let lengths: Vec<_> = (0..=self.long.longest()).filter(|length| self.long.has_length(*length)).collect();
+        let said = u64::try_from(*self.rng.choice(&lengths).expect("it has a length")).expect("a few bytes");
+        let mut frame = [0; 8];
+        let data = self.protocol[self.long.message][parts.data].place;
+        data.put(&mut frame, any & data.max());
+        length.place.put(&mut frame, said);
+        data.get(&frame)
     }
 
     fn request(&mut self) -> Option<Frame> {
@@ -85,7 +103,8 @@ impl Bus<'_> {
             place.put(&mut data, value);
         }
         for (signal, value) in values {
-            protocol[message][*signal].place.put(&mut data, *value);
+            let place = protocol[message][*signal].place;
+            place.put(&mut data, *value & place.max());
         }
         let mut id = self.identifier(layout, pattern, device);
         if let Some(continuation) = protocol.continuation().filter(|_| self.rng.u8(..5) > 0) {
@@ -122,7 +141,7 @@ impl Agreement {
         let long = long::<L>(protocol);
         let first = long.first(model).unwrap_or_default().into();
         let rng = Rng::with_seed(0xA55E);
-        let mut bus = Bus { protocol, long, first, rng, sent: [0; 8], last: None };
+        let mut bus = Bus { protocol, long, first, rng, sent: [0; 8], begun: [0; 8], last: None };
         let mut assembly = Assembly::default();
         let mut assembler = Assembler::<L, 16>::new(u32::MAX);
         if let Some(model) = model {
@@ -168,7 +187,14 @@ impl Agreement {
                     let missing: Vec<_> = partial.missing().map(|number| number.to_string()).collect();
                     assert!(first.is_some());
                     match &message.incomplete {
-                        Some(text) => assert!(text.contains(&missing.join(", ")) && !missing.is_empty(), "{text}"),
+                        Some(text) => {
+                            let wrong = partial.announced().filter(|length| !long::<L>(protocol).has_length(*length));
+                            let said = wrong.map(|length| format!("{length} bytes are announced"));
+                            assert_eq!(text.contains("announced"), wrong.is_some(), "{text}");
+                            assert!(text.contains(&said.unwrap_or_default()), "{text}");
+                            assert!(text.contains(&missing.join(", ")), "{text}");
+                            assert!(!missing.is_empty() || wrong.is_some(), "{text}");
+                        }
                         // The last part is marked before all fields came.
                         None => assert!(missing.is_empty() && partial.data().len() < L::SHORTEST, "{outcome:?}"),
                     }

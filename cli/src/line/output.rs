@@ -31,6 +31,8 @@ pub struct Whole<'a> {
     pub data: Option<&'a [u8]>,
     /// Bits that no signal covers.
     pub reserved: &'a [u8],
+    /// The name of what tells it from the next message, and its value.
+    pub counter: Option<(&'a str, u64)>,
     /// Which parts are missing.
     pub incomplete: Option<&'a str>,
 }
@@ -100,7 +102,8 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     let is_number = |signal: &Signal| transport.is_some() && transport::is_number(signal);
     let numbers = decoded.signals.iter().map(|reading| (&content[reading.signal], reading.bits));
     let numbers = numbers.filter(|(signal, _)| is_number(signal)).map(|(signal, bits)| (signal.name.as_str(), bits));
-    selectors(out, protocol, &decoded.identifier, known.chain(numbers))?;
+    let counter = outcome.whole.as_ref().and_then(|whole| whole.counter);
+    selectors(out, protocol, &decoded.identifier, known.chain(numbers).chain(counter))?;
     out.write_all(b",\"signals\":")?;
     let values = fields(content, decoded);
     let shown = values.iter().filter(|(_, field)| match field {

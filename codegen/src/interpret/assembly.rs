@@ -4,14 +4,15 @@ use super::long::Joined;
 use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
 use crate::model::{
-    AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Parts, Protocol, SelectorPlace,
-    SignalId,
+    AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Parts, Protocol, Reserved,
+    SelectorPlace, SignalId,
 };
 
 /// The parts that came so far. `M` is what the caller remembers of each frame.
 ///
-/// A device sends the parts of a message in their order. A part whose number is not greater than that of the part
-/// before begins another message. A part after a request begins one, too. A frame that is repeated at once counts once.
+/// A device sends the parts of a message in their order. Another message begins with a part whose number is not greater
+/// than that of the part before, or which has another counter. A part after a request begins one, too. A frame that is
+/// repeated at once counts once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {
     transfers: Vec<Transfer<M>>,
@@ -43,6 +44,10 @@ struct Count {
 struct Transfer<M> {
     long: LongMessageId,
     peers: Peers,
+    /// What all of its parts show.
+    counter: Option<u64>,
+    /// How many data bytes the first part announces.
+    announced: Option<usize>,
     /// Each part that came: how many come before it, its data, and its frame.
     parts: Vec<(usize, Vec<u8>, M)>,
     /// Whether a frame said that no other follows.
@@ -79,6 +84,8 @@ pub struct Assembled<M> {
     pub data: Option<Vec<u8>>,
     /// Bits that no signal covers, first byte first.
     pub reserved: Vec<u8>,
+    /// The name of what tells a message in parts from the next one, and its value.
+    pub counter: Option<(String, u64)>,
     /// What is missing, in one sentence without a full stop.
     pub incomplete: Option<String>,
 }
@@ -87,6 +94,10 @@ pub struct Assembled<M> {
 struct Part {
     index: usize,
     data: Vec<u8>,
+    /// What all parts of its message show.
+    counter: Option<u64>,
+    /// How many data bytes it announces.
+    announced: Option<usize>,
     /// Whether the frame says that no other follows.
     is_last: bool,
 }
@@ -133,13 +144,24 @@ impl<M: Clone> Assembly<M> {
             other => {
                 ended.extend(other.map(|open| self.end(protocol, model, open, None)));
                 let (frame, decoded) = (frame.clone(), decoded.clone());
-                self.transfers.push(Transfer { long: id, peers, parts: Vec::new(), is_ended: false, frame, decoded });
+                let (counter, announced) = (part.counter, part.announced);
+                let parts = Vec::new();
+                self.transfers.push(Transfer {
+                    long: id,
+                    peers,
+                    counter,
+                    announced,
+                    parts,
+                    is_ended: false,
+                    frame,
+                    decoded,
+                });
                 self.transfers.len() - 1
             }
         };
         let count = self.count(protocol, &self.transfers[open]);
-        let expected = if part.is_last { Some(part.index + 1) } else { expected(long, count) };
         let transfer = &mut self.transfers[open];
+        let expected = if part.is_last { Some(part.index + 1) } else { transfer.expected(long, count) };
         (transfer.frame, transfer.decoded) = (frame.clone(), decoded.clone());
         let is_end = expected.unwrap_or(long.parts_of(long.longest())) <= part.index + 1;
         transfer.parts.push((part.index, part.data, mark));
@@ -191,7 +213,7 @@ impl<M: Clone> Assembly<M> {
         let transfer = self.transfers.swap_remove(open);
         let long = &protocol[transfer.long];
         let count = self.count(protocol, &transfer);
-        let expected = expected.or_else(|| self::expected(long, count));
+        let expected = expected.or_else(|| transfer.expected(long, count));
         transfer.assembled(protocol, (long, model), (expected, count))
     }
 }
@@ -199,12 +221,20 @@ impl<M: Clone> Assembly<M> {
 impl<M: Clone> Transfer<M> {
     /// Tests whether a part is the last one once more.
     fn repeats(&self, part: &Part) -> bool {
-        self.parts.last().is_some_and(|(index, data, _)| *index == part.index && *data == part.data)
+        let is_last = self.parts.last().is_some_and(|(index, data, _)| *index == part.index && *data == part.data);
+        is_last && self.counter == part.counter
     }
 
     /// Tests whether a part can follow those that came.
     fn is_before(&self, part: &Part) -> bool {
-        self.parts.last().is_some_and(|(index, _, _)| *index < part.index)
+        self.parts.last().is_some_and(|(index, _, _)| *index < part.index) && self.counter == part.counter
+    }
+
+    /// Returns the number of parts, if it is known.
+    fn expected(&self, long: &LongMessage, count: Option<usize>) -> Option<usize> {
+        let announced = self.announced.map(|length| long.parts_of(length).min(long.parts_of(long.longest())));
+        let is_known = long.varying().is_none() || count.is_some();
+        announced.or_else(|| is_known.then(|| long.parts_of(long.bytes_with(count))))
     }
 
     fn assembled(
@@ -213,22 +243,43 @@ impl<M: Clone> Transfer<M> {
         (long, model): (&LongMessage, Option<ModelId>),
         (expected, count): (Option<usize>, Option<usize>),
     ) -> Assembled<M> {
-        let incomplete = self.missing(long, model, expected);
-        let (size, parts) = (long.size(), self.parts.last().map_or(0, |(index, _, _)| index + 1));
-        let (data, came) = (vec![0; parts * size], vec![false; parts * size]);
-        let mut joined = Joined { data, came, count, is_ended: self.is_ended };
-        for (index, data, _) in &self.parts {
-            let bytes = index * size..(index + 1) * size;
-            joined.data[bytes.clone()].copy_from_slice(data);
-            joined.came[bytes].fill(true);
-        }
+        let missing = self.missing(long, model, expected);
+        let wrong = self.announced.filter(|length| !long.has_length(*length));
+        let wrong = wrong.map(|length| format!("{length} bytes are announced, which the message never has"));
+        let incomplete = match (missing, wrong) {
+            (Some(missing), Some(wrong)) => Some(format!("{missing}; {wrong}")),
+            (missing, wrong) => missing.or(wrong),
+        };
+        let (joined, rest) = self.joined(long, count);
+        let note = filling_note(long, &rest).filter(|_| incomplete.is_none());
         let said = joined.read(protocol, long.whole(), model);
         let of_addresses = |note: &&Note| matches!(note.rule, NoteRule::Addressing | NoteRule::Address);
-        let notes = self.decoded.notes.iter().filter(of_addresses).cloned().chain(said.notes).collect();
+        let notes = self.decoded.notes.iter().filter(of_addresses).cloned().chain(said.notes).chain(note).collect();
+        let counter = self.counter.zip(long.parts().and_then(|parts| parts.counter));
+        let counter = counter.map(|(value, signal)| (protocol[long.message][signal].name.clone(), value));
         let decoded = Decoded { long: Some(self.long), signals: said.signals, notes, reserved: [0; 8], ..self.decoded };
         let data = incomplete.is_none().then_some(joined.data);
         let marks = self.parts.into_iter().map(|(_, _, mark)| mark).collect();
-        Assembled { marks, frame: self.frame, decoded, data, reserved: said.reserved, incomplete }
+        Assembled { marks, frame: self.frame, decoded, data, reserved: said.reserved, counter, incomplete }
+    }
+
+    /// Joins the data. It also returns what fills up the last part behind an announced end.
+    fn joined(&self, long: &LongMessage, count: Option<usize>) -> (Joined, Vec<u8>) {
+        let (size, parts) = (long.size(), self.parts.last().map_or(0, |(index, _, _)| index + 1));
+        let (mut joined, mut came) = (vec![0; parts * size], vec![false; parts * size]);
+        for (index, data, _) in &self.parts {
+            let bytes = index * size..(index + 1) * size;
+            joined[bytes.clone()].copy_from_slice(data);
+            came[bytes].fill(true);
+        }
+        let head = long.parts().map_or(0, Parts::head);
+        let (mut data, mut came) = (joined.split_off(head), came.split_off(head));
+        let end = self.announced.unwrap_or(data.len()).min(data.len());
+        let rest = data.split_off(end);
+        came.truncate(end);
+        let is_ended = self.is_ended || self.announced.is_some();
+        let count = self.announced.map_or(count, |length| long.whole().elements_in(length));
+        (Joined { data, came, count, is_ended }, rest)
     }
 
     /// Says which parts did not come.
@@ -263,21 +314,27 @@ impl Part {
         let index = number.checked_sub(long.first(model)?.into())?;
         let index = usize::try_from(index).ok().filter(|index| *index < long.parts_of(long.longest()))?;
         let data = data.to_be_bytes()[8 - long.size()..].to_vec();
-        let is_last = protocol.continuation().is_some_and(|continuation| {
+        let counter = parts.counter.and_then(bits);
+        let length = parts.length.filter(|_| index == 0).map(|length| length.place.get(&frame.padded()));
+        let announced = length.map(|length| usize::try_from(length).unwrap_or(usize::MAX));
+        let is_last = protocol.continuation().filter(|_| parts.length.is_none()).is_some_and(|continuation| {
             let found = match continuation.place {
                 SelectorPlace::Identifier(field) => u64::from(protocol[field].get(frame.id)),
                 SelectorPlace::Payload(place) => place.get(&frame.padded()),
             };
             found != continuation.raw
         });
-        Some(Self { index, data, is_last })
+        Some(Self { index, data, counter, announced, is_last })
     }
 }
 
-/// Returns the number of parts, if it is known.
-fn expected(long: &LongMessage, count: Option<usize>) -> Option<usize> {
-    let is_known = long.varying().is_none() || count.is_some();
-    is_known.then(|| long.parts_of(long.bytes_with(count)))
+/// Notes bytes behind the end of a message that are not as they are sent.
+fn filling_note(long: &LongMessage, rest: &[u8]) -> Option<Note> {
+    let Reserved { are_ones, are_free, .. } = long.content.reserved;
+    let fill = if are_ones { 0xFF } else { 0 };
+    let is_odd = !are_free && rest.iter().any(|byte| *byte != fill);
+    let text = || format!("bytes behind the end of the message are not all 0x{fill:02X}");
+    is_odd.then(|| Note { rule: NoteRule::ReservedBit, text: text() })
 }
 
 /// Returns those addresses that are not sent by everybody.

@@ -61,7 +61,8 @@ impl Content {
 impl Content {
     /// Takes over a long message, so that encoding gives the same frames.
     pub fn of_long<M>(protocol: &Protocol, assembled: &Assembled<M>) -> Self {
-        let whole = Self::of(protocol, &assembled.decoded);
+        let mut whole = Self::of(protocol, &assembled.decoded);
+        whole.selectors.extend(assembled.counter.clone());
         Self { reserved: assembled.reserved.clone(), ..whole }
     }
 }

@@ -63,13 +63,19 @@ fn encode_parts(
     let limits = (model, Limits::Bits);
     let whole = (known.whole(), [0; 8]);
     let data = long::joined(protocol, whole, &content.signals, Some(&content.reserved), limits)?;
+    let mut selectors = content.selectors.clone();
+    let counter = parts.counter.map(|counter| &message[counter].name);
+    let given = selectors.iter().position(|(name, _)| Some(name) == counter).map(|place| selectors.remove(place));
+    let counter = counter.map(|name| (name.clone(), Input::Integer(given.map_or(0, |(_, value)| value.into()))));
     let mut frames = Vec::new();
     for (number, data) in long::parts(known, model, &data)? {
-        let signals = vec![
+        let mut signals = vec![
             (message[parts.number].name.clone(), Input::Integer(number.into())),
             (message[parts.data].name.clone(), Input::Text(data)),
         ];
-        let part = Content { signals, arrays: Vec::new(), reserved: Vec::new(), ..content.clone() };
+        signals.extend(counter.clone());
+        let selectors = selectors.clone();
+        let part = Content { signals, selectors, arrays: Vec::new(), reserved: Vec::new(), ..content.clone() };
         frames.push(encode(protocol, model, &part)?);
     }
     continue_all_but_last(protocol, &mut frames);

@@ -9,7 +9,7 @@ use super::notes::signal_note;
 use super::value::{Limits, bytes_of, raw_of};
 use super::{Input, Note, Reading, Refusal};
 use crate::hex;
-use crate::model::{Extent, LongMessage, Message, ModelId, NoteRule, Protocol, Signal, TextForm};
+use crate::model::{Announcement, Extent, LongMessage, Message, ModelId, NoteRule, Parts, Protocol, Signal, TextForm};
 
 /// What a call writes for each signal, by name.
 pub type Texts = Vec<(String, String)>;
@@ -196,8 +196,8 @@ fn length(
     if extent.lengths().is_empty() {
         let length = extent.bytes_with(count).max(reserved);
         let most = match long.parts() {
-            Some(_) => long.parts_of(long.longest()) * long.size(),
-            None => extent.bytes_with(count),
+            Some(parts) if parts.length.is_none() => long.parts_of(long.longest()) * long.size(),
+            _ => extent.bytes_with(count),
         };
         return if length > most { Err(too_long(most)) } else { Ok(length) };
     }
@@ -212,14 +212,27 @@ pub fn parts(long: &LongMessage, model: Option<ModelId>, data: &[u8]) -> Result<
         let text = "the first part has another number on each model; choose a model";
         refuse(&long.content, text)
     })?;
-    let parts = filled(long, data);
+    let mut parts = filled(long, data);
+    if let Some(length) = long.parts().and_then(|parts| parts.length) {
+        put_length(length, data.len(), &mut parts);
+    }
     Ok((first..).zip(parts.chunks(long.size()).map(hex::digits)).collect())
+}
+
+/// Writes the number of data bytes before the data.
+fn put_length(length: Announcement, bytes: usize, parts: &mut Vec<u8>) {
+    let mut frame = [0; 8];
+    length.place.put(&mut frame, u64::try_from(bytes).unwrap_or(u64::MAX));
+    let said = frame.into_iter().zip(length.place.mask()).filter(|(_, mask)| *mask != 0);
+    parts.splice(0..0, said.map(|(byte, _)| byte));
 }
 
 /// Fills up the last part.
 fn filled(long: &LongMessage, data: &[u8]) -> Vec<u8> {
-    let (mut whole, length) = (data.to_vec(), long.parts_of(data.len()) * long.size());
-    if let Some((text, _)) = long.open_text()
+    let head = long.parts().map_or(0, Parts::head);
+    let (mut whole, length) = (data.to_vec(), long.parts_of(data.len()) * long.size() - head);
+    if head == 0
+        && let Some((text, _)) = long.open_text()
         && let Some(TextForm::Ascii { fill }) = text.encoding.text_form()
     {
         whole.resize(text.reach().min(length).max(data.len()), fill);
@@ -241,10 +254,14 @@ pub fn typed_parts(
     if given.is_empty() || given.iter().any(|(name, _)| name == number || name == data) {
         return Ok(None);
     }
+    let counter = carried.counter.map(|id| (message[id].name.clone(), "0".to_owned()));
     let joined = typed(protocol, (long.whole(), [0; 8]), given, (model, Limits::Bits))?;
     let parts = parts(long, model, &joined)?.into_iter();
-    let texts = parts.map(|(part, text)| vec![(number.clone(), part.to_string()), (data.clone(), text)]);
-    Ok(Some(texts.collect()))
+    let texts = |(part, text): (u16, String)| {
+        let known = [(number.clone(), part.to_string()), (data.clone(), text)];
+        known.into_iter().chain(counter.clone()).collect()
+    };
+    Ok(Some(parts.map(texts).collect()))
 }
 
 /// Makes the data of a long message of what a call writes. A signal that is left out takes its default, if it has one.

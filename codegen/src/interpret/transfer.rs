@@ -127,6 +127,7 @@ impl<M> Arrived<M> {
             decoded: Decoded { long: Some(id), signals: said.signals, notes, ..decoded },
             data: self.incomplete.is_none().then_some(joined.data),
             reserved: said.reserved,
+            counter: None,
             incomplete: self.incomplete,
         }
     }

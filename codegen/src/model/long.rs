@@ -1,10 +1,11 @@
 //! Messages that are longer than a frame.
 
+use canspec_runtime::Place;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
     ByteRun, Doc, FrameLayout, Groups, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId,
-    Transport, TransportId,
+    Transport, TransportId, place,
 };
 
 /// What the data of several frames say together.
@@ -40,16 +41,36 @@ pub enum Carrier {
 pub struct Parts {
     /// The signal of the frames that numbers them.
     pub number: SignalId,
+    /// The signal of the frames that all parts of a message share, and the next message does not.
+    pub counter: Option<SignalId>,
     /// The signal of the frames that carries the data of a part.
     pub data: SignalId,
-    /// Number of data bytes in a part.
+    /// Number of data bytes in a part, those of the length included.
     pub size: u8,
+    /// What the first part says of the number of data bytes.
+    pub length: Option<Announcement>,
     /// Number of the first part, if it is the same for every model.
     pub first: Option<u16>,
     /// Numbers of the first part by device model, if each has its own.
     pub model_firsts: Vec<OfModel<u16>>,
     /// Where a device says how many elements the array of varying length has.
     pub count: Option<(MessageId, SignalId)>,
+}
+
+/// Where the first part says how many data bytes there are.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Announcement {
+    /// Whole bytes of the frame, at the front of its data.
+    #[serde(with = "place")]
+    pub place: Place,
+}
+
+impl Announcement {
+    /// Returns how many bytes say it.
+    pub fn bytes(self) -> usize {
+        usize::from(self.place.width() / 8)
+    }
 }
 
 /// A field that has any number of elements, or of bytes if it is a text.
@@ -66,6 +87,13 @@ pub struct Varying<'a> {
     pub least: usize,
     /// The greatest number.
     pub most: usize,
+}
+
+impl Parts {
+    /// Returns how many bytes before the data say how many there are.
+    pub fn head(&self) -> usize {
+        self.length.map_or(0, Announcement::bytes)
+    }
 }
 
 impl LongMessage {
@@ -155,7 +183,8 @@ impl LongMessage {
 
     /// Returns how many frames carry some number of bytes.
     pub fn parts_of(&self, bytes: usize) -> usize {
-        bytes.div_ceil(self.size()).max(1)
+        let head = self.parts().map_or(0, Parts::head);
+        head.saturating_add(bytes).div_ceil(self.size()).max(1)
     }
 
     /// Returns the number of the first part, if that is known of the device model.

@@ -16,7 +16,7 @@ use crate::model::{
 };
 use crate::resolve::rules;
 use crate::syntax::ast::{self, Means};
-use crate::syntax::tree::Path;
+use crate::syntax::tree::{Node, Path};
 use crate::words::ORIGINS;
 
 /// The messages of the protocol.
@@ -102,8 +102,13 @@ impl Resolver<'_> {
     ) -> Option<Example> {
         let (kind, texts) = self.printed_kind(path, example)?;
         let known = message.map(|index| &messages[index]);
-        let is_joined = known.and_then(|known| known.long).is_some_and(|long| self.is_joined(long));
-        let ([text], None, false) = (texts, &example.count, is_joined) else {
+        let long = known.and_then(|known| known.long);
+        let is_joined = long.is_some_and(|long| self.is_joined(long));
+        // A list of one frame is a message of one part.
+        let written = self.diagnostics.tree().and_then(|tree| tree.get(&path.key(kind.name())));
+        let is_list = long.is_some_and(|long| self.tables.long_messages[long].parts().is_some())
+            && written.is_some_and(Node::is_list);
+        let ([text], None, false) = (texts, &example.count, is_joined || is_list) else {
             self.long_example(path, (kind, texts), example, known, outer);
             return None;
         };

@@ -4,7 +4,7 @@
 use super::Resolver;
 use super::arrays::{Row, Windowed};
 use super::keys::{Role, Site};
-use super::long::{DATA, PART};
+use super::parts::{COUNTER, DATA, LENGTH, PART};
 use super::runs::is_run;
 use super::texts::{self, remarks};
 use super::types::Merged;
@@ -128,20 +128,44 @@ impl Resolver<'_> {
         leaves
     }
 
-    /// Resolves the fields of a frame that carries a part of a long message: the number of the part
-    /// and its data.
+    /// Resolves the fields of a frame that carries a part of a long message: its number, the counter of messages, and
+    /// the data.
     pub fn part_leaves(&mut self, path: &Path, parts: &ast::Parts, doc: &Doc, owner: &str) -> Leaves {
         let mut leaves = Leaves::default();
         self.tables.fields = 0;
         let outer = Outer::of_message(doc, owner);
-        // A part always has a number, so all ones are one, too.
-        let are_ones = std::mem::take(&mut self.tables.absent_are_ones);
-        self.leaf(&path.key("number"), PART, &parts.number, outer, &mut leaves);
-        self.tables.absent_are_ones = are_ones;
+        self.number_of_parts((&path.key("number"), PART), &parts.number, outer, &mut leaves);
+        if let Some(counter) = &parts.counter {
+            self.number_of_parts((&path.key("counter"), COUNTER), counter, outer, &mut leaves);
+        }
         let data =
             Field { bytes: Some(parts.data.clone()), format_of_number: Some("bytes".to_owned()), ..Field::default() };
         self.leaf(&path.key("data"), DATA, &data, outer, &mut leaves);
         leaves
+    }
+
+    /// Resolves the field of the first part that says how many data bytes there are.
+    pub fn length_leaf(&mut self, path: &Path, field: &Field, doc: &Doc, owner: &str) -> Option<Signal> {
+        let mut leaves = Leaves::default();
+        self.number_of_parts((path, LENGTH), field, Outer::of_message(doc, owner), &mut leaves);
+        leaves.signals.pop().filter(|_| leaves.given_up.is_empty())
+    }
+
+    /// Resolves a number beside the data of a part. `bits` beside `bytes` are those of a word in which it is alone.
+    fn number_of_parts(&mut self, (path, name): (&Path, &str), field: &Field, outer: Outer, leaves: &mut Leaves) {
+        // It is always there, so all ones are a number, too.
+        let are_ones = std::mem::take(&mut self.tables.absent_are_ones);
+        match (&field.bytes, &field.bits) {
+            (Some(bytes), Some(_)) => match self.bytes(&path.key("bytes"), bytes) {
+                Some(word) => {
+                    let inside = Field { bytes: None, ..field.clone() };
+                    self.leaf(path, name, &inside, Outer { word: Some((0, word)), ..outer }, leaves);
+                }
+                None => give_up(name, field, outer.group.prefix, leaves),
+            },
+            _ => self.leaf(path, name, field, outer, leaves),
+        }
+        self.tables.absent_are_ones = are_ones;
     }
 
     fn leaves(&mut self, path: &Path, fields: &ast::Map<Field>, outer: Outer, leaves: &mut Leaves) {

@@ -6,22 +6,15 @@ use canspec_runtime::plumbing::ByteOrder;
 use super::Resolver;
 use super::arrays::Windowed;
 use super::fields::Leaves;
-use crate::diagnostic::Diagnostic;
+use super::parts::{PART, numbers};
 use crate::model::{
-    Array, ArrayId, ByteRun, Carrier, Doc, Element, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId,
-    ModelId, Numeral, OfModel, Parts, Range, Reserved, Signal, SignalId, Table, TransportId, Varying,
+    Array, ArrayId, ByteRun, Carrier, Doc, Element, Id, LongMessage, LongMessageId, Message, MessageId, ModelId,
+    Reserved, Signal, SignalId, Table, TransportId, Varying,
 };
-use crate::number::Rational;
 use crate::resolve::rules;
 use crate::rule::Rule;
-use crate::syntax::ast::{self, ByModel};
+use crate::syntax::ast;
 use crate::syntax::tree::Path;
-
-/// Name of the signal with the number of a part.
-pub const PART: &str = "part";
-
-/// Name of the signal with the data of a part.
-pub const DATA: &str = "data";
 
 /// Most data bytes of a long message. ISO 15765-2 has no more, either.
 pub const MOST_BYTES: u16 = 4095;
@@ -148,11 +141,12 @@ impl Resolver<'_> {
         let arrays = self.arrays(whole.arrays, &signals);
         let content = content(head, signals, arrays);
         let path = path.key("parts");
-        let carrier = self.parts(&path, parts, &frame).map(Carrier::Parts);
+        let carrier = self.parts(&path, parts, &frame, head).map(Carrier::Parts);
         let long =
             carrier.map(|carrier| LongMessage { message, content, carrier, lengths: Vec::new(), frames: Vec::new() });
         let long = long.filter(|long| self.check_long(&rules::PARTS, &path, long, frame.given_up.is_empty()).is_some());
         let id = long.map(|long| {
+            self.check_announced(&path, &long);
             let numbers = numbers(&long);
             if let Some(signal) = frame.signals.iter_mut().find(|signal| signal.name == PART) {
                 self.set_numbers(&path.key("number"), signal, numbers);
@@ -160,45 +154,6 @@ impl Resolver<'_> {
             self.tables.long_messages.push(long)
         });
         (frame, id)
-    }
-
-    /// Reads `parts`, but for `count`.
-    fn parts(&mut self, path: &Path, parts: &ast::Parts, frame: &Leaves) -> Option<Parts> {
-        let find = |name: &str| frame.signals.iter().position(|signal| signal.name == name);
-        let number = find(PART).filter(|number| is_plain(&frame.signals[*number]));
-        if number.is_none() && frame.given_up.is_empty() {
-            let text = "the number of a part is one plain number".to_owned();
-            let help = "write a place alone, as in `{bytes: 0}`";
-            self.error_with_help(&rules::PARTS, path.key("number").at_key(), text, help);
-        }
-        let (number, data) = (number?, find(DATA)?);
-        let place = frame.signals[data].place;
-        if place.order() != ByteOrder::Big {
-            let text = "the data of a part run from its first byte to its last".to_owned();
-            let help = "write the lower number first, as in `1..6`";
-            self.error_with_help(&rules::PARTS, path.key("data").at_value(), text, help);
-            return None;
-        }
-        let at = path.key("first");
-        let (first, model_firsts) = match &parts.first {
-            ByModel::Every(text) => (Some(self.integer(&at, text, 0, u16::MAX - MOST_BYTES)?), Vec::new()),
-            ByModel::Each(numbers) => (None, self.model_firsts(&at, numbers)),
-        };
-        let [number, data] = [number, data].map(Id::new);
-        Some(Parts { number, data, size: place.width() / 8, first, model_firsts, count: None })
-    }
-
-    /// Reads the number of the first part for each device model.
-    fn model_firsts(&mut self, path: &Path, numbers: &ast::Map<String>) -> Vec<OfModel<u16>> {
-        let mut firsts = Vec::new();
-        for (name, text) in numbers {
-            let path = path.key(name);
-            let names = self.spec.models.keys().map(String::as_str);
-            let Some(place) = self.lookup_key(&path, "model", name, names) else { continue };
-            let Some(value) = self.integer(&path, text, 0, u16::MAX - MOST_BYTES) else { continue };
-            firsts.push(OfModel { model: Id::new(place), value, path });
-        }
-        firsts
     }
 
     /// Makes a long message of what a transport carries. It returns the fields of the message if it is one frame.
@@ -337,75 +292,6 @@ impl Resolver<'_> {
         }
         Some(())
     }
-
-    /// Tests that no frame to a module carries parts.
-    pub fn check_senders(&mut self, path: &Path, name: &str, frames: &[FrameLayout]) {
-        let Some(frame) = frames.iter().find(|frame| frame.is_to_module() && !frame.signals.is_empty()) else { return };
-        let text = format!("a {} of `{name}` would carry parts to a module", frame.kind.name());
-        let help = "only modules send parts yet, since generated Rust could not test the limits of their values; \
-                    write `in: [reply]` in the access";
-        self.error_with_help(&rules::PARTS, path.key("parts").at_key(), text, help);
-    }
-
-    /// Lets the number of a part be one of those that its message has.
-    fn set_numbers(&mut self, path: &Path, signal: &mut Signal, numbers: Option<(u16, u16)>) {
-        let Some((first, last)) = numbers else { return };
-        if u64::from(last) > signal.place.max() {
-            let text =
-                format!("the parts have the numbers {first} to {last}, and {} bits for them", signal.place.width());
-            let help = "correct the place of the number, or the length of the message";
-            self.error_with_help(&rules::PARTS, path.at_key(), text, help);
-        }
-        let [minimum, maximum] = [first, last].map(|end| Rational::integer(end.into()));
-        if signal.range.is_none() {
-            (signal.range, signal.range_path) = (Some(Range { minimum, maximum }), Path::default());
-        }
-    }
-
-    /// Finds the signals that say how many elements there are.
-    pub fn count_elements(&mut self, messages: &Table<MessageId, Message>) {
-        for id in self.tables.long_messages.ids() {
-            let long = &self.tables.long_messages[id];
-            let (path, is_varying) = (long.content.doc.path.key("parts").key("count"), long.varying().is_some());
-            let written = self.spec.messages.get(&long.content.name).and_then(|message| message.parts.as_ref());
-            let Some(text) = written.and_then(|parts| parts.count.clone()) else { continue };
-            if is_varying {
-                let count = self.counting(&path, &text, messages);
-                if let Carrier::Parts(parts) = &mut self.tables.long_messages[id].carrier {
-                    parts.count = count;
-                }
-            } else {
-                let text = "`count` means nothing here: no field of the message varies".to_owned();
-                let help = "take it out; or write the least and the greatest number, as in `repeat: 1..48`, or end a text \
-                            open: `bytes: 9..`";
-                self.error_with_help(&rules::PARTS, path.at_key(), text, help);
-            }
-        }
-    }
-
-    /// Finds a signal by the names of its message and its own: `status.cells`.
-    fn counting(
-        &mut self,
-        path: &Path,
-        text: &str,
-        messages: &Table<MessageId, Message>,
-    ) -> Option<(MessageId, SignalId)> {
-        let Some((message, signal)) = text.split_once('.') else {
-            let help = "write the message and its signal: `status.cells`";
-            self.error_with_help(&rules::PARTS, path.at_value(), format!("`{text}` is not a signal"), help);
-            return None;
-        };
-        let id = self.lookup_in(path, "message", message, messages, |message| &message.name)?;
-        let found = self.lookup_in(path, "signal", signal, &messages[id].signals, |signal| &signal.name)?;
-        let known = &messages[id][found];
-        if is_plain(known) {
-            return Some((id, found));
-        }
-        let problem = Diagnostic::error(&rules::PARTS, path.at_value(), format!("`{text}` is no plain number"));
-        let help = "name a signal without scale, offset and names for its values";
-        self.diagnostics.push(problem.other(known.doc.path.at_key(), "the signal").help(help));
-        None
-    }
 }
 
 /// Returns the signals that end in a frame of some bytes, and the arrays that have elements there.
@@ -433,19 +319,6 @@ fn in_frame(signal: &Signal) -> Option<Signal> {
     };
     let place = payload.bits(low + width - 1, low);
     Some(signal.clone().changed(|signal| (signal.window, signal.place) = (0, place)))
-}
-
-/// Tests whether the bits of a signal are its value.
-fn is_plain(signal: &Signal) -> bool {
-    signal.encoding.is_unscaled() && signal.encoding.numeral() == Numeral::Unsigned
-}
-
-/// Returns the least and the greatest number that a part can have.
-fn numbers(long: &LongMessage) -> Option<(u16, u16)> {
-    let parts = long.parts()?;
-    let firsts = parts.model_firsts.iter().map(|own| own.value).chain(parts.first);
-    let others = u16::try_from(long.parts_of(long.longest())).unwrap_or(u16::MAX) - 1;
-    Some((firsts.clone().min()?, firsts.max()? + others))
 }
 
 /// Makes the message that the parts carry together.

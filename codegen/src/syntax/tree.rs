@@ -72,6 +72,11 @@ impl Node {
         }
     }
 
+    /// Tells whether it is a list.
+    pub fn is_list(&self) -> bool {
+        matches!(self.content, Content::List(_))
+    }
+
     /// Returns the entries of a map; nothing for anything else.
     pub fn entries(&self) -> Option<&IndexMap<String, Entry>> {
         match &self.content {

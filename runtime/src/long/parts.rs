@@ -4,9 +4,9 @@
 //! given every frame of the bus. A message is one of [`Outcome`]: whole, or incomplete with what is
 //! missing. Parts of two nodes are never mixed.
 //!
-//! A node sends the parts of a message in their order. A part whose number is not greater than that
-//! of the part before begins another message. A part after a request begins one, too. A frame that
-//! is repeated at once counts once.
+//! A node sends the parts of a message in their order. Another message begins with a part whose
+//! number is not greater than that of the part before, or which has another counter. A part after a
+//! request begins one, too. A frame that is repeated at once counts once.
 //!
 //! Time is a number of milliseconds from any start, and may wrap around. Call
 //! [`timed_out`](Assembler::timed_out) at least once in 24 days, or it may miss a silent node.
@@ -42,6 +42,12 @@ pub trait Parted: LongLayout {
     const NUMBER: Place;
     /// Where a frame has the data of its part: whole bytes, the first one highest.
     const DATA: Place;
+    /// Where a frame has the number that all parts of a message share, if there is one. The next
+    /// message has another one.
+    const COUNTER: Option<Place> = None;
+    /// Where the first part says how many data bytes there are, if it does. These are whole bytes at
+    /// the front of its data, and do not count.
+    const LENGTH: Option<Place> = None;
     /// Number of the first part, if it is the same on every device model.
     const FIRST: Option<u16>;
     /// Numbers of the first part by device model, if they differ.
@@ -55,7 +61,8 @@ pub trait Parted: LongLayout {
     /// Returns the frames that carry the message in parts. Each is like `blank`, a frame of the
     /// message: received, or made by [`Filter::frame`](crate::Filter::frame).
     ///
-    /// All but the last say that more follow, if the protocol has a field for that.
+    /// All but the last say that more follow, if the protocol has a field for that. Where messages
+    /// have a counter, it is that of `blank`; [`with_counter`](Frames::with_counter) sets another.
     ///
     /// # Errors
     ///
@@ -153,20 +160,28 @@ impl<L: Parted> Incomplete<L> {
     /// Returns the numbers of the parts that did not come, as far as it is known how many there are.
     ///
     /// There are none if the node marks a part as the last one before the message has all its
-    /// fields.
+    /// fields. There are none, either, if it [announces](Self::announced) a length that the message
+    /// never has.
     pub fn missing(&self) -> impl Iterator<Item = u16> {
         let first = usize::from(self.first);
         self.buffer.missing(self.expected).filter_map(move |index| u16::try_from(first.checked_add(index)?).ok())
     }
 
-    /// Returns the data of a part that came, by its number.
+    /// Returns how many data bytes the first part announces, if it came and says that.
+    pub fn announced(&self) -> Option<usize> {
+        announced::<L>(&self.buffer)
+    }
+
+    /// Returns the data of a part that came, by its number. Those of the first part begin with the
+    /// length, if it has one.
     pub fn part(&self, number: u16) -> Option<&[u8]> {
         self.buffer.get(number.checked_sub(self.first)?.into())
     }
 
-    /// Returns the joined data up to the last part that came. Those of missing parts are 0.
+    /// Returns the joined data up to the last part that came, without a length before them. Those of
+    /// missing parts are 0.
     pub fn data(&self) -> &[u8] {
-        self.buffer.data()
+        data::<L>(&self.buffer)
     }
 }
 
@@ -197,9 +212,31 @@ fn size<L: Parted>() -> usize {
     usize::from(L::DATA.width() / 8).max(1)
 }
 
+/// Returns how many bytes before the data say how many there are.
+fn head<L: Parted>() -> usize {
+    L::LENGTH.map_or(0, |place| usize::from(place.width() / 8))
+}
+
 /// Returns how many parts carry some number of bytes.
 fn parts_of<L: Parted>(bytes: usize) -> usize {
-    bytes.div_ceil(size::<L>()).max(1)
+    bytes.saturating_add(head::<L>()).div_ceil(size::<L>()).max(1)
+}
+
+/// Returns how many data bytes the first part announces, if it came and says that.
+fn announced<L: Parted>(buffer: &Buffer<L::Memory>) -> Option<usize> {
+    let (place, mut frame) = (L::LENGTH?, [0; 8]);
+    L::DATA.put(&mut frame, word(buffer.get(0)?.iter().copied()));
+    Some(usize::try_from(place.get(&frame)).unwrap_or(usize::MAX))
+}
+
+/// Returns the data up to the last part that came, without a length before them.
+fn data<L: Parted>(buffer: &Buffer<L::Memory>) -> &[u8] {
+    buffer.data().get(head::<L>()..).unwrap_or_default()
+}
+
+/// Returns the number that some bytes make, the first one highest.
+fn word(bytes: impl Iterator<Item = u8>) -> u64 {
+    bytes.fold(0, |word, byte| word << 8 | u64::from(byte))
 }
 
 /// Returns the number of the first part, if that is known of the device model.

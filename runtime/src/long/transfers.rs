@@ -58,11 +58,7 @@ pub trait Transferred: LongLayout {
     /// Tests whether it can have some number of data bytes if its constants end with the first `head`.
     #[doc(hidden)]
     fn has_size_with(head: usize, size: usize) -> bool {
-        match (Self::SIZES, Self::ELEMENTS) {
-            ([], None) => size == Self::SHORTEST.max(head),
-            ([], Some((least, most))) => (least..=most).any(|elements| Self::BYTES(elements).max(head) == size),
-            (sizes, _) => sizes.contains(&size),
-        }
+        if Self::SIZES.is_empty() { super::has_size::<Self>(head, size) } else { Self::SIZES.contains(&size) }
     }
 
     /// Returns what sends the message: in one frame, or by the transport. `blank` is a frame of the

@@ -68,6 +68,58 @@ pub const MOTOR_MODE: Mode = Mode {
 /// Report. Section 2.
 pub const REPORT_ACCESS: Exchange = Exchange::new("report", &[Some(Who::One)]).report(FRAME);
 
+/// Remark language. Section 4.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RemarkLanguage {
+    /// 1: `english`.
+    English,
+    /// 2: `french`.
+    French,
+    /// A value without a name; it is sent as it is.
+    Unknown(u8),
+}
+
+impl RemarkLanguage {
+    /// Returns the value that stands for a raw number, whether it has a name or not.
+    #[must_use]
+    pub const fn from_raw(raw: u8) -> Self {
+        match raw {
+            1 => Self::English,
+            2 => Self::French,
+            _ => Self::Unknown(raw),
+        }
+    }
+
+    /// Returns the raw number.
+    #[must_use]
+    pub const fn raw(self) -> u8 {
+        match self {
+            Self::English => 1,
+            Self::French => 2,
+            Self::Unknown(raw) => raw,
+        }
+    }
+
+    /// Returns the name, unless the value has none.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        Word::name(self)
+    }
+
+    /// Finds a value by its name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Word::named(name)
+    }
+}
+
+impl Word for RemarkLanguage {
+    type Raw = u8;
+    const LEGEND: Legend<Self> = Legend::Names(&[(Self::English, "english"), (Self::French, "french")]);
+    const FROM_RAW: fn(u8) -> Self = Self::from_raw;
+    const RAW: fn(Self) -> u8 = Self::raw;
+}
+
 /// How long the note is: `command` 0x21. Section 3.
 /// - [`report`](REPORT_ACCESS): the module sends it (`motor`).
 /// - Report `211#1400000000000000`: `letters` 20.
@@ -161,6 +213,88 @@ impl Parted for Note {
     const SAID: fn(&Message) -> Said = |message| match message {
         Message::NotePart(_) => Said::Part,
         Message::NoteSize(_) => Said::Count(NoteSize::LETTERS.place()),
+        Message::RemarkPart(_) => Said::Nothing,
+    };
+}
+
+/// A text that begins with its length: `command` 0x23. Section 4.
+/// - [`report`](REPORT_ACCESS): the module sends it (`motor`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Remark {
+    /// Language: byte 0.
+    pub language: RemarkLanguage,
+    /// Text: 0 to 59 bytes from byte 1 on.
+    pub text: Text<59, 0x20>,
+}
+
+impl Remark {
+    /// The signal `language`, to read or write it alone, or to ask for its limits.
+    pub const LANGUAGE: LongSignal<RemarkLanguage> = LongSignal::new(0, Signal::new("language", Place::byte(0)));
+    /// The signal `text`, to read or write it alone, or to ask for its limits.
+    pub const TEXT: LongText<Text<59, 0x20>> = LongText::new(1, Signal::new("text", Place::byte(0))).at_least(0);
+}
+
+impl LongLayout for Remark {
+    const MESSAGE: &'static str = "remark";
+    const SHORTEST: usize = 1;
+    const LONGEST: usize = 60;
+    const ELEMENTS: Option<(usize, usize)> = Some((0, 59));
+    const BYTES: fn(usize) -> usize = |elements| Self::TEXT.reach(elements).max(1);
+    const DECODE: fn(&[u8]) -> Self =
+        |data| Self { language: Self::LANGUAGE.read(data, Signal::get), text: Self::TEXT.read(data) };
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> = |message, payload| {
+        Self::LANGUAGE.write(message.language, payload, Signal::put)?;
+        Self::TEXT.write(&message.text, payload)
+    };
+}
+
+/// A part of [`Remark`], as a frame carries it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RemarkPart {
+    /// Part: byte 0, bits 4..0, `0..=8`.
+    pub part: u8,
+    /// Counter: byte 0, bits 7..5.
+    pub counter: u8,
+    /// Data: bytes 1..7.
+    pub data: Bytes<7>,
+}
+
+impl RemarkPart {
+    /// The signal `part`, to read or write it alone, or to ask for its limits.
+    pub const PART: Signal<u8> = Signal::new("part", Place::byte(0).bits(4, 0)).limits(0, 8);
+    /// The signal `counter`, to read or write it alone, or to ask for its limits.
+    pub const COUNTER: Signal<u8> = Signal::new("counter", Place::byte(0).bits(7, 5));
+    /// The signal `data`, to read or write it alone, or to ask for its limits.
+    pub const DATA: Signal<Bytes<7>> = Signal::new("data", Place::bytes(1, 7));
+    /// The data bits that the document reserves. Requests send 0; `Received::reserved` returns set ones.
+    pub const RESERVED: Data = [0x00; 8];
+    /// The access `report`, for filters and blank frames of it.
+    pub const REPORT: Exchange = REPORT_ACCESS.of("remark", FRAME.id(Identifier::COMMAND, 0x23));
+}
+
+impl Layout for RemarkPart {
+    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    const DECODE: Decode<Self> =
+        |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
+    const ENCODE: Encode<Self> = |message, payload| {
+        Self::PART.put(message.part, payload)?;
+        Self::COUNTER.put(message.counter, payload)?;
+        Self::DATA.put(message.data, payload)
+    };
+}
+
+impl Parted for Remark {
+    type Protocol = Message;
+    type Part = RemarkPart;
+    type Memory = [u8; 65];
+    const NUMBER: Place = RemarkPart::PART.place();
+    const DATA: Place = RemarkPart::DATA.place();
+    const COUNTER: Option<Place> = Some(RemarkPart::COUNTER.place());
+    const LENGTH: Option<Place> = Some(Place::byte(1));
+    const FIRST: Option<u16> = Some(0);
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::RemarkPart(_) => Said::Part,
+        _ => Said::Nothing,
     };
 }
 
@@ -171,6 +305,8 @@ pub enum Message {
     NoteSize(NoteSize),
     /// What somebody noted.
     NotePart(NotePart),
+    /// A text that begins with its length.
+    RemarkPart(RemarkPart),
 }
 
 /// A recognised frame; `canspec_runtime::Received` shows how to ask it what it says.
@@ -217,13 +353,14 @@ impl Protocol for Message {
         match frame.id(Identifier::COMMAND) {
             0x21 => frame.report(&NoteSize::REPORT, Self::NoteSize(frame.values())),
             0x22 => frame.report(&NotePart::REPORT, Self::NotePart(frame.values())),
+            0x23 => frame.report(&RemarkPart::REPORT, Self::RemarkPart(frame.values())),
             _ => frame.unknown(),
         }
     }
 
     fn reply_lengths(frame: &Incoming) -> &'static [u8] {
         match frame.id(Identifier::COMMAND) {
-            0x21 | 0x22 => &[8],
+            0x21..=0x23 => &[8],
             _ => &[],
         }
     }
@@ -233,6 +370,7 @@ impl Protocol for Message {
         match self {
             Self::NoteSize(message) => task.run(message),
             Self::NotePart(message) => task.run(message),
+            Self::RemarkPart(message) => task.run(message),
         }
     }
 }
@@ -241,4 +379,5 @@ impl Protocol for Message {
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::of::<NoteSize>("How long the note is", &[("command", 0x21)], &[&NoteSize::REPORT]),
     Entry::of::<NotePart>("What somebody noted", &[("command", 0x22)], &[&NotePart::REPORT]),
+    Entry::of::<RemarkPart>("A text that begins with its length", &[("command", 0x23)], &[&RemarkPart::REPORT]),
 ];

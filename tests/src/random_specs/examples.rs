@@ -131,10 +131,21 @@ impl Draft {
         let mut assembly = Assembly::default();
         assembly.count_as(count);
         let (mut printed, mut ended) = (Vec::new(), Vec::new());
-        for index in 0..long.parts_of(long.bytes_with(count)) {
+        let bytes_of_data = long.bytes_with(count);
+        for index in 0..long.parts_of(bytes_of_data) {
             let mut bytes = frame.padded();
             number.put(&mut bytes, u64::from(long.first(model)?) + index as u64);
             data.put(&mut bytes, self.random.u64(..));
+            if let Some(length) = parts.length {
+                let behind = ((index + 1) * long.size()).saturating_sub(parts.head() + bytes_of_data);
+                let filled = (1_u64 << (8 * behind)) - 1;
+                let fill = if long.content.reserved.are_ones { filled } else { 0 };
+                let kept = data.get(&bytes) & !filled;
+                data.put(&mut bytes, kept | fill);
+                if index == 0 {
+                    length.place.put(&mut bytes, bytes_of_data as u64);
+                }
+            }
             let part = Frame { data: bytes[..frame.data.len()].to_vec(), ..frame.clone() };
             let decoded = decode(protocol, model, &part).ok()?;
             ended.extend(assembly.take(protocol, model, (), &part, &decoded).ended);

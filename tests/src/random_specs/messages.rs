@@ -300,8 +300,13 @@ impl Draft {
 
     /// Adds what a message carries in several frames.
     fn in_parts(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map) {
-        let (number, data) = (bus.header_bytes, bus.header_bytes + 1);
+        let (number, mut data) = (bus.header_bytes, bus.header_bytes + 1);
         let mut parts = Map::of([("number", Map::of([("bytes", number.to_string())]))]);
+        if self.chance(30) {
+            let bits = self.one(&["7..5", "3..0"]);
+            parts.put("counter", Map::of([("bytes", data.to_string()), ("bits", bits.to_owned())]));
+            data += 1;
+        }
         if self.models.is_empty() || self.random.bool() {
             let first = self.random.u64(..3);
             parts.put("first", self.number(first));
@@ -312,10 +317,16 @@ impl Draft {
         }
         let last = self.random.u8(data..8);
         parts.put("data", format!("{data}..{last}"));
+        let says_length = last >= data + 2 && self.chance(30);
+        if says_length {
+            let bytes = if self.random.bool() { [data, data + 1] } else { [data + 1, data] };
+            parts.put("length", Map::of([("bytes", format!("{}..{}", bytes[0], bytes[1]))]));
+        }
         let (fields, length) = self.long_fields();
         let ordinary = |access: &&Access| access.role == Role::Ordinary && !access.has_command;
         let access = traffic.accesses.iter().find(ordinary).cloned();
-        if let Some(access) = access.filter(|_| !matches!(length, Length::Fixed(_)) && self.random.bool()) {
+        let is_open = !says_length && !matches!(length, Length::Fixed(_));
+        if let Some(access) = access.filter(|_| is_open && self.random.bool()) {
             let (name, value) = self.command(bus, traffic);
             let mut counting = Map::of([("match", Map::of([(name, value)]))]);
             counting.put("access", list([access.name]));

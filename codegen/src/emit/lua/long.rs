@@ -1,6 +1,6 @@
 //! Writes long messages: what their frames carry together, and how.
 
-use super::signal::{signal, wide};
+use super::signal::{place, signal, wide};
 use super::table::Value;
 use super::{in_data, in_identifier};
 use crate::model::{
@@ -44,8 +44,10 @@ fn parts(parts: &Parts) -> Value {
         .map(|(message, signal)| Value::record().with("message", Value::id(message)).with("signal", Value::id(signal)));
     Value::record()
         .with("number", Value::id(parts.number))
+        .maybe("counter", parts.counter.map(Value::id))
         .with("data", Value::id(parts.data))
         .with("size", Value::number(parts.size))
+        .maybe("length", parts.length.map(|length| place(length.place)))
         .maybe("first", parts.first.map(Value::number))
         .maybe("firsts", parts.first.is_none().then(|| Value::map(firsts)))
         .maybe("count", count)

@@ -52,9 +52,33 @@ local function is_last(frame)
   return value ~= known.value
 end
 
-local function expected_parts(long, count)
+-- Returns how many bytes before the data say how many there are.
+local function head_of(parts)
+  return parts.length and parts.length.width / 8 or 0
+end
+
+local function parts_of(long, bytes)
+  return math.max(1, math.ceil((head_of(long.parts) + bytes) / long.parts.size))
+end
+
+-- Returns the number of parts, or nil if it is not known.
+local function expected_parts(open, count)
+  local long = open.long
+  if open.announced then return math.min(parts_of(long, open.announced), parts_of(long, longest(long))) end
   if long.elements and not count then return nil end
-  return math.max(1, math.ceil(bytes_with(long, count) / long.parts.size))
+  return parts_of(long, bytes_with(long, count))
+end
+
+-- Cuts joined data off where the first part says that they end. It returns what is wrong with that, too.
+local function cut(open, whole, lacking)
+  local head = 2 * head_of(open.long.parts)
+  whole.data = whole.data:sub(head + 1)
+  if not open.announced then return lacking end
+  whole.data = whole.data:sub(1, 2 * open.announced)
+  whole.count, whole.is_counted, whole.is_ended = elements_in(open.long, open.announced), true, true
+  if has_length(open.long, open.announced) then return lacking end
+  local wrong = string.format("%d bytes are announced, which the message never has", open.announced)
+  return lacking and lacking .. "; " .. wrong or wrong
 end
 
 -- Ends a message. `expected` is the number of its parts, if the frames say it.
@@ -62,7 +86,7 @@ local function end_parts(open, expected, ended)
   local is_counted = counts[open.counted] or open.is_ended or not open.long.elements
   open_parts[open.key] = nil
   local long, size, data, numbers = open.long, open.long.parts.size, {}, {}
-  expected = expected or expected_parts(long, counts[open.counted])
+  expected = expected or expected_parts(open, counts[open.counted])
   for index = 0, open.last do
     data[index + 1] = open.parts[index] or string.rep(".", 2 * size)
   end
@@ -70,8 +94,8 @@ local function end_parts(open, expected, ended)
     if not open.parts[index] then table.insert(numbers, string.format("%d", open.first + index)) end
   end
   local whole = { long = long, data = table.concat(data), count = counts[open.counted] }
-  whole.incomplete, whole.is_counted = missing(numbers, "part", "parts"), is_counted
-  whole.is_ended = open.is_ended
+  whole.is_counted, whole.is_ended = is_counted, open.is_ended
+  whole.incomplete = cut(open, whole, missing(numbers, "part", "parts"))
   table.insert(ended, whole)
 end
 
@@ -82,8 +106,10 @@ local function part_of(frame, decoded, first)
   local data = raw_value(frame, decoded, signals[long.parts.data])
   if not (number and data and first) then return nil end
   local index = double(number) - first
-  if index < 0 or index >= math.ceil(longest(long) / long.parts.size) then return nil end
-  return { index = index, data = digits(data, 2 * long.parts.size) }
+  if index < 0 or index >= parts_of(long, longest(long)) then return nil end
+  local counter = long.parts.counter and double(raw_value(frame, decoded, signals[long.parts.counter]))
+  local announced = index == 0 and long.parts.length and double(get(frame, long.parts.length)) or nil
+  return { index = index, data = digits(data, 2 * long.parts.size), counter = counter, announced = announced }
 end
 
 -- Takes a frame of a message in parts, and adds the messages that it ends.
@@ -101,16 +127,19 @@ local function take_part(frame, decoded, ended)
     if open and decoded.layout.kind == "request" then end_parts(open, nil, ended) end
     return
   end
-  if open and open.last == part.index and open.parts[open.last] == part.data then return end
-  if not open or open.last >= part.index then
+  local is_its = open and open.counter == part.counter
+  if is_its and open.last == part.index and open.parts[open.last] == part.data then return end
+  if not is_its or open.last >= part.index then
     if open then end_parts(open, nil, ended) end
     local counted = peers(frame, decoded, true) .. " " .. message.name
     open = { key = this, counted = counted, long = long, first = first, parts = {} }
+    open.counter, open.announced = part.counter, part.announced
     open_parts[this] = open
   end
-  open.last, open.parts[part.index], open.is_ended = part.index, part.data, is_last(frame)
-  local expected = open.is_ended and part.index + 1 or expected_parts(long, counts[open.counted])
-  if (expected or math.ceil(longest(long) / long.parts.size)) <= part.index + 1 then
+  open.last, open.parts[part.index] = part.index, part.data
+  open.is_ended = not long.parts.length and is_last(frame)
+  local expected = open.is_ended and part.index + 1 or expected_parts(open, counts[open.counted])
+  if (expected or parts_of(long, longest(long))) <= part.index + 1 then
     end_parts(open, expected, ended)
   end
 end

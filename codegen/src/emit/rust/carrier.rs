@@ -14,6 +14,16 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
         let first = Literal::u16_unsuffixed(*first);
         quote!((Model::#model as u8, #first))
     });
+    let counter = carrier.counter.iter().map(|counter| {
+        quote!(
+            const COUNTER: Option<Place> = Some(#part::#counter.place());
+        )
+    });
+    let length = carrier.length.iter().map(|place| {
+        quote!(
+            const LENGTH: Option<Place> = Some(#place);
+        )
+    });
     let of_models = !carrier.model_firsts.is_empty();
     let of_models = of_models.then(|| quote!(const MODEL_FIRSTS: &'static [(u8, u16)] = &[#(#firsts),*];));
     let continues = carrier.continues;
@@ -32,6 +42,8 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             type Memory = [u8; #memory];
             const NUMBER: Place = #part::#number.place();
             const DATA: Place = #part::#data.place();
+            #(#counter)*
+            #(#length)*
             const FIRST: Option<u16> = #first;
             #of_models
             #continues

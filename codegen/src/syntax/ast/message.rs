@@ -81,12 +81,18 @@ pub struct Message {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Parts {
-    /// Field of the frame with the number of the part: `{bytes: 0}`.
+    /// Field of the frame with the number of the part: `{bytes: 0}`, or `{bytes: 0, bits: 4..0}` for some of its bits.
     pub number: Field,
+    /// Field of the frame with a number that all parts of a message share: `{bytes: 0, bits: 7..5}`; none if absent.
+    /// The next message has another one.
+    pub counter: Option<Field>,
     /// Number of the first part, or one for each model: `1` or `{V10: 0, V11: 1}`.
     pub first: ByModel,
     /// Bytes of the frame with the data of the part, the first one first: `1..6`.
     pub data: String,
+    /// Field of the first part with the number of data bytes of all parts: `{bytes: 1}`; none if absent. It stands at
+    /// the front of `data`, and its bytes do not count.
+    pub length: Option<Field>,
     /// Signal of the same device with the number of elements that an array really has, or of bytes that an open text
     /// has: `status.cells`. If absent, the number is not known.
     pub count: Option<String>,

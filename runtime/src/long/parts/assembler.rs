@@ -3,9 +3,10 @@
 use core::fmt;
 
 use super::peers::Peers;
-use super::{Incomplete, Outcome, Parted, Said, Whole, first, parts_of, size};
+use super::{Incomplete, Outcome, Parted, Said, Whole, announced, data, first, parts_of, size};
 use crate::clock::has_lasted;
 use crate::long::buffer::Buffer;
+use crate::long::has_size;
 use crate::{Frame, Kind, Received};
 
 /// Puts the parts of the message `L` together, from up to `N` nodes at a time.
@@ -47,6 +48,8 @@ struct Part {
     index: usize,
     /// Its data, as the low bytes of a word.
     word: [u8; 8],
+    /// What all parts of its message show.
+    counter: u64,
     /// Whether the frame says that no other follows.
     is_last: bool,
 }
@@ -149,8 +152,10 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
         let data = received.frame().bytes();
         let index = L::NUMBER.get(&data).checked_sub(first::<L>(self.model)?.into())?;
         let index = usize::try_from(index).ok().filter(|index| *index < parts_of::<L>(L::LONGEST))?;
-        let is_last = L::CONTINUATION.is_some_and(|continuation| !continuation.is_in(received.frame()));
-        Some(Part { index, word: L::DATA.get(&data).to_be_bytes(), is_last })
+        let continuation = L::CONTINUATION.filter(|_| L::LENGTH.is_none());
+        let is_last = continuation.is_some_and(|continuation| !continuation.is_in(received.frame()));
+        let counter = counter::<L>(received.frame());
+        Some(Part { index, word: L::DATA.get(&data).to_be_bytes(), counter, is_last })
     }
 
     /// Adds a part to the message that its node sends, or begins another.
@@ -162,13 +167,13 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
                 let kept = self.keep(Transfer { since: now, ..open });
                 return Outcomes { before: None, own: kept };
             }
-            Some(open) if open.buffer.end() <= part.index => (open, None),
+            Some(open) if open.is_before(&part) => (open, None),
             other => (Transfer::new(peers, frame, now), other.map(|open| self.ended(&open, None))),
         };
         let mut open = Transfer { is_ended: part.is_last, frame: *frame, since: now, ..open };
         open.buffer.put(part.index, part.data::<L>());
         let count = part.index.saturating_add(1);
-        let expected = if part.is_last { Some(count) } else { expected::<L>(self.count(&open)) };
+        let expected = if part.is_last { Some(count) } else { expected::<L>(&open.buffer, self.count(&open)) };
         let is_end = expected.unwrap_or_else(|| parts_of::<L>(L::LONGEST)) <= count;
         let own = if is_end { Some(self.ended(&open, expected)) } else { self.keep(open) };
         Outcomes { before, own }
@@ -204,13 +209,15 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
     fn ended(&self, open: &Transfer<L>, expected: Option<usize>) -> Outcome<L> {
         let Transfer { buffer, frame, .. } = *open;
         let count = self.count(open);
-        let expected = expected.or_else(|| self::expected::<L>(count)).unwrap_or(buffer.end());
-        let data = buffer.data();
-        let data = data.get(..bytes_with::<L>(count)).unwrap_or(data);
-        let values = if buffer.missing(expected).next().is_none() { L::decode(data) } else { None };
+        let expected = expected.or_else(|| self::expected::<L>(&buffer, count)).unwrap_or(buffer.end());
+        let (data, announced) = (data::<L>(&buffer), announced::<L>(&buffer));
+        let data = data.get(..announced.unwrap_or_else(|| bytes_with::<L>(count))).unwrap_or(data);
+        let is_right = announced.is_none_or(|length| has_size::<L>(0, length));
+        let values = if is_right && buffer.missing(expected).next().is_none() { L::decode(data) } else { None };
         match values {
             Some(values) => {
-                let is_counted = L::ELEMENTS.is_none() || count.is_some() || open.is_ended;
+                let is_told = count.is_some() || announced.is_some() || open.is_ended;
+                let is_counted = L::ELEMENTS.is_none() || is_told;
                 Outcome::Whole(Whole { values, is_counted, frame })
             }
             None => Outcome::Incomplete(Incomplete {
@@ -230,8 +237,17 @@ impl<L: Parted> Transfer<L> {
 
     /// Tests whether a part is the last one once more.
     fn is_last(&self, part: &Part) -> bool {
-        let is_index = self.buffer.end() == part.index.saturating_add(1);
+        let is_index = self.buffer.end() == part.index.saturating_add(1) && self.has_counter(part);
         is_index && self.buffer.get(part.index) == Some(part.data::<L>())
+    }
+
+    /// Tests whether a part can follow those that came.
+    fn is_before(&self, part: &Part) -> bool {
+        self.buffer.end() <= part.index && self.has_counter(part)
+    }
+
+    fn has_counter(&self, part: &Part) -> bool {
+        counter::<L>(&self.frame) == part.counter
     }
 }
 
@@ -247,9 +263,15 @@ fn is_of<L: Parted>(slot: Option<&Transfer<L>>, peers: &Peers) -> bool {
 }
 
 /// Returns the number of parts, if it is known.
-fn expected<L: Parted>(count: Option<usize>) -> Option<usize> {
+fn expected<L: Parted>(buffer: &Buffer<L::Memory>, count: Option<usize>) -> Option<usize> {
     let is_known = L::ELEMENTS.is_none() || count.is_some();
-    is_known.then(|| parts_of::<L>(bytes_with::<L>(count)))
+    let announced = announced::<L>(buffer).map(|length| parts_of::<L>(length).min(parts_of::<L>(L::LONGEST)));
+    announced.or_else(|| is_known.then(|| parts_of::<L>(bytes_with::<L>(count))))
+}
+
+/// Returns what all parts of a message show, 0 if there is no such number.
+fn counter<L: Parted>(frame: &Frame) -> u64 {
+    L::COUNTER.map_or(0, |place| place.get(&frame.bytes()))
 }
 
 /// Returns the number of data bytes if arrays that vary in length have some number of elements, or all.

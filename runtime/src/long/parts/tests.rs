@@ -279,3 +279,94 @@ fn frames_that_are_none_of_the_message_change_nothing() {
     assert_eq!(assembler.finish().map(told), Some((1, Some(cells(&[10, 20, 30])), Vec::new())));
     assert_eq!(CELLS.filter(Kind::Reply).map(|filter| filter.matches(&one)), Some(true));
 }
+
+/// The same as [`Cells`] in fast packets: the frames count their messages, and the first one begins with the length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Packet(Cells);
+
+impl LongLayout for Packet {
+    const MESSAGE: &'static str = Cells::MESSAGE;
+    const SHORTEST: usize = Cells::SHORTEST;
+    const LONGEST: usize = Cells::LONGEST;
+    const ELEMENTS: Option<(usize, usize)> = Cells::ELEMENTS;
+    const BYTES: fn(usize) -> usize = Cells::BYTES;
+    const DECODE: fn(&[u8]) -> Self = |data| Self(Cells::DECODE(data));
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |packet, payload| Cells::ENCODE(&packet.0, payload);
+}
+
+impl Parted for Packet {
+    type Protocol = Message;
+    type Part = CellsPart;
+    type Memory = [u8; 17];
+    const NUMBER: Place = Place::byte(0).bits(4, 0);
+    const COUNTER: Option<Place> = Some(Place::byte(0).bits(7, 5));
+    const LENGTH: Option<Place> = Some(Place::byte(1));
+    const DATA: Place = Place::bytes(1, 4);
+    const FIRST: Option<u16> = Some(0);
+    const SAID: fn(&Message) -> Said = |message| match message {
+        Message::Part(_) => Said::Part,
+        Message::State(_) | Message::Request => Said::Nothing,
+    };
+}
+
+/// Returns a frame of node 1 with these bytes.
+fn packet(data: [u8; 5]) -> Frame {
+    let [one, two, three, four, five] = data;
+    Frame::new_raw(2 << 5 | 1 << 4 | 1, false, [one, two, three, four, five, 0, 0, 0], 8)
+}
+
+/// What became of a fast packet: its cells, or the missing parts and the length that is announced.
+type Ended = Result<Vec<u16>, (Vec<u16>, Option<usize>)>;
+
+fn ended(assembler: &mut Assembler<Packet, 1>, frames: &[[u8; 5]]) -> Vec<Ended> {
+    let outcomes = frames.iter().flat_map(|frame| assembler.receive(&packet(*frame), 0));
+    let told = |outcome: Outcome<Packet>| match outcome {
+        Outcome::Whole(whole) => Ok(whole.values.0.voltage.to_vec()),
+        Outcome::Incomplete(partial) => Err((partial.missing().collect(), partial.announced())),
+        Outcome::Full(_) => panic!("there is room for one"),
+    };
+    outcomes.map(told).collect()
+}
+
+#[test]
+fn a_fast_packet_begins_with_its_length_and_each_frame_counts_the_messages() {
+    let frames = Packet(cells(&[10, 20])).frames(&packet([0; 5])).expect("it fits");
+    let bytes = |frames: Frames<Packet>| frames.map(|frame| frame.bytes()).collect::<Vec<_>>();
+    // Two bytes for 258 and two cells of two bytes are six.
+    assert_eq!(bytes(frames.clone()), [[0, 6, 1, 2, 0, 0, 0, 0], [1, 10, 0, 20, 0, 0, 0, 0]]);
+    // Three bits hold 1 of 9.
+    assert_eq!(bytes(frames.with_counter(9)), [[0x20, 6, 1, 2, 0, 0, 0, 0], [0x21, 10, 0, 20, 0, 0, 0, 0]]);
+    let mut assembler = Assembler::new(9);
+    // What fills up the last part is no cell.
+    assert_eq!(ended(&mut assembler, &[[0x20, 6, 1, 2, 0], [0x21, 10, 0, 20, 30]]), [Ok([10, 20].into())]);
+    assert_eq!(ended(&mut assembler, &[[0x40, 4, 1, 2, 0], [0x41, 10, 0, 0, 0]]), [Ok([10].into())]);
+    assert!(assembler.receive(&packet([0x60, 4, 1, 2, 0]), 0).next().is_none());
+    let last = assembler.receive(&packet([0x61, 10, 0, 0, 0]), 0).next();
+    let Some(Outcome::Whole(whole)) = last else { panic!("both parts came") };
+    assert!(whole.is_counted);
+}
+
+#[test]
+fn parts_with_another_counter_are_never_joined() {
+    let mut assembler = Assembler::new(9);
+    let lost = [[0x20, 6, 1, 2, 0], [0x41, 10, 0, 20, 0]];
+    assert_eq!(ended(&mut assembler, &lost), [Err(([1].into(), Some(6)))]);
+    // The second message lacks its first part, so nobody knows how long it is.
+    assert_eq!(ended(&mut assembler, &[[0x60, 4, 1, 2, 0]]), [Err(([0].into(), None))]);
+    // The same frame again counts once, but not with another counter.
+    let again = [[0x60, 4, 1, 2, 0], [0x80, 4, 1, 2, 0], [0x81, 9, 0, 0, 0]];
+    assert_eq!(ended(&mut assembler, &again), [Err(([1].into(), Some(4))), Ok([9].into())]);
+}
+
+#[test]
+fn a_length_that_the_message_never_has_is_told() {
+    let mut assembler = Assembler::new(9);
+    // It is over with the last frame that is announced.
+    assert_eq!(ended(&mut assembler, &[[0x20, 0, 1, 2, 0]]), [Err(([].into(), Some(0)))]);
+    assert_eq!(ended(&mut assembler, &[[0x40, 5, 1, 2, 0], [0x41, 10, 0, 20, 0]]), [Err(([].into(), Some(5)))]);
+    // There is no room for more than four parts.
+    let long = [[0x60, 200, 1, 2, 0], [0x61, 1, 0, 2, 0], [0x62, 3, 0, 4, 0], [0x63, 5, 0, 6, 0], [0x64, 7, 0, 8, 0]];
+    assert_eq!(ended(&mut assembler, &long), [Err(([].into(), Some(200)))]);
+    assert!(assembler.finish().is_none());
+}

@@ -1,10 +1,11 @@
 //! How frames carry a long message in numbered parts.
 
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{ToTokens as _, quote};
 
 use super::message::Message;
 use super::models::Models;
+use super::place::Written;
 use super::types::Types;
 use super::variant::{self, Variant};
 use crate::model::{FrameLayout, LongMessage, LongMessageId, MessageId, Protocol, SignalId, Table};
@@ -17,8 +18,12 @@ pub struct Carrier {
     pub part: Ident,
     /// Constant of the signal that numbers the parts.
     pub number: Ident,
+    /// Constant of the signal that all parts of a message share.
+    pub counter: Option<Ident>,
     /// Constant of the signal with the data of a part.
     pub data: Ident,
+    /// Where the first part says how many data bytes there are.
+    pub length: Option<TokenStream>,
     /// How many bytes of memory the parts need: their data, and a bit for each.
     pub memory: usize,
     /// Number of the first part, if it is the same for every model.
@@ -67,7 +72,9 @@ impl Planner<'_> {
             whole: self.types.long[id].clone(),
             part: frame.home.clone(),
             number: frame.signals[rule.number].constant.clone(),
+            counter: rule.counter.map(|counter| frame.signals[counter].constant.clone()),
             data: frame.signals[rule.data].constant.clone(),
+            length: rule.length.map(|length| Written::new(length.place).to_token_stream()),
             memory: count * usize::from(rule.size) + count.div_ceil(8),
             first: rule.first,
             model_firsts: rule
