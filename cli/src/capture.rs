@@ -158,7 +158,7 @@ fn socketcan(frame: &Frame, digit: u8) -> Vec<u8> {
 }
 
 /// Converts a decimal number of seconds to nanoseconds, without floating-point numbers.
-fn nanoseconds(seconds: &str) -> Option<u64> {
+pub fn nanoseconds(seconds: &str) -> Option<u64> {
     let (mantissa, exponent) = seconds.split_once(['e', 'E']).unwrap_or((seconds, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let digits: u128 = format!("{whole}{fraction}").parse().ok()?;

@@ -225,7 +225,8 @@ fn parts(protocol: &Protocol, long: &LongMessage, parts: &Parts) -> String {
     let firsts: Vec<_> = parts.first.map(|first| first.to_string()).into_iter().chain(of_models).collect();
     let (least, most) = (long.parts_of(long.shortest()), long.parts_of(long.longest()));
     let count = if least == most { most.to_string() } else { format!("{least} to {most}") };
-    format!(" (in {count} parts of {} bytes, numbered from {})", parts.size, firsts.join(" or "))
+    let silence = parts.silence.map_or_else(String::new, |time| format!(", until `{}`", protocol.timing[time].name));
+    format!(" (in {count} parts of {} bytes, numbered from {}{silence})", parts.size, firsts.join(" or "))
 }
 
 /// Returns the names of the messages that travel in the frames of a set.

@@ -147,13 +147,19 @@ impl Agreement {
         if let Some(model) = model {
             assembler = assembler.for_model(number(model));
         }
-        for now in 0..FRAMES {
+        let mut now = 0;
+        for _ in 0..FRAMES {
+            now += if bus.rng.u8(..10) == 0 { 100 } else { 3 };
             let frame = bus.next_frame();
             let decoded = decode(protocol, model, &frame).expect("the frame is one of the protocol");
-            let interpreted = assembly.take(protocol, model, (), &frame, &decoded).ended;
+            let stamp = Some(u64::from(now) * 1_000_000);
+            let mut interpreted = assembly.take_at(stamp, (protocol, model), (), &frame, &decoded).ended;
             let received = received::<L::Protocol>(model, &frame).expect("the frame is one of the protocol");
-            let generated = assembler.take(&received, u32::try_from(now).expect("few frames"));
-            self.compare(protocol, model, &interpreted, &generated.collect::<Vec<_>>());
+            let mut generated: Vec<_> = std::iter::from_fn(|| assembler.timed_out(now)).collect();
+            generated.extend(assembler.take(&received, now));
+            interpreted.sort_by_key(|message| message.frame.id);
+            generated.sort_by_key(|outcome| frame_of(outcome).raw_id());
+            self.compare(protocol, model, &interpreted, &generated);
         }
         let mut interpreted = assembly.finish(protocol, model);
         let mut generated: Vec<_> = std::iter::from_fn(|| assembler.finish()).collect();

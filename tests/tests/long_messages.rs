@@ -106,6 +106,7 @@ impl Examples {
             let decoded = decode(protocol, example.model, &frame).expect("a frame of the protocol");
             ended.extend(assembly.take(protocol, example.model, (), &frame, &decoded).ended);
         }
+        ended.extend(assembly.fall_silent(protocol, example.model));
         ended.extend(assembly.finish(protocol, example.model));
         let [message] = ended.as_slice() else { panic!("{}: {} messages", example.doc.path, ended.len()) };
         // A kind of frame without values has nothing to compare.

@@ -3,6 +3,7 @@
 use canspec_codegen::interpret::{Assembled, Assembly, Decoded, Taken};
 use canspec_codegen::model::Protocol;
 
+use crate::capture::nanoseconds;
 use crate::log::Entry;
 use crate::model::Device;
 
@@ -43,7 +44,8 @@ impl Assemblies {
             self.0.len() - 1
         });
         let mark = Mark { line, time: entry.time.as_deref().map(str::to_owned) };
-        self.0[place].assembly.take(protocol, model, mark, &entry.frame, decoded)
+        let now = entry.time.as_deref().filter(|_| has_silence(protocol)).and_then(nanoseconds);
+        self.0[place].assembly.take_at(now, (protocol, model), mark, &entry.frame, decoded)
     }
 
     /// Ends all messages, each with its device and its channel.
@@ -57,4 +59,9 @@ impl Assemblies {
         }
         ended
     }
+}
+
+/// Tests whether the time of a frame can end a message.
+fn has_silence(protocol: &Protocol) -> bool {
+    protocol.long_messages.iter().any(|long| protocol.silence(long).is_some())
 }

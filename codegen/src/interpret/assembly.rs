@@ -1,5 +1,7 @@
 //! Puts the parts of long messages together, for many devices at a time.
 
+use std::time::Duration;
+
 use super::long::Joined;
 use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
@@ -48,6 +50,8 @@ struct Transfer<M> {
     counter: Option<u64>,
     /// How many data bytes the first part announces.
     announced: Option<usize>,
+    /// When the last part came, in nanoseconds from any start, if that is known.
+    since: Option<u64>,
     /// Each part that came: how many come before it, its data, and its frame.
     parts: Vec<(usize, Vec<u8>, M)>,
     /// Whether a frame said that no other follows.
@@ -117,6 +121,52 @@ impl<M: Clone> Assembly<M> {
         frame: &Frame,
         decoded: &Decoded,
     ) -> Taken<M> {
+        self.take_at(None, (protocol, model), mark, frame, decoded)
+    }
+
+    /// The same as [`take`](Self::take) at a time in nanoseconds from any start. It also returns messages that silence
+    /// has ended before.
+    pub fn take_at(
+        &mut self,
+        now: Option<u64>,
+        (protocol, model): (&Protocol, Option<ModelId>),
+        mark: M,
+        frame: &Frame,
+        decoded: &Decoded,
+    ) -> Taken<M> {
+        let mut ended = self.silent(protocol, model, |open| open.is_silent(protocol, now));
+        let taken = self.take_part(now, (protocol, model), mark, frame, decoded);
+        ended.extend(taken.ended);
+        Taken { ended, ..taken }
+    }
+
+    /// Ends the messages that end by silence, since no frame follows.
+    pub fn fall_silent(&mut self, protocol: &Protocol, model: Option<ModelId>) -> Vec<Assembled<M>> {
+        self.silent(protocol, model, |open| protocol.silence(&protocol[open.long]).is_some())
+    }
+
+    fn silent(
+        &mut self,
+        protocol: &Protocol,
+        model: Option<ModelId>,
+        is_silent: impl Fn(&Transfer<M>) -> bool,
+    ) -> Vec<Assembled<M>> {
+        let mut ended = Vec::new();
+        while let Some(open) = self.transfers.iter().position(&is_silent) {
+            self.transfers[open].is_ended = true;
+            ended.push(self.end(protocol, model, open, None));
+        }
+        ended
+    }
+
+    fn take_part(
+        &mut self,
+        now: Option<u64>,
+        (protocol, model): (&Protocol, Option<ModelId>),
+        mark: M,
+        frame: &Frame,
+        decoded: &Decoded,
+    ) -> Taken<M> {
         if let Some(taken) = self.by_transport.take((protocol, model), mark.clone(), frame, decoded) {
             return taken;
         }
@@ -139,30 +189,21 @@ impl<M: Clone> Assembly<M> {
             return Taken { is_part: false, ended };
         };
         let open = match open {
-            Some(open) if self.transfers[open].repeats(&part) => return Taken { is_part: true, ended },
+            Some(open) if self.transfers[open].repeats(&part) => {
+                self.transfers[open].since = now;
+                return Taken { is_part: true, ended };
+            }
             Some(open) if self.transfers[open].is_before(&part) => open,
             other => {
                 ended.extend(other.map(|open| self.end(protocol, model, open, None)));
-                let (frame, decoded) = (frame.clone(), decoded.clone());
-                let (counter, announced) = (part.counter, part.announced);
-                let parts = Vec::new();
-                self.transfers.push(Transfer {
-                    long: id,
-                    peers,
-                    counter,
-                    announced,
-                    parts,
-                    is_ended: false,
-                    frame,
-                    decoded,
-                });
+                self.transfers.push(Transfer::new((id, peers), &part, frame, decoded));
                 self.transfers.len() - 1
             }
         };
         let count = self.count(protocol, &self.transfers[open]);
         let transfer = &mut self.transfers[open];
         let expected = if part.is_last { Some(part.index + 1) } else { transfer.expected(long, count) };
-        (transfer.frame, transfer.decoded) = (frame.clone(), decoded.clone());
+        (transfer.frame, transfer.decoded, transfer.since) = (frame.clone(), decoded.clone(), now);
         let is_end = expected.unwrap_or(long.parts_of(long.longest())) <= part.index + 1;
         transfer.parts.push((part.index, part.data, mark));
         transfer.is_ended = part.is_last;
@@ -219,6 +260,20 @@ impl<M: Clone> Assembly<M> {
 }
 
 impl<M: Clone> Transfer<M> {
+    /// Returns a message that begins with a part.
+    fn new((long, peers): (LongMessageId, Peers), part: &Part, frame: &Frame, decoded: &Decoded) -> Self {
+        let Part { counter, announced, .. } = *part;
+        let (frame, decoded) = (frame.clone(), decoded.clone());
+        Self { long, peers, counter, announced, since: None, parts: Vec::new(), is_ended: false, frame, decoded }
+    }
+
+    /// Tests whether silence has ended the message.
+    fn is_silent(&self, protocol: &Protocol, now: Option<u64>) -> bool {
+        let passed = now.zip(self.since).and_then(|(now, since)| now.checked_sub(since)).map(Duration::from_nanos);
+        let silence = protocol.silence(&protocol[self.long]);
+        passed.zip(silence).is_some_and(|(passed, silence)| passed >= silence)
+    }
+
     /// Tests whether a part is the last one once more.
     fn repeats(&self, part: &Part) -> bool {
         let is_last = self.parts.last().is_some_and(|(index, data, _)| *index == part.index && *data == part.data);

@@ -1,11 +1,13 @@
 //! Messages that are longer than a frame.
 
+use std::time::Duration;
+
 use canspec_runtime::Place;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
     ByteRun, Doc, FrameLayout, Groups, LongMessageId, Message, MessageId, ModelId, OfModel, Protocol, Signal, SignalId,
-    Transport, TransportId, place,
+    TimingId, Transport, TransportId, place,
 };
 
 /// What the data of several frames say together.
@@ -55,6 +57,8 @@ pub struct Parts {
     pub model_firsts: Vec<OfModel<u16>>,
     /// Where a device says how many elements the array of varying length has.
     pub count: Option<(MessageId, SignalId)>,
+    /// How long no part comes behind the last one, if that is how a message ends.
+    pub silence: Option<TimingId>,
 }
 
 /// Where the first part says how many data bytes there are.
@@ -210,6 +214,12 @@ impl Protocol {
     /// Returns the long message that a transport carries, if the message travels so.
     pub fn by_transport(&self, message: &Message) -> Option<LongMessageId> {
         message.long.filter(|long| self[*long].transport().is_some())
+    }
+
+    /// Returns the silence that ends a message, if one does.
+    pub fn silence(&self, long: &LongMessage) -> Option<Duration> {
+        let [_, longest] = self.timing[long.parts()?.silence?].ends();
+        Some(longest)
     }
 
     /// Returns the frames of a message. Of a message by a transport, they are what its frames would be if one were

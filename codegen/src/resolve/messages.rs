@@ -159,8 +159,11 @@ impl Resolver<'_> {
             }
             refusals.extend(self.refusal(&owner, &choice, surroundings));
         }
-        if message.parts.is_some() {
+        if let Some(parts) = &message.parts {
             self.check_senders(path, name, &frames);
+            if let Some(long) = long {
+                self.silence(long, &path.key("parts"), parts, surroundings.timing);
+            }
         }
         let always = choice.fixed.iter().filter(|(_, kinds)| kinds.is_empty()).map(|(constant, _)| *constant);
         let constants = choice.matched.iter().copied().chain(always).collect();

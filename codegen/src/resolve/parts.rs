@@ -6,12 +6,13 @@ use canspec_runtime::Place;
 use canspec_runtime::plumbing::ByteOrder;
 
 use super::Resolver;
+use super::access::Times;
 use super::fields::Leaves;
 use super::long::{Head, MOST_BYTES};
 use crate::diagnostic::Diagnostic;
 use crate::model::{
-    Announcement, Carrier, FrameLayout, Id, LongMessage, Message, MessageId, Numeral, OfModel, Parts, Range, Signal,
-    SignalId, Table,
+    Announcement, Carrier, FrameLayout, Id, LongMessage, LongMessageId, Message, MessageId, Numeral, OfModel, Parts,
+    Range, Signal, SignalId, Table,
 };
 use crate::number::Rational;
 use crate::resolve::rules;
@@ -61,7 +62,17 @@ impl Resolver<'_> {
         };
         let counter = counter.map(Id::new);
         let [number, data] = [number, data].map(Id::new);
-        Some(Parts { number, counter, data, size: place.width() / 8, length, first, model_firsts, count: None })
+        Some(Parts {
+            number,
+            counter,
+            data,
+            size: place.width() / 8,
+            length,
+            first,
+            model_firsts,
+            count: None,
+            silence: None,
+        })
     }
 
     /// Finds a number beside the data of a part.
@@ -181,6 +192,29 @@ impl Resolver<'_> {
                             open: `bytes: 9..`";
                 self.error_with_help(&rules::PARTS, path.at_key(), text, help);
             }
+        }
+    }
+
+    /// Finds the silence that ends a message.
+    pub fn silence(&mut self, id: LongMessageId, path: &Path, written: &ast::Parts, timing: &Times) {
+        let Some(name) = &written.silence else { return };
+        let path = path.key("silence");
+        let long = &self.tables.long_messages[id];
+        let other = match (written.length.is_some(), written.count.is_some(), long.varying()) {
+            (true, _, _) => Some("beside `length`, which says where a message ends"),
+            (_, true, _) => Some("beside `count`, which says where a message ends"),
+            (_, _, None) => Some("here: each message has as many parts as the others"),
+            (false, false, Some(_)) => None,
+        };
+        if let Some(other) = other {
+            let text = format!("`silence` means nothing {other}");
+            return self.error_with_help(&rules::PARTS, path.at_key(), text, "take it out");
+        }
+        let names = self.spec.timing.keys().map(String::as_str);
+        self.lookup_or(&path, "timing", name, names, "add the time to `timing` and write its name");
+        let silence = timing.position(|known| known.name == *name);
+        if let Carrier::Parts(parts) = &mut self.tables.long_messages[id].carrier {
+            parts.silence = silence;
         }
     }
 

@@ -8,6 +8,9 @@
 //! number is not greater than that of the part before, or which has another counter. A part after a
 //! request begins one, too. A frame that is repeated at once counts once.
 //!
+//! Where a message ends by silence, the document says how long that is, whatever the patience of the
+//! assembler. Then [`timed_out`](Assembler::timed_out) gives whole messages.
+//!
 //! Time is a number of milliseconds from any start, and may wrap around. Call
 //! [`timed_out`](Assembler::timed_out) at least once in 24 days, or it may miss a silent node.
 
@@ -48,6 +51,8 @@ pub trait Parted: LongLayout {
     /// Where the first part says how many data bytes there are, if it does. These are whole bytes at
     /// the front of its data, and do not count.
     const LENGTH: Option<Place> = None;
+    /// How many milliseconds of silence behind a part end a message, if it ends so.
+    const SILENCE: Option<u32> = None;
     /// Number of the first part, if it is the same on every device model.
     const FIRST: Option<u16>;
     /// Numbers of the first part by device model, if they differ.
@@ -119,8 +124,9 @@ pub enum Outcome<L: Parted> {
 pub struct Whole<L: Parted> {
     /// The values.
     pub values: L,
-    /// Whether the number of elements is known of arrays that vary in length: the node has told it,
-    /// or has marked the last part. Otherwise all elements are there that the parts have room for.
+    /// Whether it is known how many elements the arrays have that vary in length. The node tells it,
+    /// marks the last part, or is silent behind it. Otherwise all elements are there that the parts
+    /// have room for.
     pub is_counted: bool,
     frame: Frame,
 }

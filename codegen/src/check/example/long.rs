@@ -64,6 +64,8 @@ impl Checker<'_> {
             }
             ended.extend(taken.ended);
         }
+        // The list has all frames, so none follows.
+        ended.extend(assembly.fall_silent(protocol, model));
         ended.extend(assembly.finish(protocol, model));
         let messages = ended.len();
         match <[Assembled<usize>; 1]>::try_from(ended) {

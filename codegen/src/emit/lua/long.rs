@@ -1,5 +1,7 @@
 //! Writes long messages: what their frames carry together, and how.
 
+use std::time::Duration;
+
 use super::signal::{place, signal, wide};
 use super::table::Value;
 use super::{in_data, in_identifier};
@@ -17,7 +19,7 @@ pub fn long(protocol: &Protocol, long: &LongMessage) -> Value {
         .maybe("elements", elements.map(|ends| Value::list(ends, |end| Value::Plain(end.to_string()))))
         .with("signals", Value::list(&long.content.signals, |known| long_signal(protocol, long, known)));
     match &long.carrier {
-        Carrier::Parts(known) => record.with("parts", parts(known)),
+        Carrier::Parts(known) => record.with("parts", parts(known, protocol.silence(long))),
         Carrier::Transport(transport) => record.with("via", via(protocol, *transport, &long.frames)),
     }
 }
@@ -37,7 +39,7 @@ fn long_signal(protocol: &Protocol, long: &LongMessage, known: &Signal) -> Value
         .maybe("index", long.counted(known).map(|index| Value::Plain(index.to_string())))
 }
 
-fn parts(parts: &Parts) -> Value {
+fn parts(parts: &Parts, silence: Option<Duration>) -> Value {
     let firsts = parts.model_firsts.iter().map(|own| (Value::id(own.model), Value::number(own.value)));
     let count = parts
         .count
@@ -51,6 +53,7 @@ fn parts(parts: &Parts) -> Value {
         .maybe("first", parts.first.map(Value::number))
         .maybe("firsts", parts.first.is_none().then(|| Value::map(firsts)))
         .maybe("count", count)
+        .maybe("silence", silence.map(|silence| Value::Plain(silence.as_secs_f64().to_string())))
 }
 
 /// Returns what announces a message: the constants that it shows first, and who sends it.

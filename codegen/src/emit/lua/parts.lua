@@ -99,6 +99,20 @@ local function end_parts(open, expected, ended)
   table.insert(ended, whole)
 end
 
+-- Ends the messages that silence has ended on the interface of a frame, the oldest first.
+local function end_silent(frame, ended)
+  local silent = {}
+  for _, open in pairs(open_parts) do
+    local silence = open.interface == frame.interface and open.long.parts.silence
+    if silence and (frame.time - open.since):tonumber() >= silence then table.insert(silent, open) end
+  end
+  table.sort(silent, function(one, other) return one.number < other.number end)
+  for _, open in ipairs(silent) do
+    open.is_ended = true
+    end_parts(open, nil, ended)
+  end
+end
+
 -- Returns the part that a frame carries, if its number is one of the message's.
 local function part_of(frame, decoded, first)
   local long, signals = decoded.layout.message.long, decoded.layout.message.signals
@@ -114,6 +128,7 @@ end
 
 -- Takes a frame of a message in parts, and adds the messages that it ends.
 local function take_part(frame, decoded, ended)
+  end_silent(frame, ended)
   if not decoded.addressing.mode then return end
   local is_error = refusal(decoded)
   if not is_error then keep_counts(frame, decoded) end
@@ -128,15 +143,19 @@ local function take_part(frame, decoded, ended)
     return
   end
   local is_its = open and open.counter == part.counter
-  if is_its and open.last == part.index and open.parts[open.last] == part.data then return end
+  if is_its and open.last == part.index and open.parts[open.last] == part.data then
+    open.since = frame.time
+    return
+  end
   if not is_its or open.last >= part.index then
     if open then end_parts(open, nil, ended) end
     local counted = peers(frame, decoded, true) .. " " .. message.name
     open = { key = this, counted = counted, long = long, first = first, parts = {} }
     open.counter, open.announced = part.counter, part.announced
+    open.interface, open.number = frame.interface, frame.number
     open_parts[this] = open
   end
-  open.last, open.parts[part.index] = part.index, part.data
+  open.last, open.parts[part.index], open.since = part.index, part.data, frame.time
   open.is_ended = not long.parts.length and is_last(frame)
   local expected = open.is_ended and part.index + 1 or expected_parts(open, counts[open.counted])
   if (expected or parts_of(long, longest(long))) <= part.index + 1 then

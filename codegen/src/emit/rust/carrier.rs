@@ -24,6 +24,12 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             const LENGTH: Option<Place> = Some(#place);
         )
     });
+    let silence = carrier.silence.iter().map(|time| {
+        let time = Literal::u32_unsuffixed(*time);
+        quote!(
+            const SILENCE: Option<u32> = Some(#time);
+        )
+    });
     let of_models = !carrier.model_firsts.is_empty();
     let of_models = of_models.then(|| quote!(const MODEL_FIRSTS: &'static [(u8, u16)] = &[#(#firsts),*];));
     let continues = carrier.continues;
@@ -44,6 +50,7 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             const DATA: Place = #part::#data.place();
             #(#counter)*
             #(#length)*
+            #(#silence)*
             const FIRST: Option<u16> = #first;
             #of_models
             #continues

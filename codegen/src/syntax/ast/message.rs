@@ -96,6 +96,9 @@ pub struct Parts {
     /// Signal of the same device with the number of elements that an array really has, or of bytes that an open text
     /// has: `status.cells`. If absent, the number is not known.
     pub count: Option<String>,
+    /// Name of the entry of `timing` that ends a message: no further part has come for so long. If absent, silence says
+    /// nothing.
+    pub silence: Option<String>,
 }
 
 /// One frame of the document and what it means.

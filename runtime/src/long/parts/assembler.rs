@@ -26,7 +26,7 @@ pub struct Assembler<L: Parted, const N: usize> {
 struct Transfer<L: Parted> {
     peers: Peers,
     buffer: Buffer<L::Memory>,
-    /// Whether the last frame said that no other follows.
+    /// Whether the last frame said that no other follows, or silence did.
     is_ended: bool,
     /// The last frame.
     frame: Frame,
@@ -123,28 +123,30 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
                 Outcomes::NONE
             }
             _ if is_own && received.kind() == Kind::Request => {
-                let open = self.transfers.iter_mut().find(|slot| is_of(slot.as_ref(), &peers)).and_then(Option::take);
-                Outcomes { before: open.map(|open| self.ended(&open, None)), own: None }
+                let open = self.taken(|open| open.peers.are(&peers));
+                Outcomes { before: open.map(|open| self.ended(&open.at(now), None)), own: None }
             }
             _ => Outcomes::NONE,
         }
     }
 
-    /// Ends a message whose node has been silent for too long. Call this until it returns `None`.
+    /// Ends a message whose node has been silent for too long, or whose end is a silence. Call this
+    /// until it returns `None`.
     pub fn timed_out(&mut self, now: u32) -> Option<Outcome<L>> {
-        let patience = self.patience;
-        let is_silent = |open: &Transfer<L>| has_lasted(open.since, patience, now);
-        self.end(|open| open.as_ref().is_some_and(is_silent))
+        let patience = L::SILENCE.unwrap_or(self.patience);
+        let open = self.taken(|open| has_lasted(open.since, patience, now))?;
+        Some(self.ended(&open.at(now), None))
     }
 
     /// Ends a message whose parts have begun to come. Call this until it returns `None`.
     pub fn finish(&mut self) -> Option<Outcome<L>> {
-        self.end(Option::is_some)
+        let open = self.taken(|_| true)?;
+        Some(self.ended(&open, None))
     }
 
-    fn end(&mut self, is_meant: impl Fn(&Option<Transfer<L>>) -> bool) -> Option<Outcome<L>> {
-        let open = self.transfers.iter_mut().find(|open| is_meant(open))?.take()?;
-        Some(self.ended(&open, None))
+    /// Takes a message out that has begun.
+    fn taken(&mut self, is_meant: impl Fn(&Transfer<L>) -> bool) -> Option<Transfer<L>> {
+        self.transfers.iter_mut().find(|slot| slot.as_ref().is_some_and(&is_meant))?.take()
     }
 
     /// Returns the part that a frame carries, if its number is one of the message's.
@@ -160,8 +162,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
 
     /// Adds a part to the message that its node sends, or begins another.
     fn add(&mut self, peers: Peers, part: Part, frame: &Frame, now: u32) -> Outcomes<L> {
-        let open = self.transfers.iter_mut().find(|slot| is_of(slot.as_ref(), &peers));
-        let open = open.and_then(Option::take);
+        let open = self.taken(|open| open.peers.are(&peers)).map(|open| open.at(now));
         let (open, before) = match open {
             Some(open) if open.is_last(&part) => {
                 let kept = self.keep(Transfer { since: now, ..open });
@@ -235,19 +236,25 @@ impl<L: Parted> Transfer<L> {
         Self { peers, buffer: Buffer::new(size::<L>()), is_ended: false, frame: *frame, since: now }
     }
 
+    /// Returns what it is at a time: silence may have ended it.
+    fn at(self, now: u32) -> Self {
+        Self { is_ended: L::SILENCE.is_some_and(|silence| has_lasted(self.since, silence, now)), ..self }
+    }
+
     /// Tests whether a part is the last one once more.
     fn is_last(&self, part: &Part) -> bool {
-        let is_index = self.buffer.end() == part.index.saturating_add(1) && self.has_counter(part);
+        let is_index = self.buffer.end() == part.index.saturating_add(1) && self.is_open_to(part);
         is_index && self.buffer.get(part.index) == Some(part.data::<L>())
     }
 
     /// Tests whether a part can follow those that came.
     fn is_before(&self, part: &Part) -> bool {
-        self.buffer.end() <= part.index && self.has_counter(part)
+        self.buffer.end() <= part.index && self.is_open_to(part)
     }
 
-    fn has_counter(&self, part: &Part) -> bool {
-        counter::<L>(&self.frame) == part.counter
+    /// Tests whether a part can be one of the message.
+    fn is_open_to(&self, part: &Part) -> bool {
+        !self.is_ended && counter::<L>(&self.frame) == part.counter
     }
 }
 
@@ -256,10 +263,6 @@ impl<L: Parted, const N: usize> fmt::Debug for Assembler<L, N> {
         let nodes = self.transfers.iter().flatten().count();
         formatter.debug_struct("Assembler").field("message", &L::MESSAGE).field("nodes", &nodes).finish_non_exhaustive()
     }
-}
-
-fn is_of<L: Parted>(slot: Option<&Transfer<L>>, peers: &Peers) -> bool {
-    slot.is_some_and(|open| open.peers.are(peers))
 }
 
 /// Returns the number of parts, if it is known.

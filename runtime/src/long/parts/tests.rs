@@ -370,3 +370,55 @@ fn a_length_that_the_message_never_has_is_told() {
     assert_eq!(ended(&mut assembler, &long), [Err(([].into(), Some(200)))]);
     assert!(assembler.finish().is_none());
 }
+
+/// The same as [`Cells`], but nobody says how many there are: a message ends by silence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pausing(Cells);
+
+impl LongLayout for Pausing {
+    const MESSAGE: &'static str = Cells::MESSAGE;
+    const SHORTEST: usize = Cells::SHORTEST;
+    const LONGEST: usize = Cells::LONGEST;
+    const ELEMENTS: Option<(usize, usize)> = Cells::ELEMENTS;
+    const BYTES: fn(usize) -> usize = Cells::BYTES;
+    const DECODE: fn(&[u8]) -> Self = |data| Self(Cells::DECODE(data));
+    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+        |pausing, payload| Cells::ENCODE(&pausing.0, payload);
+}
+
+impl Parted for Pausing {
+    type Protocol = Message;
+    type Part = CellsPart;
+    type Memory = [u8; 13];
+    const NUMBER: Place = Place::byte(0);
+    const DATA: Place = Place::bytes(1, 4);
+    const FIRST: Option<u16> = Some(1);
+    const SILENCE: Option<u32> = Some(50);
+    const SAID: fn(&Message) -> Said = Packet::SAID;
+}
+
+#[test]
+fn a_message_that_ends_by_silence_is_whole_with_what_it_has() {
+    // The document says how long silence is, so the patience does not matter.
+    let mut assembler = Assembler::<Pausing, 1>::new(9);
+    let [one, two, _] = frames(1, &cells(&[10, 20, 30, 40, 50]))[..] else { panic!("three parts") };
+    let said = |outcome: Option<Outcome<Pausing>>| match outcome {
+        Some(Outcome::Whole(whole)) => (whole.values.0.voltage.to_vec(), whole.is_counted),
+        other => panic!("{other:?}"),
+    };
+    assert!(assembler.receive(&one, 0).next().is_none());
+    assert!(assembler.timed_out(49).is_none());
+    assert_eq!(said(assembler.timed_out(50)), ([10].into(), true));
+    // A frame shows the silence, too. Its part belongs to another message, which lacks the first one.
+    assert!(assembler.receive(&one, 100).next().is_none());
+    assert_eq!(said(assembler.receive(&two, 150).next()), ([10].into(), true));
+    let Some(Outcome::Incomplete(partial)) = assembler.timed_out(200) else { panic!("part 1 is missing") };
+    assert_eq!(partial.missing().collect::<Vec<_>>(), [1]);
+    // The same frame after the silence is a message of its own.
+    assert!(assembler.receive(&one, 300).next().is_none());
+    assert_eq!(said(assembler.receive(&one, 350).next()), ([10].into(), true));
+    // A message that begins before the silence does not show where the other one ended. The end of a log does not, either.
+    assert!(assembler.receive(&two, 360).next().is_none());
+    assert_eq!(said(assembler.receive(&one, 370).next()), ([10, 20, 30].into(), false));
+    assert_eq!(said(assembler.finish()), ([10].into(), false));
+}

@@ -1,5 +1,7 @@
 //! How frames carry a long message in numbered parts.
 
+use std::time::Duration;
+
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens as _, quote};
 
@@ -26,6 +28,8 @@ pub struct Carrier {
     pub length: Option<TokenStream>,
     /// How many bytes of memory the parts need: their data, and a bit for each.
     pub memory: usize,
+    /// How many milliseconds of silence end a message, if it ends so.
+    pub silence: Option<u32>,
     /// Number of the first part, if it is the same for every model.
     pub first: Option<u16>,
     /// Numbers of the first part by variant of the device model.
@@ -75,6 +79,7 @@ impl Planner<'_> {
             counter: rule.counter.map(|counter| frame.signals[counter].constant.clone()),
             data: frame.signals[rule.data].constant.clone(),
             length: rule.length.map(|length| Written::new(length.place).to_token_stream()),
+            silence: self.protocol.silence(long).map(milliseconds),
             memory: count * usize::from(rule.size) + count.div_ceil(8),
             first: rule.first,
             model_firsts: rule
@@ -98,4 +103,9 @@ impl Planner<'_> {
         variants.dedup();
         variants
     }
+}
+
+/// Returns a time in whole milliseconds, rounded up.
+fn milliseconds(time: Duration) -> u32 {
+    u32::try_from(time.as_nanos().div_ceil(1_000_000)).unwrap_or(u32::MAX)
 }
