@@ -139,6 +139,16 @@ impl Exchange {
         Self { reply, ..self }
     }
 
+    /// Sets data bits that a report has as 1 although nothing names them. Any are accepted.
+    #[must_use]
+    pub const fn fill_report(self, ones: Data) -> Self {
+        let report = match self.report {
+            Some(report) => Some(report.filled(ones)),
+            None => None,
+        };
+        Self { report, ..self }
+    }
+
     /// Adds the refusal, which answers a request in place of the reply. It is another message's
     /// reply and says why.
     #[must_use]

@@ -52,6 +52,7 @@ mod quantity;
 mod raw;
 mod received;
 mod reply;
+mod report;
 mod request;
 mod route;
 mod scale;

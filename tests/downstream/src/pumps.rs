@@ -1,6 +1,6 @@
 //! A driver for circulation pumps of several models, and a pump that is simulated.
 
-use crate::pump::{Error, Frame, Identifier, Kind, Message, Model, Motion, Request, SetSpeed, Target, embedded_can};
+use crate::pump::{Error, Frame, Identifier, Message, Model, Motion, Request, SetSpeed, Target, embedded_can};
 
 /// Finds the model that a configuration names.
 pub fn model(name: &str) -> Option<Model> {
@@ -33,9 +33,7 @@ pub fn answer(pump: u8, request: &impl embedded_can::Frame) -> Option<Frame> {
 
 /// Builds the report of a simulated pump.
 pub fn report(pump: u8, motion: Motion) -> Option<Frame> {
-    let blank = Message::decode(&Motion::REPORT.filter(Kind::Report)?.frame(4)).ok()?;
-    let identifier = Identifier { pump, ..blank.identifier() };
-    blank.with_identifier(identifier).with_content(Message::Motion(motion)).encode().ok()
+    Motion::REPORT.report_from(pump, Message::Motion(motion)).ok()
 }
 
 /// Builds the same frame with the highest priority.

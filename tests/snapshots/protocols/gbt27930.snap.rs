@@ -2835,7 +2835,10 @@ impl Bsm {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00];
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS.of("bsm", FRAME.id(Identifier::FORMAT, 0x13)).length(7);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bsm", FRAME.id(Identifier::FORMAT, 0x13))
+        .length(7)
+        .fill_report([0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xC0, 0x00]);
 }
 
 impl Layout for Bsm {
@@ -3474,8 +3477,11 @@ impl Bst {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00];
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bst", FRAME.id(Identifier::FORMAT, 0x19)).length(4).send_id(Identifier::PRIORITY, 0x4);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bst", FRAME.id(Identifier::FORMAT, 0x19))
+        .length(4)
+        .send_id(Identifier::PRIORITY, 0x4)
+        .fill_report([0x00, 0x00, 0x00, 0xF0, 0x00, 0x00, 0x00, 0x00]);
 }
 
 impl Layout for Bst {
@@ -3909,8 +3915,11 @@ impl Bem {
     /// The data bits that the document reserves. Requests send 1; `Received::reserved` returns set ones.
     pub const RESERVED: Data = [0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00];
     /// The access `bms_cycle`, for filters and blank frames of it.
-    pub const BMS_CYCLE: Exchange =
-        BMS_CYCLE_ACCESS.of("bem", FRAME.id(Identifier::FORMAT, 0x1E)).length(4).send_id(Identifier::PRIORITY, 0x2);
+    pub const BMS_CYCLE: Exchange = BMS_CYCLE_ACCESS
+        .of("bem", FRAME.id(Identifier::FORMAT, 0x1E))
+        .length(4)
+        .send_id(Identifier::PRIORITY, 0x2)
+        .fill_report([0xF0, 0xF0, 0xF0, 0xFC, 0x00, 0x00, 0x00, 0x00]);
 }
 
 impl Layout for Bem {
@@ -4766,7 +4775,9 @@ impl Ackm {
         .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
         .fill_request([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
     /// The access `bms_event`, for filters and blank frames of it.
-    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS.of("ackm", FRAME.id(Identifier::FORMAT, 0xE8));
+    pub const BMS_EVENT: Exchange = BMS_EVENT_ACCESS
+        .of("ackm", FRAME.id(Identifier::FORMAT, 0xE8))
+        .fill_report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
 
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
@@ -4877,7 +4888,8 @@ impl TpClearToSend {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .send_id(Identifier::PRIORITY, 0x7)
+        .fill_report([0x00, 0x00, 0x00, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_clear_to_send", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x11))
@@ -4928,7 +4940,8 @@ impl TpEndOfMessage {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .send_id(Identifier::PRIORITY, 0x7)
+        .fill_report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_end_of_message", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x13))
@@ -4983,7 +4996,8 @@ impl TpBroadcast {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .send_id(Identifier::PRIORITY, 0x7)
+        .fill_report([0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00]);
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_broadcast", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0x20))
@@ -5031,7 +5045,8 @@ impl TpAbort {
     /// The access `tp_of_module`, for filters and blank frames of it.
     pub const TP_OF_MODULE: Exchange = TP_OF_MODULE_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))
-        .send_id(Identifier::PRIORITY, 0x7);
+        .send_id(Identifier::PRIORITY, 0x7)
+        .fill_report([0x00, 0x00, 0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00]);
     /// The access `tp_of_controller`, for filters and blank frames of it.
     pub const TP_OF_CONTROLLER: Exchange = TP_OF_CONTROLLER_ACCESS
         .of("tp_abort", FRAME.id(Identifier::FORMAT, 0xEC).data(CONTROL_SELECTOR.place, 0xFF))

@@ -38,13 +38,14 @@ pub fn exchange(exchange: &Exchange) -> TokenStream {
     let sends = exchange.sends.iter().map(|(place, value)| quote!(.send_id(Identifier::#place, #value)));
     let filled = exchange.filled.iter().map(|ones| quote!(.fill_request(#ones)));
     let filled_reply = exchange.filled_reply.iter().map(|ones| quote!(.fill_reply(#ones)));
+    let filled_report = exchange.filled_report.iter().map(|ones| quote!(.fill_report(#ones)));
     let refusal = exchange.refusal.as_ref().map(|refusal| {
         let filter = filter(refusal);
         quote!(.refusal(&#filter))
     });
     quote! {
         #comment
-        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #(#sends)* #(#filled)* #(#filled_reply)* #refusal;
+        pub const #constant: Exchange = #shared.of(#message, #own) #answers #(#length)* #models #(#sends)* #(#filled)* #(#filled_reply)* #(#filled_report)* #refusal;
     }
 }
 

@@ -66,6 +66,8 @@ pub struct Exchange {
     pub filled: Option<TokenStream>,
     /// The same of its reply.
     pub filled_reply: Option<TokenStream>,
+    /// The same of its report, if a module sends it.
+    pub filled_report: Option<TokenStream>,
     /// What a frame that refuses its request shows.
     pub refusal: Option<Filter>,
 }
@@ -250,6 +252,7 @@ impl Exchange {
         let frames = || protocol.frames_of(message).filter(|frame| frame.exchange == id);
         let request = frames().find(|frame| frame.is_to_module());
         let reply = frames().find(|frame| frame.kind == Kind::Reply);
+        let report = frames().find(|frame| frame.kind == Kind::Report && !frame.is_to_module());
         let refusal = message.refusals.iter().find(|refusal| refusal.exchange == id);
         Self {
             constant: constant.clone(),
@@ -263,6 +266,7 @@ impl Exchange {
             sends: sends(protocol, message),
             filled: request.and_then(filled),
             filled_reply: reply.and_then(filled),
+            filled_report: report.and_then(filled),
             refusal: refusal.map(|refusal| Filter::new(selectors, &refusal.selectors, &refusal.constants)),
         }
     }
