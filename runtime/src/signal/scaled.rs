@@ -119,11 +119,12 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
 
     /// Tests whether the limits alone decide which values are refused, and the compiler knows it.
     ///
-    /// They are steps that the bits hold, and no value between them means something else.
+    /// They are steps that the bits hold, no value between them means something else, and no device model has others.
     #[inline(always)]
     fn limits_decide(&self, payload: &Payload) -> bool {
         let is_held = |limit: F| limit.raw_of(self.exact_scale(), self.place.width(), R::SIGNED).is_some();
-        let is_plain = self.specials.is_empty() && self.lacking.is_empty() && self.has_limits_on_steps(payload);
+        let has_no_others = self.specials.is_empty() && self.lacking.is_empty() && self.model_limits.is_empty();
+        let is_plain = has_no_others && self.has_limits_on_steps(payload);
         is_plain && self.limits.is_some_and(|(minimum, maximum)| is_held(minimum) && is_held(maximum))
     }
 
