@@ -230,7 +230,7 @@ fn drive<P: Quantities + Addressed<Target: PartialEq>>(facts: &Facts<P>, seed: u
         assert!(!module.was_bare, "seed {seed}: module {node} was switched on without its voltage");
         assert!(dies.is_some() || module.kept.value(DELIVERING) != Some(1), "seed {seed}: module {node} is on");
         assert_eq!(state, if dies.is_some() { None } else { Some(0) }, "seed {seed}: module {node}");
-        let has_time = |from: u32| from > BREAK + SETTLED || from < BREAK;
+        let has_time = |from: u32| !(BREAK..=BREAK + SETTLED).contains(&from);
         if dies.is_none_or(|dies| dies > BREAK + SETTLED) && has_time(module.started) {
             let severity = driver.known.get(&node).and_then(|known| known.severity);
             assert!(severity >= Some(Severity::Alarm), "seed {seed}: module {node} has an alarm: {severity:?}");
