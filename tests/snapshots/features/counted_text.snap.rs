@@ -273,7 +273,7 @@ impl RemarkPart {
 }
 
 impl Layout for RemarkPart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {

@@ -5,6 +5,9 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "Feature", version: "1" }];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::EXTENDED.id(Identifier::PAGE, 0x1).send_id(Identifier::PRIORITY, 0x6);
 
@@ -205,7 +208,7 @@ impl EnginePart {
 }
 
 impl Layout for EnginePart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -303,7 +306,7 @@ impl CellsPart {
 }
 
 impl Layout for CellsPart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::COUNTER, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::COUNTER, &Self::DATA];
     const DECODE: Decode<Self> =
         |data| Self { part: Self::PART.get(data), counter: Self::COUNTER.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
@@ -348,7 +351,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

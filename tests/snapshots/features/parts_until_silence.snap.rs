@@ -5,6 +5,9 @@ use canspec_runtime::plumbing::prelude::*;
 #[doc(no_inline)]
 pub use canspec_runtime::prelude::*;
 
+/// What this module follows.
+pub const DOCUMENTS: &[Document] = &[Document { title: "Feature", version: "1" }];
+
 /// What every frame shows.
 pub const FRAME: Filter = Filter::STANDARD;
 
@@ -113,7 +116,7 @@ impl TripsPart {
 }
 
 impl Layout for TripsPart {
-    const SIGNALS: &'static [&'static dyn AnySignal] = &[&Self::PART, &Self::DATA];
+    const SIGNALS: AnySignals = &[&Self::PART, &Self::DATA];
     const DECODE: Decode<Self> = |data| Self { part: Self::PART.get(data), data: Self::DATA.get(data) };
     const ENCODE: Encode<Self> = |message, payload| {
         Self::PART.put(message.part, payload)?;
@@ -152,7 +155,6 @@ pub type Reply<R> = canspec_runtime::Reply<Message, R>;
 
 impl Message {
     /// Recognises a frame.
-    ///
     /// # Errors
     /// Says why the frame is not recognised.
     #[inline]

@@ -520,12 +520,9 @@ impl Model {
     pub fn fact(self, quantity: Quantity) -> Option<i32> {
         let facts : & [(& str , i32)] = match self {
             Self::R4830s1 => &[("nominal_voltage", 53_500), ("full_current", 42_600)],
-            Self::R4830g2 => &[("nominal_voltage", 53_500)],
-            Self::R4850g2 => &[("nominal_voltage", 53_500), ("rated_power", 3_000_000)],
-            Self::R4850g2_20 => &[("nominal_voltage", 53_500), ("rated_power", 3_000_000)],
+            Self::R4830g2 | Self::R4850n2 | Self::R4875g1 => &[("nominal_voltage", 53_500)],
+            Self::R4850g2 | Self::R4850g2_20 => &[("nominal_voltage", 53_500), ("rated_power", 3_000_000)],
             Self::R4850g6 => &[("nominal_voltage", 53_500), ("full_current", 63_300)],
-            Self::R4850n2 => &[("nominal_voltage", 53_500)],
-            Self::R4875g1 => &[("nominal_voltage", 53_500)],
         };
         facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
     }

@@ -353,9 +353,7 @@ impl Model {
     #[must_use]
     pub const fn bit_rates(self) -> &'static [u32] {
         match self {
-            Self::V48 => &[125_000],
-            Self::V24 => &[125_000],
-            Self::V72 => &[125_000],
+            Self::V48 | Self::V24 | Self::V72 => &[125_000],
         }
     }
 

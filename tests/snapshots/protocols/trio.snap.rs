@@ -291,11 +291,11 @@ impl Model {
     #[must_use]
     pub const fn bit_rates(self) -> &'static [u32] {
         match self {
-            Self::Pm1ac24dc1500wPt => &[250_000],
-            Self::Pm1ac24dc2500w => &[250_000],
-            Self::Pm1ac24dc2500wPt => &[250_000],
-            Self::Pm1ac48dc1500wPt => &[250_000],
-            Self::Pm1ac48dc2500wPt => &[250_000],
+            Self::Pm1ac24dc1500wPt
+            | Self::Pm1ac24dc2500w
+            | Self::Pm1ac24dc2500wPt
+            | Self::Pm1ac48dc1500wPt
+            | Self::Pm1ac48dc2500wPt => &[250_000],
         }
     }
 
@@ -306,8 +306,9 @@ impl Model {
     pub fn fact(self, quantity: Quantity) -> Option<i32> {
         let facts : & [(& str , i32)] = match self {
             Self::Pm1ac24dc1500wPt => &[("nominal_voltage", 24_000), ("power", 1_500_000), ("default_address", 224)],
-            Self::Pm1ac24dc2500w => &[("nominal_voltage", 24_000), ("power", 2_500_000), ("default_address", 224)],
-            Self::Pm1ac24dc2500wPt => &[("nominal_voltage", 24_000), ("power", 2_500_000), ("default_address", 224)],
+            Self::Pm1ac24dc2500w | Self::Pm1ac24dc2500wPt => {
+                &[("nominal_voltage", 24_000), ("power", 2_500_000), ("default_address", 224)]
+            }
             Self::Pm1ac48dc1500wPt => &[("nominal_voltage", 48_000), ("power", 1_500_000), ("default_address", 224)],
             Self::Pm1ac48dc2500wPt => &[("nominal_voltage", 48_000), ("power", 2_500_000), ("default_address", 224)],
         };

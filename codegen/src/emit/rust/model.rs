@@ -1,5 +1,6 @@
 //! Device models, and the limits that depend on them.
 
+use indexmap::IndexMap;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
@@ -56,43 +57,44 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
 
 /// Emits the method that returns the speeds of the bus, if the document states them for a model.
 fn bit_rates(rows: &Table<ModelId, Model>) -> Option<TokenStream> {
-    let known = rows.iter().filter(|model| !model.bit_rates.is_empty());
-    let arms: Vec<_> =
-        known.map(|Model { variant, bit_rates, .. }| quote!(Self::#variant => &[#(#bit_rates),*],)).collect();
-    let others = (arms.len() < rows.len()).then(|| quote!(_ => &[],));
-    (!arms.is_empty()).then(|| {
-        quote! {
-            /// Returns the speeds of the bus that the document states for this model, in bit/s.
-            #[must_use]
-            pub const fn bit_rates(self) -> &'static [u32] {
-                match self { #(#arms)* #others }
-            }
+    let arms = arms(rows, |Model { bit_rates, .. }| quote!(&[#(#bit_rates),*]))?;
+    Some(quote! {
+        /// Returns the speeds of the bus that the document states for this model, in bit/s.
+        #[must_use]
+        pub const fn bit_rates(self) -> &'static [u32] {
+            match self { #arms }
         }
     })
 }
 
 /// Emits the method that returns a rating, if the document states some.
 fn fact(rows: &Table<ModelId, Model>) -> Option<TokenStream> {
-    let known = rows.iter().filter(|model| !model.facts.is_empty());
-    let arms: Vec<_> = known
-        .map(|Model { variant, facts, .. }| {
-            let facts = facts.iter().map(|(name, value)| quote!((#name, #value)));
-            quote!(Self::#variant => &[#(#facts),*],)
-        })
-        .collect();
-    let others = (arms.len() < rows.len()).then(|| quote!(_ => &[],));
-    (!arms.is_empty()).then(|| {
-        quote! {
-            /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-            ///
-            /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-            #[must_use]
-            pub fn fact(self, quantity: Quantity) -> Option<i32> {
-                let facts: &[(&str, i32)] = match self { #(#arms)* #others };
-                facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-            }
+    let arms = arms(rows, |Model { facts, .. }| {
+        let facts = facts.iter().map(|(name, value)| quote!((#name, #value)));
+        quote!(&[#(#facts),*])
+    })?;
+    Some(quote! {
+        /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
+        ///
+        /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
+        #[must_use]
+        pub fn fact(self, quantity: Quantity) -> Option<i32> {
+            let facts: &[(&str, i32)] = match self { #arms };
+            facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
         }
     })
+}
+
+/// Emits an arm for each list that models have, if one of them has any.
+fn arms(rows: &Table<ModelId, Model>, list: impl Fn(&Model) -> TokenStream) -> Option<TokenStream> {
+    let mut models: IndexMap<String, (TokenStream, Vec<&Ident>)> = IndexMap::new();
+    for model in rows {
+        let list = list(model);
+        models.entry(list.to_string()).or_insert_with(|| (list, Vec::new())).1.push(&model.variant);
+    }
+    let is_empty = models.keys().all(|list| *list == quote!(&[]).to_string());
+    let arms = models.values().map(|(list, models)| quote!(#(Self::#models)|* => #list,));
+    (!is_empty).then(|| arms.collect())
 }
 
 /// Emits the type of values that a device model takes.
