@@ -176,8 +176,8 @@ fn a_program_learns_what_the_document_says_of_bus_and_models() {
     assert_eq!((infy::BIT_RATES, trio::BIT_RATES), (&[125_000][..], &[250_000][..]));
     assert_eq!(infy::DOCUMENTS.iter().map(|document| document.version).collect::<Vec<_>>(), ["V1.08"]);
     // Section 2.1 of GCP: only the module with a DC input takes 500 kbit/s, too.
-    let rates = [gcp::Model::PsM2_3ac1000dc30kw, gcp::Model::PsM2_825dc1000dc30kw].map(gcp::Model::bit_rates);
-    assert_eq!(rates, [&[125_000][..], &[125_000, 500_000][..]]);
+    let speeds = [gcp::Model::PsM2_3ac1000dc30kw, gcp::Model::PsM2_825dc1000dc30kw].map(gcp::Model::bit_rates);
+    assert_eq!(speeds, [&[125_000][..], &[125_000, 500_000][..]]);
     // Section 3.3 of INFY, and the address of section 2.1 of TRIO.
     let rated = |model: infy::Model| model.fact(Quantity::RATED_CURRENT);
     assert_eq!([infy::Model::Reg85750, infy::Model::Reg85500].map(rated), [Some(10_000), Some(13_640)]);
