@@ -151,6 +151,13 @@ pub enum Error {
         /// Name of the quantity.
         quantity: &'static str,
     },
+    /// The quantity comes in a reply to requests with values only. The program builds such a request itself.
+    NotAsked {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
     /// The protocol has no message that sets the quantity.
     NotSet {
         /// Name of the quantity.
@@ -237,6 +244,9 @@ impl fmt::Display for Error {
             }
             Self::Identifier { message, id } => write!(formatter, "the identifier 0x{id:X} is none of `{message}`"),
             Self::NotRead { quantity } => write!(formatter, "no message reads `{quantity}`"),
+            Self::NotAsked { message, quantity } => {
+                write!(formatter, "a request of `{message}` has values, so build it to read `{quantity}`")
+            }
             Self::NotSet { quantity } => write!(formatter, "no message sets `{quantity}`"),
             Self::NotGiven { message, quantity } => {
                 write!(formatter, "`{message}` sets `{quantity}` too, which has no value")

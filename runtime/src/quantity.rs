@@ -122,7 +122,10 @@ pub trait Quantities: Protocol {
     ///
     /// # Errors
     ///
-    /// Refuses a quantity that the protocol cannot read, other addressing modes, and undocumented addresses.
+    /// Refuses
+    /// - a quantity that the protocol cannot read,
+    /// - one for which only requests with values ask,
+    /// - other addressing modes, and undocumented addresses.
     fn read<T: Destination<Protocol = Self>>(
         wanted: &[Quantity],
         route: impl Into<Route<T>>,

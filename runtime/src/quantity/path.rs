@@ -86,6 +86,11 @@ impl ReadPath {
         }
     }
 
+    /// Tests whether a request without values asks for it, or modules report it by themselves.
+    pub(super) fn comes(&self) -> bool {
+        self.request.is_some() || self.frames.iter().any(|(kind, _)| *kind == Kind::Report)
+    }
+
     /// Tests whether a frame carries the quantity.
     pub(super) fn is_in<P: Protocol>(&self, received: &Received<P>) -> bool {
         let is_its =

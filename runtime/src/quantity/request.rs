@@ -11,9 +11,9 @@ pub fn read<P: Quantities, T: Destination<Protocol = P>>(
     route: Route<T>,
 ) -> Result<impl Iterator<Item = Request<P, ()>>, Error> {
     let asked = |quantity: Quantity| path::<P>(quantity).and_then(|path| path.request);
-    wanted.iter().try_for_each(|quantity| match path::<P>(*quantity) {
-        Some(_) => Ok(()),
-        None => Err(Error::NotRead { quantity: quantity.name() }),
+    wanted.iter().try_for_each(|quantity| {
+        let path = path::<P>(*quantity).ok_or(Error::NotRead { quantity: quantity.name() })?;
+        if path.comes() { Ok(()) } else { Err(Error::NotAsked { message: path.message(), quantity: quantity.name() }) }
     })?;
     let requests = wanted.iter().enumerate().filter_map(move |(index, quantity)| {
         let request = asked(*quantity)?;

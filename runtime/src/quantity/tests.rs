@@ -1,10 +1,11 @@
 use std::string::ToString;
 
 use super::single;
-use crate::tests::heaters::{Heat, Message};
+use crate::tests::heaters::{Heat, Message, To};
 use crate::tests::random::Random;
 use crate::{
-    Error, Frame, Payload, Place, Quantities, Quantity, ReadNumber, ReadPath, Received, SetNumber, SetPath, Signal,
+    Error, Frame, Kind, Payload, Place, Quantities, Quantity, ReadNumber, ReadPath, Received, SetNumber, SetPath,
+    Signal,
 };
 
 const TENTHS: Signal<u16> = Signal::new("voltage", Place::bytes(0, 1)).unit("V").scale(1, 10).limits(100, 5000);
@@ -58,7 +59,8 @@ fn what_lies_beyond_a_limit_is_refused_by_its_own_value() {
 }
 
 impl Quantities for Message {
-    const READS: &'static [ReadPath] = &[];
+    const READS: &'static [ReadPath] =
+        &[ReadPath::number(Quantity::OUTPUT_POWER, Some("W"), &[(Kind::Reply, &Heat::SET)], &Heat::POWER)];
     const SETS: &'static [SetPath] =
         &[SetPath::number(Quantity::OUTPUT_POWER, Some("W"), &Heat::SET, &Heat::POWER).echoed()];
 }
@@ -78,6 +80,14 @@ fn a_request_and_its_reply_show_what_is_set() {
     assert_eq!(setting(0x1D07_F003, [2, 0xF0, 0, 150], Quantity::OUTPUT_POWER), None, "it is an error reply");
     let data = 0x1388_0000_0000_0000_u64.to_be_bytes();
     assert_eq!([1, 2].map(|length| TENTHS.set_in(&data, length)), [None, Some(500_000)]);
+}
+
+#[test]
+fn what_comes_in_reply_to_values_only_is_not_asked_for() {
+    let refused =
+        Message::read(&[Quantity::OUTPUT_POWER], To::Heater(3)).map(|_| ()).expect_err("a request has values");
+    assert_eq!(refused, Error::NotAsked { message: "heat", quantity: "output_power" });
+    assert_eq!(refused.to_string(), "a request of `heat` has values, so build it to read `output_power`");
 }
 
 #[test]
