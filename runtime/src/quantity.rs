@@ -183,7 +183,7 @@ impl<P: Quantities> Received<P> {
     /// [`quantity`](Self::quantity) does.
     ///
     /// It is `None` if
-    /// - the frame is neither a request that sets the quantity nor a reply that carries it, too,
+    /// - the frame is no request or report of the controller that sets the quantity, and no reply that carries it, too,
     /// - the bits mean something else than a number, or no state of the switch,
     /// - the frame is an error reply, or an `i32` cannot hold the value.
     pub fn setting(&self, quantity: Quantity) -> Option<i32> {

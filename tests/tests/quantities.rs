@@ -4,7 +4,7 @@ use canspec_protocols::{daly, gcp, huawei, infy, megmeet, mxr, trio};
 use canspec_runtime::{Addressed, Error, Frame, Quantities, Quantity, Received};
 use canspec_tests::{
     devices_any_vendor as feature, devices_any_vendor_in_steps as in_steps, devices_any_vendor_switched as in_f32,
-    infy_in_steps,
+    features_controller_report as charging, infy_in_steps,
 };
 
 const VOLTAGE: Quantity = Quantity::OUTPUT_VOLTAGE;
@@ -337,4 +337,21 @@ fn a_module_of_a_number_is_the_target_that_its_frames_show() {
     assert_eq!(<trio::Message as Addressed>::module(-1), None);
     let received = trio::Message::decode(&frame(0x1821_F3E4, 0)).expect("a report");
     assert_eq!(received.node().and_then(<trio::Message as Addressed>::module), received.target());
+}
+
+#[test]
+fn a_report_of_the_controller_sets_what_it_carries() {
+    let [delivered, demanded] = ["delivered_voltage", "demanded_voltage"].map(Quantity::new);
+    let set = |voltage| sets::<charging::Message>(charging::Target::ToVehicle, &[(delivered, voltage)]);
+    let report = |id, voltage: u32| Frame::new_raw(id, false, (u64::from(voltage) << 48).to_be_bytes(), 4);
+    // 4000 steps of 0.1 V, and a limit of 1000 V.
+    assert_eq!(set(400_000), Ok(vec![report(0x101, 4000)]));
+    assert!(set(1_000_100).is_err_and(|error| matches!(error, Error::Limits { .. })));
+    let shown = |id, quantity| {
+        let received = charging::Message::decode(&report(id, 4000)).expect("a report");
+        [received.setting(quantity), received.quantity(quantity)]
+    };
+    assert_eq!(shown(0x101, delivered), [Some(400_000), None]);
+    assert_eq!(shown(0x081, demanded), [None, Some(400_000)]);
+    assert_eq!(shown(0x081, delivered), [None, None], "the vehicle sends it");
 }

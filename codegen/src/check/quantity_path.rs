@@ -110,7 +110,7 @@ fn in_unit(symbol: &str) -> String {
 /// Tests that a request says all that its frame carries.
 fn check_request(protocol: &Protocol, set: &SignalPath, diagnostics: &mut Diagnostics) {
     let Some(request) = protocol.setting(set) else {
-        diagnostics.push(untold(protocol, set, "no request carries", "set"));
+        diagnostics.push(untold(protocol, set, "no request and no report of the controller carries", "set"));
         return;
     };
     let message = &protocol[set.message];

@@ -88,9 +88,9 @@ impl Protocol {
         replies.find(asks).map(|reply| reply.exchange)
     }
 
-    /// Returns the request that sets the value at a path.
+    /// Returns the request, or the report of the controller, that sets the value at a path.
     pub fn setting(&self, path: &SignalPath) -> Option<&FrameLayout> {
-        self.carrying(path).find(|frame| frame.kind == Kind::Request && frame.set.is_none())
+        self.carrying(path).find(|frame| frame.is_to_module() && frame.set.is_none())
     }
 
     /// Returns what paths that set values of a message fix of it.

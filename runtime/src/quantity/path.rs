@@ -139,14 +139,13 @@ impl SetPath {
     /// Tests whether a frame carries the value.
     pub(super) fn is_in<P: Protocol>(&self, received: &Received<P>) -> bool {
         let carries = match received.kind() {
-            Kind::Request => true,
             Kind::Reply => self.is_echoed,
-            Kind::Report => false,
+            kind => self.request.is_to_module::<P>(kind),
         };
         carries && self.request.is(received.exchange())
     }
 
-    /// Reads the value in a request or in its reply.
+    /// Reads the value in what sets it, or in a reply.
     pub(super) fn read(&self, frame: &Frame) -> Option<i32> {
         match self.value {
             Value::Number(signal) => signal.set_in(&frame.bytes(), frame.length()),

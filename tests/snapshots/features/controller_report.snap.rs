@@ -263,6 +263,21 @@ impl Protocol for Message {
     }
 }
 
+impl Quantities for Message {
+    const READS: &'static [ReadPath] = &[ReadPath::number(
+        Quantity::new("demanded_voltage"),
+        Some("V"),
+        &[(Kind::Report, &Demanded::VEHICLE_CYCLE)],
+        &Demanded::VOLTAGE,
+    )];
+    const SETS: &'static [SetPath] = &[SetPath::number(
+        Quantity::new("delivered_voltage"),
+        Some("V"),
+        &Delivered::CHARGER_CYCLE,
+        &Delivered::VOLTAGE,
+    )];
+}
+
 /// Every message, for programs that go through them without naming one.
 pub const MESSAGES: &[Entry<Message>] = &[
     Entry::of::<Delivered>("delivered", &[("number", 0x01)], &[&Delivered::CHARGER_CYCLE]),
