@@ -84,7 +84,7 @@ impl Draft {
         }
         root.put("length", "8");
         if self.chance(20) {
-            root.put("bit_rates", self.one(&[list(["125 kbit/s"]), list(["500 kbit/s", "1000 kbit/s"])]));
+            root.put("bit_rates", self.one(&[list(["125 kbit/s"]), list(["125 kbit/s", "1 Mbit/s"])]));
         }
         if self.chance(15) {
             let reserved = self.reserved();

@@ -1,7 +1,7 @@
 //! Device models in the generated code: limits, layouts and messages of their own.
 
 use canspec_protocols::{gcp, infy, megmeet, trio};
-use canspec_runtime::{Frame, Quantity};
+use canspec_runtime::Frame;
 use canspec_tests::{
     features_model_layouts as layouts, features_model_limits as limits, features_revisions as revisions,
     features_scales_by_model as scales, features_values_by_model as values,
@@ -178,9 +178,4 @@ fn a_program_learns_what_the_document_says_of_bus_and_models() {
     // Section 2.1 of GCP: only the module with a DC input takes 500 kbit/s, too.
     let speeds = [gcp::Model::PsM2_3ac1000dc30kw, gcp::Model::PsM2_825dc1000dc30kw].map(gcp::Model::bit_rates);
     assert_eq!(speeds, [&[125_000][..], &[125_000, 500_000][..]]);
-    // Section 3.3 of INFY, and the address of section 2.1 of TRIO.
-    let rated = |model: infy::Model| model.fact(Quantity::RATED_CURRENT);
-    assert_eq!([infy::Model::Reg85750, infy::Model::Reg85500].map(rated), [Some(10_000), Some(13_640)]);
-    assert_eq!(trio::Model::ALL.map(|model| model.fact(Quantity::new("default_address"))), [Some(0xE0); 5]);
-    assert_eq!(infy::Model::Reg85750.fact(Quantity::TEMPERATURE), None);
 }

@@ -56,6 +56,19 @@ impl Resolver<'_> {
             .collect()
     }
 
+    /// Reads the speeds of a device model, which are among those of the protocol.
+    fn bit_rates_of_model(&mut self, path: &Path, texts: &[String]) -> Vec<u32> {
+        let known: Vec<_> = self.spec.bit_rates.iter().filter_map(|text| bit_rate(text)).collect();
+        let own = texts.iter().enumerate().filter_map(|(index, text)| Some((index, text, bit_rate(text)?)));
+        let strange = own.filter(|(_, _, rate)| !known.is_empty() && !known.contains(rate));
+        for (index, text, _) in strange {
+            let message = format!("`{text}` is none of the protocol's `bit_rates`");
+            let help = format!("correct it, or write it there, too: {}", self.spec.bit_rates.join(", "));
+            self.error_with_help(&rules::NUMBER, path.index(index).at_value(), message, &help);
+        }
+        self.bit_rates(path, texts)
+    }
+
     pub fn procedures(&mut self) -> Vec<Procedure> {
         let root = Path::default().key("procedures");
         let spec = self.spec;
@@ -97,7 +110,7 @@ impl Resolver<'_> {
             items: texts(&model.items),
             max_parallel: parallel
                 .and_then(|text| self.integer(&path.key("max_parallel"), text, 1, u32::from(u16::MAX))),
-            bit_rates: self.bit_rates(&path.key("bit_rates"), &model.bit_rates),
+            bit_rates: self.bit_rates_of_model(&path.key("bit_rates"), &model.bit_rates),
             facts: self.facts(&path.key("facts"), &model.facts),
             types,
             doc,

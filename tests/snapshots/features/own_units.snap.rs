@@ -136,17 +136,6 @@ impl Model {
             Self::P1 => "P1",
         }
     }
-
-    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-    ///
-    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-    #[must_use]
-    pub fn fact(self, quantity: Quantity) -> Option<i32> {
-        let facts : & [(& str , i32)] = match self {
-            Self::P1 => &[("dry_weight", 4200)],
-        };
-        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-    }
 }
 
 impl From<Model> for u8 {

@@ -482,22 +482,6 @@ impl Model {
             Self::PsM2_825dc1000dc30kw => &[125_000, 500_000],
         }
     }
-
-    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-    ///
-    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-    #[must_use]
-    pub fn fact(self, quantity: Quantity) -> Option<i32> {
-        let facts : & [(& str , i32)] = match self {
-            Self::PsM2_3ac1000dc30kw | Self::PsM2_825dc1000dc30kw => {
-                &[("rated_output_voltage", 1_000_000), ("rated_power", 30_000_000)]
-            }
-            Self::Ps3ac500dc20kw | Self::PsM2_3ac500dc20kw => {
-                &[("rated_output_voltage", 500_000), ("rated_power", 20_000_000)]
-            }
-        };
-        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-    }
 }
 
 impl From<Model> for u8 {

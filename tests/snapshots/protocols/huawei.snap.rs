@@ -512,20 +512,6 @@ impl Model {
             Self::R4875g1 => "R4875G1",
         }
     }
-
-    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-    ///
-    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-    #[must_use]
-    pub fn fact(self, quantity: Quantity) -> Option<i32> {
-        let facts : & [(& str , i32)] = match self {
-            Self::R4830s1 => &[("nominal_voltage", 53_500), ("full_current", 42_600)],
-            Self::R4830g2 | Self::R4850n2 | Self::R4875g1 => &[("nominal_voltage", 53_500)],
-            Self::R4850g2 | Self::R4850g2_20 => &[("nominal_voltage", 53_500), ("rated_power", 3_000_000)],
-            Self::R4850g6 => &[("nominal_voltage", 53_500), ("full_current", 63_300)],
-        };
-        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-    }
 }
 
 impl From<Model> for u8 {

@@ -492,50 +492,6 @@ impl Model {
             Self::Reg50050 => "REG50050",
         }
     }
-
-    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-    ///
-    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-    #[must_use]
-    pub fn fact(self, quantity: Quantity) -> Option<i32> {
-        let facts : & [(& str , i32)] = match self {
-            Self::Reg85750 => &[("rated_current", 10_000), ("default_voltage", 600_000), ("default_current", 15_000)],
-            Self::Reg85500 => &[("rated_current", 13_640), ("default_voltage", 500_000), ("default_current", 20_000)],
-            Self::Reg75020 => &[
-                ("rated_current", 13_000),
-                ("default_voltage", 600_000),
-                ("default_current", 16_700),
-                ("changed_default_voltage", 100_000),
-                ("changed_default_current", 2600),
-            ],
-            Self::Reg50025 => &[
-                ("rated_current", 20_000),
-                ("default_voltage", 500_000),
-                ("default_current", 23_000),
-                ("changed_default_voltage", 100_000),
-                ("changed_default_current", 4000),
-            ],
-            Self::Reg75030 => &[
-                ("rated_current", 20_000),
-                ("changed_default_voltage", 100_000),
-                ("changed_default_current", 4000),
-                ("minimum_voltage_from_2017_02", 50_000),
-            ],
-            Self::Reg50040 => &[
-                ("rated_current", 30_000),
-                ("changed_default_voltage", 100_000),
-                ("changed_default_current", 6000),
-                ("minimum_voltage_from_2017_02", 50_000),
-            ],
-            Self::Reg75035 => {
-                &[("rated_current", 26_000), ("changed_default_voltage", 100_000), ("changed_default_current", 5200)]
-            }
-            Self::Reg50050 => {
-                &[("rated_current", 40_000), ("changed_default_voltage", 100_000), ("changed_default_current", 8000)]
-            }
-        };
-        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-    }
 }
 
 impl From<Model> for u8 {

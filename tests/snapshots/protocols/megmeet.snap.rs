@@ -356,19 +356,6 @@ impl Model {
             Self::V48 | Self::V24 | Self::V72 => &[125_000],
         }
     }
-
-    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-    ///
-    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-    #[must_use]
-    pub fn fact(self, quantity: Quantity) -> Option<i32> {
-        let facts : & [(& str , i32)] = match self {
-            Self::V48 => &[("voltage_level", 48_000)],
-            Self::V24 => &[("voltage_level", 24_000)],
-            Self::V72 => &[("voltage_level", 72_000)],
-        };
-        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-    }
 }
 
 impl From<Model> for u8 {

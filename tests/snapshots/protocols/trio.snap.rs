@@ -298,22 +298,6 @@ impl Model {
             | Self::Pm1ac48dc2500wPt => &[250_000],
         }
     }
-
-    /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-    ///
-    /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-    #[must_use]
-    pub fn fact(self, quantity: Quantity) -> Option<i32> {
-        let facts : & [(& str , i32)] = match self {
-            Self::Pm1ac24dc1500wPt => &[("nominal_voltage", 24_000), ("power", 1_500_000), ("default_address", 224)],
-            Self::Pm1ac24dc2500w | Self::Pm1ac24dc2500wPt => {
-                &[("nominal_voltage", 24_000), ("power", 2_500_000), ("default_address", 224)]
-            }
-            Self::Pm1ac48dc1500wPt => &[("nominal_voltage", 48_000), ("power", 1_500_000), ("default_address", 224)],
-            Self::Pm1ac48dc2500wPt => &[("nominal_voltage", 48_000), ("power", 2_500_000), ("default_address", 224)],
-        };
-        facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-    }
 }
 
 impl From<Model> for u8 {

@@ -18,7 +18,7 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
     let texts = rows.iter().map(|model| &model.name);
     let count = Literal::usize_unsuffixed(rows.len());
     let all: Vec<_> = rows.iter().map(|model| &model.variant).collect();
-    let (bit_rates, fact) = (bit_rates(rows), fact(rows));
+    let bit_rates = bit_rates(rows);
     let within = has_within.then(within);
     let tables = limits.iter().map(table);
     (!rows.is_empty()).then(|| {
@@ -39,7 +39,6 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
                 }
 
                 #bit_rates
-                #fact
             }
 
             impl From<Model> for u8 {
@@ -57,44 +56,21 @@ pub fn models(Models { rows, has_within, limits, .. }: &Models, derives: Derives
 
 /// Emits the method that returns the speeds of the bus, if the document states them for a model.
 fn bit_rates(rows: &Table<ModelId, Model>) -> Option<TokenStream> {
-    let arms = arms(rows, |Model { bit_rates, .. }| quote!(&[#(#bit_rates),*]))?;
-    Some(quote! {
-        /// Returns the speeds of the bus that the document states for this model, in bit/s.
-        #[must_use]
-        pub const fn bit_rates(self) -> &'static [u32] {
-            match self { #arms }
-        }
-    })
-}
-
-/// Emits the method that returns a rating, if the document states some.
-fn fact(rows: &Table<ModelId, Model>) -> Option<TokenStream> {
-    let arms = arms(rows, |Model { facts, .. }| {
-        let facts = facts.iter().map(|(name, value)| quote!((#name, #value)));
-        quote!(&[#(#facts),*])
-    })?;
-    Some(quote! {
-        /// Returns a rating that no message carries: thousandths of its unit, or a plain number.
-        ///
-        /// It is `None` if the document does not state it for this model, or no `i32` is exactly that value.
-        #[must_use]
-        pub fn fact(self, quantity: Quantity) -> Option<i32> {
-            let facts: &[(&str, i32)] = match self { #arms };
-            facts.iter().find(|(name, _)| *name == quantity.name()).map(|(_, value)| *value)
-        }
-    })
-}
-
-/// Emits an arm for each list that models have, if one of them has any.
-fn arms(rows: &Table<ModelId, Model>, list: impl Fn(&Model) -> TokenStream) -> Option<TokenStream> {
     let mut models: IndexMap<String, (TokenStream, Vec<&Ident>)> = IndexMap::new();
-    for model in rows {
-        let list = list(model);
-        models.entry(list.to_string()).or_insert_with(|| (list, Vec::new())).1.push(&model.variant);
+    for Model { variant, bit_rates, .. } in rows {
+        let rates = quote!(&[#(#bit_rates),*]);
+        models.entry(rates.to_string()).or_insert_with(|| (rates, Vec::new())).1.push(variant);
     }
-    let is_empty = models.keys().all(|list| *list == quote!(&[]).to_string());
-    let arms = models.values().map(|(list, models)| quote!(#(Self::#models)|* => #list,));
-    (!is_empty).then(|| arms.collect())
+    let arms = models.values().map(|(rates, models)| quote!(#(Self::#models)|* => #rates));
+    rows.iter().any(|model| !model.bit_rates.is_empty()).then(|| {
+        quote! {
+            /// Returns the speeds of the bus that the document states for this model, in bit/s.
+            #[must_use]
+            pub const fn bit_rates(self) -> &'static [u32] {
+                match self { #(#arms),* }
+            }
+        }
+    })
 }
 
 /// Emits the type of values that a device model takes.

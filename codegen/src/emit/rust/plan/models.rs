@@ -5,13 +5,10 @@ use proc_macro2::{Ident, TokenStream};
 use super::about;
 use super::doc::{self, Comment};
 use super::limits;
-use super::literal;
 use super::naming::{Pool, model_variant};
 use crate::emit::Scaled;
-use crate::model::{FrameLayout, ModelId, Protocol, Quantity, Range, Signal, SignalId, Table};
-use crate::number::Rational;
+use crate::model::{FrameLayout, ModelId, Protocol, Range, Signal, SignalId, Table};
 use crate::syntax::tree::Step;
-use crate::text::Text;
 
 /// Device models.
 pub struct Models {
@@ -49,15 +46,6 @@ pub struct Model {
     pub name: String,
     /// Speeds of the bus in bit/s.
     pub bit_rates: Vec<TokenStream>,
-    /// Names and values of ratings.
-    pub facts: Vec<(String, TokenStream)>,
-}
-
-/// Returns the name of a rating and its value as a program counts quantities, if an `i32` has exactly that one.
-fn fact((name, rating): &(Text, Quantity)) -> Option<(String, TokenStream)> {
-    let parts = Rational::new(if rating.unit.is_some() { 1000 } else { 1 }, 1)?;
-    let value = i32::try_from(rating.value.times(parts)?.to_integer()?).ok()?;
-    Some((name.for_people().to_owned(), literal::decimal(value)))
 }
 
 /// Limits by device model.
@@ -84,7 +72,6 @@ impl Models {
                 comment: Comment::item(protocol, &model.doc, &sentence, None),
                 name: model.name.clone(),
                 bit_rates: about::rates(&model.bit_rates),
-                facts: model.facts.iter().filter_map(fact).collect(),
             }
         });
         let has_within = protocol.frames.iter().any(|frame| depends_on_model(protocol, frame));
