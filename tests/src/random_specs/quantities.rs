@@ -1,6 +1,7 @@
 //! Quantities of a random spec: names for some of its signals.
 
 use canspec_codegen::model::{Encoding, Enumeration, FrameLayout, Kind, Message, Protocol, Signal};
+use canspec_runtime::Quantity;
 use serde_yaml::Value;
 
 use super::draft::Draft;
@@ -14,6 +15,10 @@ impl Draft {
             return;
         }
         let (mut quantities, mut scope) = (Map::default(), Scope::default());
+        // Each of these has a unit of its own.
+        for (standard, _) in Quantity::STANDARD {
+            scope.take(standard.name());
+        }
         // Another message may look like that of some models.
         let is_of_all = |message: &&Message| message.models.is_empty();
         let messages = protocol.messages.iter().filter(|message| message.long.is_none() && message.set.is_none());
