@@ -243,3 +243,24 @@ fn what_fills_up_a_fast_packet_is_noted_unless_it_is_as_it_is_sent() {
     let text = "bytes behind the end of the message are not all 0xFF";
     assert_eq!(notes, [&json!([{"rule": "reserved_bit", "text": text}]), &json!([])]);
 }
+
+#[test]
+fn silence_by_the_stamps_of_a_log_ends_messages_the_oldest_first() {
+    // Four motors, whose pause is 50 ms. The first one goes on in time, and another one speaks a second later.
+    let log = "\
+        (1.000) can0 211#010005000A000F00\n\
+        (1.010) can0 212#010005000A000F00\n\
+        (1.020) can0 213#010005000A000F00\n\
+        (1.030) can0 214#010005000A000F00\n\
+        (1.040) can0 211#0200140019001E00\n\
+        (2.000) can0 215#010005000A000F00\n\
+        (2.049) can0 215#0200140019001E00\n\
+        (2.099) can0 215#010005000A000F00\n";
+    let (out, _) = canspec_with("parts_until_silence.yaml", &["decode", "--assemble", "--format", "jsonl", "-"], log);
+    let objects = out.lines().map(|line| serde_json::from_str(line).expect("a line is an object"));
+    let wholes: Vec<Value> = objects.filter(|line: &Value| line.get("lines").is_some()).collect();
+    let said: Vec<_> = wholes.iter().map(|whole| (&whole["lines"], &whole["incomplete"])).collect();
+    let lines = [json!([1, 5]), json!([2]), json!([3]), json!([4]), json!([6, 7]), json!([8])];
+    assert_eq!(said, lines.each_ref().map(|lines| (lines, &Value::Null)));
+    assert_eq!(wholes[4]["signals"]["trip"]["value"], json!([5, 10, 15, 20, 25, 30]));
+}

@@ -251,7 +251,7 @@ impl<M: Clone> Assembly<M> {
         open: usize,
         expected: Option<usize>,
     ) -> Assembled<M> {
-        let transfer = self.transfers.swap_remove(open);
+        let transfer = self.transfers.remove(open);
         let long = &protocol[transfer.long];
         let count = self.count(protocol, &transfer);
         let expected = expected.or_else(|| transfer.expected(long, count));
