@@ -178,6 +178,11 @@ impl Resolver<'_> {
             let help = "write an example of the frame that fails";
             self.error_with_help(&rules::MISPLACED_KEY, path.key("fails").at_key(), text, help);
         }
+        let announces = self.tables.long_messages[long].parts().is_some_and(|parts| parts.length.is_some());
+        if announces && example.count.is_some() {
+            let text = "`count` means nothing here: the first frame says how many bytes there are".to_owned();
+            self.error_with_help(&rules::MISPLACED_KEY, path.key("count").at_key(), text, "take it out");
+        }
         let content = self.tables.long_messages[long].content.clone();
         let mut frames = Vec::new();
         for (index, text) in texts.iter().enumerate() {

@@ -161,6 +161,7 @@ impl Resolver<'_> {
         }
         if let Some(parts) = &message.parts {
             self.check_senders(path, name, &frames);
+            self.check_whole(path, &frames, &signals);
             if let Some(long) = long {
                 self.silence(long, &path.key("parts"), parts, surroundings.timing);
             }

@@ -16,7 +16,7 @@ use crate::model::{
 };
 use crate::number::Rational;
 use crate::resolve::rules;
-use crate::syntax::ast::{self, ByModel};
+use crate::syntax::ast::{self, ByModel, Key};
 use crate::syntax::tree::Path;
 
 /// Name of the signal with the number of a part.
@@ -31,14 +31,18 @@ pub const LENGTH: &str = "length";
 /// Name of the signal with the data of a part.
 pub const DATA: &str = "data";
 
+/// Keys of a field that say where it stands, and what it is for people.
+const PLACE: [Key; 6] = [Key::Bytes, Key::Bits, Key::Title, Key::Note, Key::Section, Key::Erratum];
+
 impl Resolver<'_> {
     /// Reads `parts`, but for `count`.
     pub fn parts(&mut self, path: &Path, parts: &ast::Parts, frame: &Leaves, head: Head) -> Option<Parts> {
         let find = |name: &str| frame.signals.iter().position(|signal| signal.name == name);
         let number = self.plain(&path.key("number"), frame, PART)?;
         let counter = match &parts.counter {
-            Some(_) => {
+            Some(field) => {
                 self.check_no_selector(&path.key("counter"));
+                self.check_place_alone(&path.key("counter"), field)?;
                 Some(self.plain(&path.key("counter"), frame, COUNTER)?)
             }
             None => None,
@@ -52,7 +56,10 @@ impl Resolver<'_> {
             return None;
         }
         let length = match &parts.length {
-            Some(field) => Some(self.announcing(&path.key("length"), field, place, head)?),
+            Some(field) => {
+                self.check_place_alone(&path.key("length"), field)?;
+                Some(self.announcing(&path.key("length"), field, place, head)?)
+            }
             None => None,
         };
         let at = path.key("first");
@@ -73,6 +80,25 @@ impl Resolver<'_> {
             count: None,
             silence: None,
         })
+    }
+
+    /// Tests that a field beside the data of a part only says where it stands.
+    fn check_place_alone(&mut self, path: &Path, field: &ast::Field) -> Option<()> {
+        let Some(key) = field.keys().find(|key| !PLACE.contains(key)) else { return Some(()) };
+        let text = format!("`{}` means nothing here", key.name());
+        self.error_with_help(&rules::PARTS, path.key(key).at_key(), text, "write a place alone, as in `{bytes: 1}`");
+        None
+    }
+
+    /// Tests that each frame with a part has all of its fields.
+    pub fn check_whole(&mut self, path: &Path, frames: &[FrameLayout], signals: &Table<SignalId, Signal>) {
+        let carrying = frames.iter().filter(|frame| !frame.signals.is_empty());
+        let Some(shortest) = carrying.flat_map(|frame| &frame.lengths).min() else { return };
+        for signal in signals.iter().filter(|signal| signal.end() > *shortest) {
+            let text = format!("a frame of length {shortest} would have no `{}`", signal.name);
+            let help = "let every `length` of the message have room for the whole part";
+            self.error_with_help(&rules::PARTS, path.key("parts").at_key(), text, help);
+        }
     }
 
     /// Finds a number beside the data of a part.
@@ -213,6 +239,10 @@ impl Resolver<'_> {
         let names = self.spec.timing.keys().map(String::as_str);
         self.lookup_or(&path, "timing", name, names, "add the time to `timing` and write its name");
         let silence = timing.position(|known| known.name == *name);
+        if silence.is_some_and(|silence| timing[silence].ends()[1].is_zero()) {
+            let text = format!("`{name}` is no time, so each part would end its message");
+            self.error_with_help(&rules::PARTS, path.at_value(), text, "name a time that is longer");
+        }
         if let Carrier::Parts(parts) = &mut self.tables.long_messages[id].carrier {
             parts.silence = silence;
         }
