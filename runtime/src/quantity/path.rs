@@ -140,7 +140,7 @@ impl SetPath {
     pub(super) fn is_in<P: Protocol>(&self, received: &Received<P>) -> bool {
         let carries = match received.kind() {
             Kind::Reply => self.is_echoed,
-            kind => self.request.is_to_module::<P>(kind),
+            kind @ (Kind::Request | Kind::Report) => self.request.is_to_module::<P>(kind),
         };
         carries && self.request.is(received.exchange())
     }
