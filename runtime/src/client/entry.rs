@@ -34,7 +34,7 @@ pub struct Entry<P: Protocol> {
     pub state: State,
     /// When this round was due.
     pub round: u32,
-    /// When it, or what it replaced, was first sent of those times that `unheard` counts.
+    /// When it, or what it replaced, was first sent of those times that `unheard` counts, or its tries.
     pub begun: u32,
     /// How often it was sent in this round.
     pub sent: u8,
@@ -154,7 +154,7 @@ impl<P: Protocol> Entry<P> {
 
     /// Notes that the request is sent.
     pub fn start(&mut self, now: u32, group: Option<&mut Group>) {
-        if self.sent == 0 && self.unheard == 0 {
+        if self.sent == 0 && self.unheard == 0 && self.leader.is_none_or(|leader| leader.tries == 0) {
             (self.begun, self.is_heard) = (now, false);
         }
         if let Some(group) = group {
@@ -187,12 +187,14 @@ impl<P: Protocol> Entry<P> {
             return None;
         }
         let is_done = is_complete || self.request.replies() == Replies::Nobody || group.is_none() && self.is_answered();
-        if !is_done && self.sent < self.pace.tries {
+        if !is_done && self.leader.is_none() && self.sent < self.pace.tries {
             self.state = State::Due { from: now };
-            self.want_leader();
             return None;
         }
         self.rest(until, !is_done);
+        if !is_done && self.wants_leader() {
+            return None;
+        }
         let ticket = self.ticket;
         Some(match group {
             _ if is_done => Step::Done(ticket),
@@ -338,5 +340,8 @@ impl<P: Protocol> Entry<P> {
         let until = until.wrapping_add(late);
         let until = self.deaf().map_or(until, |deaf| later_of(until, deaf));
         (self.state, self.unheard) = (State::Resting { until, is_lost }, 0);
+        if let (Some(leader), false) = (&mut self.leader, is_lost) {
+            leader.tries = 0;
+        }
     }
 }

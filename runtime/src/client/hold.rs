@@ -182,6 +182,9 @@ impl<P: Protocol> Entry<P> {
         let ticket = |entry: &Self| entry.leader.map(|leader| leader.ticket);
         if ticket(self) != ticket(other) {
             self.leader = other.leader;
+            if self.leader.is_some() {
+                self.wait_anew();
+            }
         }
         let deaf = self.deaf();
         (self.period, self.pace) = (other.period, other.pace);

@@ -14,6 +14,15 @@ pub struct Leader {
     pub is_awaited: bool,
     /// Whether the follower is to be sent again, and it before that.
     pub is_wanted: bool,
+    /// How often in turn the follower was sent, and nobody answered.
+    pub tries: u8,
+}
+
+impl Leader {
+    /// Returns a leader that has not been in effect yet.
+    const fn new(ticket: Ticket) -> Self {
+        Self { ticket, is_awaited: true, is_wanted: false, tries: 0 }
+    }
 }
 
 impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
@@ -46,7 +55,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
         let leader = self.entries.iter().flatten().find(|held| held.ticket == first && held.is_held());
         let leader = leader.filter(|held| !held.is_replaced_by(&entry, &self.groups)).ok_or(NotHeld::First)?;
-        let (period, leader) = (leader.period, Some(Leader { ticket: first, is_awaited: true, is_wanted: false }));
+        let (period, leader) = (leader.period, Some(Leader::new(first)));
         self.hold_entry(Entry { period, leader, hold: Some(Hold { agrees, deaf: None }), ..entry }, now)
     }
 
@@ -95,7 +104,7 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Lets what follows a request follow another one instead.
     pub(super) fn lead_instead(&mut self, old: Ticket, new: Ticket) {
         for follower in self.entries.iter_mut().flatten().filter(|entry| entry.follows(old)) {
-            follower.leader = Some(Leader { ticket: new, is_awaited: true, is_wanted: false });
+            follower.leader = Some(Leader::new(new));
         }
         self.hold_back(new);
     }
@@ -136,8 +145,8 @@ impl<P: Protocol> Entry<P> {
     /// Waits until what it follows is in effect anew. An answer that still comes is late.
     pub fn wait_anew(&mut self) {
         self.wait_for_leader();
-        if let State::Waiting { until } = self.state {
-            self.rest(until, true);
+        if self.sent > 0 && !self.is_resting() {
+            self.rest(self.until(), true);
         }
     }
 
@@ -148,9 +157,13 @@ impl<P: Protocol> Entry<P> {
         }
     }
 
-    /// Lets what it follows be sent again before it.
-    pub fn want_leader(&mut self) {
-        self.leader = self.leader.map(|leader| Leader { is_wanted: true, ..leader });
+    /// Notes that nobody has answered. Lets what it follows be sent again before it, if it may be sent again.
+    pub const fn wants_leader(&mut self) -> bool {
+        let Some(leader) = &mut self.leader else { return false };
+        let tries = leader.tries.saturating_add(1);
+        leader.is_wanted = tries < self.pace.tries;
+        leader.tries = if leader.is_wanted { tries } else { 0 };
+        leader.is_wanted
     }
 
     /// Notes that it is not sent again before what it follows is in effect anew.

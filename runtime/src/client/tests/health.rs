@@ -1,8 +1,8 @@
 //! Modules that are kept alive, that fall silent and that come back.
 
 use super::{Asking, PACE, Polled, answer, frame_sent, heat};
-use crate::client::{Heard, Nodes, Step};
-use crate::tests::heaters::{HEAT, To, frame};
+use crate::client::{Heard, Nodes, Step, repeats};
+use crate::tests::heaters::{HEAT, Heat, To, frame};
 
 fn sent(heater: u8) -> Step {
     frame_sent(*heat(heater).frame())
@@ -87,4 +87,20 @@ fn a_module_that_says_something_else_is_not_silent() {
         assert!(matches!(client.handle(&answer(3)), Heard::NotInEffect { .. }));
     }
     assert_eq!([client.step(200), client.step(200)], [Step::Lost(ticket), Step::Wait(Some(300))]);
+}
+
+#[test]
+fn a_module_that_answers_the_first_of_an_order_and_not_the_second_is_not_silent() {
+    let mut client = Asking::new(PACE);
+    let first = client.hold(heat(3), 1000, repeats, 0).expect("room");
+    let on = Heat::ask(To::Heater(3)).expect("a legal request");
+    let second = client.hold_after(first, on, |_, _| true, 0).expect("room");
+    for (round, now) in [(0, 20), (200, 220)] {
+        assert_eq!(client.step(round), sent(3));
+        assert!(matches!(client.handle(&answer(3)), Heard::Answer { .. }));
+        assert_eq!(client.step(now), frame_sent(*on.frame()));
+        let end = client.step(now + 100);
+        assert_eq!(end == Step::Lost(second), round == 200);
+    }
+    assert!(matches!(client.step(320), Step::Wait(_)));
 }

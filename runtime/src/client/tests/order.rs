@@ -184,3 +184,82 @@ fn what_follows_goes_before_others_that_wait() {
     assert!(answers(&mut client, &echo(150), first));
     assert_eq!([20, 40].map(|now| client.step(now)), [on(3), on(1)].map(|request| frame_sent(*request.frame())));
 }
+
+/// Lets a program poll a client, each millisecond or only as [`Step::Wait`] says. Answers come after 5 ms.
+fn trace<const N: usize, const G: usize>(
+    mut client: Client<Message, N, G>,
+    sleeps: bool,
+    reply: impl Fn(u32, &Frame) -> Vec<Frame>,
+) -> Vec<(u32, Step)> {
+    let (mut trace, mut coming, mut wake) = (Vec::new(), Vec::new(), Some(0));
+    for now in 0..9000 {
+        let mut has_come = false;
+        for (_, answer) in coming.extract_if(.., |(time, _)| *time == now) {
+            let _ = client.handle(&answer);
+            has_come = true;
+        }
+        if sleeps && !has_come && wake.is_none_or(|wake| wake > now) {
+            continue;
+        }
+        wake = loop {
+            match client.step(now) {
+                Step::Wait(wake) => break wake,
+                step => {
+                    if let Step::Send { frame, .. } = step {
+                        coming.extend(reply(now, &frame).into_iter().map(|answer| (now + 5, answer)));
+                    }
+                    trace.push((now, step));
+                }
+            }
+        };
+    }
+    trace
+}
+
+/// Holds a set-point of a group, and then what takes the part of its switch-on.
+fn held_of_a_group() -> (Asking, [Request<Message, Heat>; 2]) {
+    let mut client = Asking::new(PACE);
+    client.members(To::Group(2), [3, 4]).expect("room");
+    let set = Heat { power_w: 1500.0 }.set(To::Group(2)).expect("a legal request");
+    let on = Heat::ask(To::Group(2)).expect("a legal request");
+    let first = client.hold(set, REFRESH, repeats, 0).expect("the members are known");
+    client.hold_after(first, on, |_, _| true, 0).expect("the members are known");
+    (client, [set, on])
+}
+
+/// What the heaters of the group answer.
+fn members_say(is_set: bool, heaters: &[u8]) -> Vec<Frame> {
+    let id = if is_set { 0x0107_F000 } else { 0x010C_F000 };
+    let said = |heater: &u8| frame(id | u32::from(*heater), if is_set { [2, 0xF0, 0, 150] } else { [0; 4] });
+    heaters.iter().map(said).collect()
+}
+
+#[test]
+fn one_lost_answer_to_a_second_of_a_group_does_not_keep_the_group_waiting() {
+    let (client, [set, on]) = held_of_a_group();
+    let steps = trace(client, false, |now, request| {
+        let is_set = request == set.frame();
+        members_say(is_set, if !is_set && now < 100 { &[3] } else { &[3, 4] })
+    });
+    let when = |request: &Request<Message, Heat>| -> Vec<u32> {
+        let sent = steps.iter().filter(|(_, step)| *step == frame_sent(*request.frame()));
+        sent.map(|(now, _)| *now).take(4).collect()
+    };
+    // No answer to the set-point can come from 200 ms on, and none to the first switch-on from 220 ms on.
+    assert_eq!([when(&set), when(&on)], [[0, 200, 1200, 2200], [20, 220, 1220, 2220]]);
+}
+
+#[test]
+fn what_was_sent_without_an_order_keeps_no_first_waiting() {
+    let (_, [set, on]) = held_of_a_group();
+    let mut client = Asking::new(PACE);
+    client.members(To::Group(2), [3, 4]).expect("room");
+    let second = client.hold(on, REFRESH, |_, _| true, 0).expect("the members are known");
+    client.ask(self::on(1), 90).expect("room");
+    assert_eq!([0, 90].map(|now| client.step(now)), [on, self::on(1)].map(|request| frame_sent(*request.frame())));
+    // It is to be sent again at 100 ms, and waits for the gap.
+    assert_eq!(client.step(100), Step::Wait(Some(110)));
+    let first = client.hold(set, REFRESH, repeats, 100).expect("the members are known");
+    assert_eq!(client.hold_after(first, on, |_, _| true, 100), Ok(second));
+    assert_eq!(sent(&mut client, 100..190), [(110, *set.frame())]);
+}
