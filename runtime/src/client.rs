@@ -443,10 +443,10 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Returns the next time at which something is to do.
     fn deadline(&self, now: u32) -> Option<u32> {
         let free = self.free.unwrap_or(now);
-        let own = self.entries.iter().flatten().filter(|entry| !entry.is_held_back());
-        let times = own.map(|entry| match entry.state {
-            State::Due { from } if earlier(from, free, now) => free,
-            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => entry.until(),
+        let times = self.entries.iter().flatten().filter_map(|entry| match entry.state {
+            State::Due { .. } if entry.is_held_back() => None,
+            State::Due { from } if earlier(from, free, now) => Some(free),
+            State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
         });
         let deaf = self.entries.iter().flatten().filter_map(Entry::deaf);
         // What is due and not sent waits for another entry.

@@ -6,7 +6,8 @@ use std::vec::Vec;
 
 use super::{PACE, Polled, frame_sent};
 use crate::client::{Client, Heard, NotHeld, Step, Ticket, repeats};
-use crate::tests::heaters::{Heat, Message, To, frame};
+use crate::sim::Random;
+use crate::tests::heaters::{COMMAND, Heat, Message, To, frame};
 use crate::{Frame, Request};
 
 type Asking = Client<Message, 6, 1>;
@@ -262,4 +263,25 @@ fn what_was_sent_without_an_order_keeps_no_first_waiting() {
     let first = client.hold(set, REFRESH, repeats, 100).expect("the members are known");
     assert_eq!(client.hold_after(first, on, |_, _| true, 100), Ok(second));
     assert_eq!(sent(&mut client, 100..190), [(110, *set.frame())]);
+}
+
+#[test]
+fn a_program_that_sleeps_until_it_is_to_poll_does_the_same_as_one_that_polls_each_millisecond() {
+    let at = |sleeps| {
+        (1..=40).map(move |seed| {
+            let (single, _) = held();
+            let (of_group, _) = held_of_a_group();
+            let random = core::cell::RefCell::new(Random::new(seed));
+            let lost = |frames: Vec<Frame>| -> Vec<Frame> {
+                frames.into_iter().filter(|_| random.borrow_mut().chance(60)).collect()
+            };
+            let is_set = |request: &Frame| COMMAND.of(request.raw_id()) == 7;
+            let alone = trace(single, sleeps, |_, request| lost(members_say(is_set(request), &[3])));
+            let group = trace(of_group, sleeps, |_, request| lost(members_say(is_set(request), &[3, 4])));
+            (alone, group)
+        })
+    };
+    for (seed, (slept, polled)) in at(true).zip(at(false)).enumerate() {
+        assert_eq!(slept, polled, "seed {}", seed + 1);
+    }
 }
