@@ -449,8 +449,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
             State::Due { .. } | State::Waiting { .. } | State::Resting { .. } => Some(entry.until()),
         });
         let deaf = self.entries.iter().flatten().filter_map(Entry::deaf);
+        let unheard = self.entries.iter().flatten().filter_map(Entry::unheard_from);
         // What is due and not sent waits for another entry.
-        let times = times.chain(deaf).filter(|time| !has_come(*time, now));
+        let times = times.chain(deaf).chain(unheard).filter(|time| !has_come(*time, now));
         times.reduce(|one, other| if earlier(other, one, now) { other } else { one })
     }
 }

@@ -173,7 +173,7 @@ impl<P: Protocol> Entry<P> {
     /// Ends a wait that has taken too long, or for which nobody is missing. Says how it ends. Sends the
     /// request again if it may.
     pub fn ended(&mut self, now: u32, group: Option<&Group>) -> Option<Step> {
-        if self.is_unheard(now) {
+        if self.unheard_from().is_some_and(|from| has_come(from, now)) {
             self.unheard = 0;
             return Some(Step::Lost(self.ticket));
         }

@@ -274,12 +274,10 @@ impl<P: Protocol> Entry<P> {
         is_deaf
     }
 
-    /// Tests whether nobody answers although the request was sent often enough, with other values each time.
-    pub fn is_unheard(&self, now: u32) -> bool {
-        self.awaits()
-            && self.deaf().is_some()
-            && self.unheard >= self.pace.tries.max(1)
-            && has_come(self.begun.wrapping_add(self.pace.wait), now)
+    /// Returns from when on nobody answers, if the request was sent often enough, with other values each time.
+    pub fn unheard_from(&self) -> Option<u32> {
+        let is_unheard = self.awaits() && self.deaf().is_some() && self.unheard >= self.pace.tries.max(1);
+        is_unheard.then_some(self.begun.wrapping_add(self.pace.wait))
     }
 
     /// Returns until when an answer to what was sent can come.

@@ -177,6 +177,14 @@ fn what_is_replaced_faster_than_it_can_be_answered_is_lost_if_nobody_answers() {
 }
 
 #[test]
+fn a_program_is_to_poll_when_what_is_replaced_fast_is_lost() {
+    let (mut client, _) = held(0);
+    let new = hold(&mut client, 0.0, 50);
+    assert_eq!([client.step(50), client.step(50)], [sent(0.0), Step::Wait(Some(100))]);
+    assert_eq!(client.step(100), Step::Lost(new));
+}
+
+#[test]
 fn what_replaces_a_waiting_request_takes_its_place_in_the_queue() {
     let mut client = Asking::new(PACE);
     for heater in [1, 3, 2] {
