@@ -281,9 +281,11 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// taken for one to it, but not for answers to what it replaced. Of a group whose members are known, it
     /// waits until the round of another request to that group has ended.
     ///
-    /// What was asked once, by the same message and access, and waits to be sent to no other modules, ends
-    /// without an event. Otherwise a switch-on would come after the stop. An older request to other modules,
-    /// too, is sent after it. [Cancel](Self::cancel) one that would undo a stop.
+    /// What was asked once by the same message and access, and says something else, ends without an event if it
+    /// could go to one of the same modules. It ends also if it was sent and could be sent again. Otherwise a
+    /// switch-on would come after the stop. So a stop of one module ends what was asked of its group. A hurried
+    /// switch-on would end a stop that waits, so hurry only stops. [Cancel](Self::cancel) what is asked
+    /// [again and again](Self::every) and would undo a stop.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
         let mut entries = self.entries.iter_mut().flatten();
         if let Some(entry) = entries.find(|entry| entry.ticket == ticket && entry.due(now).is_some()) {

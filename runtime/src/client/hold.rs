@@ -139,11 +139,12 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         })
     }
 
-    /// Ends what was asked earlier, is not sent yet, and would undo a request that is to be sent before it.
+    /// Ends what was asked once and could undo a request that is to be sent before it.
     pub(super) fn overtake(&mut self, request: &Entry<P>) {
-        let groups = self.groups;
-        for slot in &mut self.entries {
-            *slot = slot.filter(|earlier| !earlier.would_undo(request, &groups));
+        let Self { entries, groups, .. } = self;
+        let would_undo = |slot: &Option<Entry<P>>| slot.is_some_and(|asked| asked.would_undo(request, groups));
+        for slot in entries.iter_mut().filter(|slot| would_undo(slot)) {
+            *slot = slot.and_then(Entry::cancelled);
         }
     }
 
@@ -227,15 +228,19 @@ impl<P: Protocol> Entry<P> {
         is_other && self.is_of_same_exchange(other) && self.is_covered_by(other, groups)
     }
 
-    /// Tests whether this is asked once, waits to be sent, and would tell all modules of another one something else.
+    /// Tests whether this is asked once, and could tell a module of another one something else.
     fn would_undo<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
-        let is_waiting = matches!(self.state, State::Due { .. }) && !self.is_under_way() && self.period.is_none();
-        is_waiting && self.ticket != other.ticket && self.is_replaced_by(other, groups)
+        self.period.is_none() && self.differs_from(other, groups)
     }
 
     /// Tests whether this is held, and another one could tell one of its modules something else.
     fn is_contradicted_by<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
-        let is_other = self.is_held() && !self.says_the_same(other) && self.is_of_same_exchange(other);
+        self.is_held() && self.differs_from(other, groups)
+    }
+
+    /// Tests whether both could tell one module something else by the same message and access.
+    fn differs_from<const G: usize>(&self, other: &Self, groups: &Groups<G>) -> bool {
+        let is_other = !self.says_the_same(other) && self.is_of_same_exchange(other);
         is_other && !self.is_apart_from(other, groups)
     }
 

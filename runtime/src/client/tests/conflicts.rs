@@ -344,6 +344,40 @@ fn a_hurried_stop_of_all_ends_what_was_asked_before_and_is_not_sent() {
 }
 
 #[test]
+fn a_hurried_stop_is_not_undone_by_a_switch_on_that_was_asked_before() {
+    // The stop covers the switch-on, perhaps covers it, or perhaps is covered by it.
+    let targets =
+        [(To::Heater(4), GROUP), (To::Heater(4), To::Group(3)), (To::Heater(4), To::All), (GROUP, To::Heater(4))];
+    for (of_on, of_off) in targets {
+        for stopped in [0, 50] {
+            let mut client = asking();
+            let (on, off) = (power(of_on, 1500.0), power(of_off, 0.0));
+            client.ask(on, 0).expect("room");
+            let before = run(&mut client, 0..stopped, |_| vec![]);
+            assert_eq!(when(&before, sent(&on)).len(), usize::from(stopped > 0));
+            let stop = client.ask(off, stopped).expect("room");
+            client.hurry(stop, stopped);
+            let steps = run(&mut client, stopped..3000, |request| answers(request, &[4, 5]));
+            assert_eq!(when(&steps, sent(&on)), [], "{of_on:?}, {of_off:?} at {stopped} ms");
+            assert_eq!(when(&steps, sent(&off)).len(), 1);
+        }
+    }
+}
+
+#[test]
+fn a_hurried_stop_ends_nothing_of_other_modules_and_no_other_message() {
+    let mut client = asking();
+    let others = [power(To::Heater(3), 500.0), read(To::Heater(4)), power(To::Heater(5), 0.0)];
+    for other in others {
+        client.ask(other, 0).expect("room");
+    }
+    let stop = client.ask(power(GROUP, 0.0), 0).expect("room");
+    client.hurry(stop, 0);
+    let steps = run(&mut client, 0..3000, |request| answers(request, &[3, 4, 5]));
+    assert_eq!(others.map(|other| when(&steps, sent(&other)).len()), [1; 3]);
+}
+
+#[test]
 fn to_hurry_a_request_does_not_let_its_late_answers_be_taken_for_others() {
     let mut client = asking();
     let first = client.ask(power(To::Heater(3), 1500.0), 0).expect("room");
