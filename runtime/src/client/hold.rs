@@ -27,7 +27,7 @@ pub enum NotHeld {
     /// Something else is held of some of the same modules, and of others. Or it is not known which modules
     /// that are, and the targets differ. Cancel that first.
     Torn(Ticket),
-    /// What it is to follow is not held, or would be replaced by it.
+    /// What it is to follow is not held, or would be replaced by it. Or what that follows would be.
     First,
 }
 

@@ -44,7 +44,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// # Errors
     ///
-    /// Refuses what [`hold`](Self::hold) refuses, and a `first` that is not held or would be replaced.
+    /// Refuses what [`hold`](Self::hold) refuses, and a `first` that is not held. Also refuses a request that
+    /// would replace `first` or anything that `first` follows.
     pub fn hold_after<R>(
         &mut self,
         first: Ticket,
@@ -53,8 +54,12 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         now: u32,
     ) -> Result<Ticket, NotHeld> {
         let entry = Entry::new(self.ticket(), request.untyped(), self.pace, now);
-        let leader = self.entries.iter().flatten().find(|held| held.ticket == first && held.is_held());
-        let leader = leader.filter(|held| !held.is_replaced_by(&entry, &self.groups)).ok_or(NotHeld::First)?;
+        let mut entries = self.entries.iter().flatten();
+        let leader = entries.find(|held| held.ticket == first && held.is_held()).ok_or(NotHeld::First)?;
+        let mut replaced = self.entries.iter().flatten().filter(|held| held.is_replaced_by(&entry, &self.groups));
+        if replaced.any(|held| self.leaders(first).any(|leader| leader == held.ticket)) {
+            return Err(NotHeld::First);
+        }
         let (period, leader) = (leader.period, Some(Leader::new(first)));
         self.hold_entry(Entry { period, leader, hold: Some(Hold { agrees, deaf: None }), ..entry }, now)
     }
@@ -82,23 +87,23 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
         for place in 0..N {
             let Some(Some(Entry { leader: Some(leader), .. })) = self.entries.get_mut(place) else { continue };
             if core::mem::take(&mut leader.is_wanted) {
-                let leader = *leader;
-                let head = self.leaders(leader).last().map_or(leader.ticket, |leader| leader.ticket);
+                let first = leader.ticket;
+                let head = self.leaders(first).last();
                 let mut entries = self.entries.iter_mut().flatten();
-                entries.find(|entry| entry.ticket == head).into_iter().for_each(Entry::renew_soon);
+                entries.find(|entry| Some(entry.ticket) == head).into_iter().for_each(Entry::renew_soon);
             }
         }
     }
 
-    /// Returns what leads, and what leads that, and so on.
-    fn leaders(&self, leader: Leader) -> impl Iterator<Item = Leader> {
-        let of = |ticket: Ticket| self.entries.iter().flatten().find(move |entry| entry.ticket == ticket);
-        core::iter::successors(Some(leader), move |leader| of(leader.ticket)?.leader).take(N)
+    /// Returns a ticket, that of what leads it, and so on.
+    fn leaders(&self, first: Ticket) -> impl Iterator<Item = Ticket> {
+        let of = |ticket: &Ticket| self.entries.iter().flatten().find(|entry| entry.ticket == *ticket);
+        core::iter::successors(Some(first), move |ticket| Some(of(ticket)?.leader?.ticket)).take(N)
     }
 
     /// Tests whether a request follows another one, perhaps by way of others.
     fn is_behind(&self, entry: &Entry<P>, first: Ticket) -> bool {
-        entry.leader.is_some_and(|leader| self.leaders(leader).any(|leader| leader.ticket == first))
+        entry.leader.is_some_and(|leader| self.leaders(leader.ticket).any(|leader| leader == first))
     }
 
     /// Lets what follows a request follow another one instead.

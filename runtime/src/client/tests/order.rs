@@ -285,3 +285,16 @@ fn a_program_that_sleeps_until_it_is_to_poll_does_the_same_as_one_that_polls_eac
         assert_eq!(slept, polled, "seed {}", seed + 1);
     }
 }
+
+#[test]
+fn nothing_follows_what_it_would_replace_or_what_follows_that() {
+    let (mut client, [_, second]) = held();
+    let third = client.hold_after(second, on(4), |_, _| true, 0).expect("room");
+    for last in [second, third] {
+        for power_w in [1500.0, 500.0] {
+            assert_eq!(client.hold_after(last, set(power_w), repeats, 0), Err(NotHeld::First));
+        }
+        assert_eq!(client.hold_after(last, on(3), |_, _| true, 0), Err(NotHeld::First));
+    }
+    assert_eq!(sent(&mut client, 0..2500), [0, 100, 1000, 1100, 2000, 2100].map(|now| (now, *set(1500.0).frame())));
+}
