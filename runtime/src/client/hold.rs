@@ -4,6 +4,7 @@ use core::num::NonZeroU32;
 
 use super::entry::{Entry, State};
 use super::group::Groups;
+use super::order::Leader;
 use super::{Client, Full, LONGEST, Ticket, has_one_answer};
 use crate::clock::{earlier, has_come, latest_of};
 use crate::{Protocol, Received, Request};
@@ -63,8 +64,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// as if nobody had answered. After as many tries as the pace has, the round is
     /// [lost](super::Step::Lost). A refusal ends the round, too. The next renewal tries again.
     ///
-    /// To hold what is held already changes nothing, and returns the same ticket. So a program may call
-    /// this in a loop.
+    /// To hold what is held already sends nothing, keeps its [order](Self::hold_after), and returns the same
+    /// ticket. So a program may call this in a loop.
     ///
     /// A request of the same message by the same access is replaced, if the new one goes to all of its
     /// modules. That is true of what is held, and of what was asked with other values. It does not matter who answers, or
@@ -178,14 +179,12 @@ impl<P: Protocol> Entry<P> {
         self.is_held() && self.is_of_same_exchange(other) && self.request.frame() == other.request.frame()
     }
 
-    /// Goes on as it is, but is renewed, compared and led as another one that would hold the same.
+    /// Goes on as it is, but is renewed and compared as another one that would hold the same, and led if that is.
     fn keep_as(&mut self, other: &Self) {
-        let ticket = |entry: &Self| entry.leader.map(|leader| leader.ticket);
-        if ticket(self) != ticket(other) {
-            self.leader = other.leader;
-            if self.leader.is_some() {
-                self.wait_anew();
-            }
+        let is_new = |leader: &Leader| self.leader.is_none_or(|known| known.ticket != leader.ticket);
+        if let Some(leader) = other.leader.filter(is_new) {
+            self.leader = Some(leader);
+            self.wait_anew();
         }
         let deaf = self.deaf();
         (self.period, self.pace) = (other.period, other.pace);

@@ -150,14 +150,25 @@ fn what_follows_ends_with_what_it_follows() {
 
 #[test]
 fn what_is_held_without_an_order_replaces_what_follows_and_is_sent_at_once() {
+    let (mut client, [first, _]) = held();
+    let other = |power_w| Heat { power_w }.set(To::Heater(4)).expect("a legal request");
+    let second = client.hold_after(first, other(500.0), repeats, 0).expect("room");
+    let off = client.hold(other(0.0), REFRESH, repeats, 0).expect("it takes the room");
+    assert_ne!(off, second);
+    assert_eq!(sent(&mut client, 0..50), [(0, *set(1500.0).frame()), (20, *other(0.0).frame())]);
+}
+
+#[test]
+fn what_is_held_again_keeps_its_order() {
     let (mut client, [first, second]) = held();
-    let off = client.hold(on(3), REFRESH, |_, _| true, 0).expect("it takes the room");
-    assert_eq!(off, second, "it is the same request");
-    assert_eq!(sent(&mut client, 0..50), [(0, *set(1500.0).frame()), (20, *on(3).frame())]);
-    assert_eq!(client.hold_after(first, set(0.0), repeats, 50), Err(NotHeld::First));
-    // In a loop it is the same one.
-    let again = client.hold_after(first, on(3), |_, _| true, 50).expect("it is held");
-    assert_eq!(client.hold_after(first, on(3), |_, _| true, 51), Ok(again));
+    for now in 0..50 {
+        assert_eq!(client.hold(on(3), REFRESH, |_, _| true, now), Ok(second));
+        assert_eq!(client.hold_after(first, on(3), |_, _| true, now), Ok(second));
+    }
+    assert_eq!(client.hold(on(3), REFRESH, |_, _| true, 50), Ok(second));
+    assert_eq!(sent(&mut client, 50..150), [(50, *set(1500.0).frame())]);
+    assert!(answers(&mut client, &echo(150), first));
+    assert_eq!(sent(&mut client, 150..200), [(150, *on(3).frame())]);
 }
 
 #[test]
