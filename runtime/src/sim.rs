@@ -169,7 +169,7 @@ impl<P: Addressed, D: Device<P>, const N: usize, const W: usize> Bench<P, D, N, 
             if node.tick(&self.rules, now) {
                 self.complaints.add(Complaint::Unfed { node: node.number });
             }
-            if let Some(report) = node.report(now) {
+            while let Some(report) = node.report(now) {
                 let Self { random, wire, .. } = self;
                 node.carry(report, random, |delay, frame| wire.send(now.wrapping_add(delay), frame));
             }

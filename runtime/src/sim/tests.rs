@@ -312,6 +312,38 @@ fn a_device_that_is_up_reports_by_itself() {
     assert_eq!(faults.map(reports), expected);
 }
 
+/// A device that reports three times at once, each 10 ms.
+struct Burst {
+    due: u32,
+    said: u8,
+}
+
+impl Device<Message> for Burst {
+    fn answer(&mut self, _: &Received<Message>, _: u32) -> Answer<Message> {
+        Answer::Silence
+    }
+
+    fn report(&mut self, node: u8, now: u32) -> Option<Frame> {
+        if now < self.due {
+            return None;
+        }
+        self.said += 1;
+        if self.said > 3 {
+            (self.due, self.said) = (now + 10, 0);
+            return None;
+        }
+        Some(frame(0x010A_F000 | u32::from(node), [self.said; 4]))
+    }
+}
+
+#[test]
+fn a_device_is_asked_for_reports_until_it_has_none() {
+    let mut bench: Bench<Message, Burst, 1, 4> = Bench::new([(3, Burst { due: 0, said: 0 })], RULES, 1);
+    let mut reports = |now| core::iter::from_fn(|| bench.poll(now)).count();
+    let counts: Vec<usize> = (0..15).map(&mut reports).collect();
+    assert_eq!(counts, [0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0]);
+}
+
 #[test]
 fn a_bench_takes_no_more_memory_than_its_documentation_says() {
     type Sized<const N: usize, const W: usize> = Bench<Message, [u8; 0], N, W>;
