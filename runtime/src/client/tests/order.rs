@@ -309,3 +309,32 @@ fn nothing_follows_what_it_would_replace_or_what_follows_that() {
     }
     assert_eq!(sent(&mut client, 0..2500), [0, 100, 1000, 1100, 2000, 2100].map(|now| (now, *set(1500.0).frame())));
 }
+
+#[test]
+fn what_stops_a_second_counts_although_its_module_has_been_dead_for_25_days() {
+    const HOUR: u32 = 3_600_000;
+    let power = |power_w| Heat { power_w }.set(To::Heater(4)).expect("a legal request");
+    for is_held in [false, true] {
+        let mut client = Asking::new(PACE);
+        let first = client.hold(set(1500.0), HOUR, repeats, 0).expect("room");
+        client.hold_after(first, power(500.0), repeats, 0).expect("room");
+        assert_eq!(client.step(0), frame_sent(*set(1500.0).frame()));
+        assert!(answers(&mut client, &echo(150), first));
+        let mut now = 20;
+        assert_eq!(client.step(now), frame_sent(*power(500.0).frame()));
+        while now < 25 * 24 * HOUR {
+            match client.step(now) {
+                Step::Wait(wake) => now = wake.expect("it is renewed"),
+                step => assert_ne!(step, frame_sent(*power(500.0).frame())),
+            }
+        }
+        let stop = if is_held {
+            client.hold(power(0.0), HOUR, repeats, now).expect("it takes the room")
+        } else {
+            client.ask(power(0.0), now).expect("room")
+        };
+        client.hurry(stop, now);
+        assert_eq!(client.step(now), frame_sent(*power(0.0).frame()));
+        assert!(answers(&mut client, &frame(0x0107_F004, [2, 0xF0, 0, 0]), stop));
+    }
+}
