@@ -279,7 +279,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// Sends a request before all others that are due, if it is due: a stop, for instance. It counts for one
     /// sending. It keeps the gap between requests. It also waits until no answer to another request could be
     /// taken for one to it, but not for answers to what it replaced. Of a group whose members are known, it
-    /// waits until the round of another request to that group has ended.
+    /// waits until the round of another request to that group has ended, also if it is held. With a dead
+    /// member, that takes all tries of the round.
     ///
     /// What was asked once by the same message and access, and says something else, ends without an event if it
     /// could go to one of the same modules. It ends also if it was sent and could be sent again. Otherwise a

@@ -37,7 +37,7 @@ impl core::fmt::Display for NotHeld {
         match self {
             Self::Full => Full.fmt(formatter),
             Self::Unconfirmed => formatter.write_str("nobody is known to answer, so nothing shows what is in effect"),
-            Self::First => formatter.write_str("what it is to follow is not held, or is the same message"),
+            Self::First => formatter.write_str("what it is to follow is not held, or would be replaced"),
             Self::Torn(_) => formatter.write_str("something else is held of other modules that are partly the same"),
         }
     }
@@ -79,7 +79,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// however, if nobody answers.
     ///
     /// To [`ask`](Self::ask) for the same message and access ends what is held of the modules asked. What was
-    /// asked before of other modules, too, stays and can be sent after a new value. Cancel it if it must not be.
+    /// asked before of other modules, too, stays and can be sent after a new value. [Cancel](Self::cancel) it if
+    /// it must not be, or [hurry](Self::hurry) the new value.
     ///
     /// A device that restarts forgets what it was told. So hold all that it must do: the set-point, and
     /// that it is on. [`hold_after`](Self::hold_after) sends the second one only after the first is in effect.
