@@ -18,14 +18,14 @@ const DEFECT: Quantity = Quantity::new("defect");
 /// When the modules are switched on, when each gets a defect, and when they are stopped. All in milliseconds.
 const START: u32 = 4000;
 const BREAK: u32 = 15_000;
-const STOP: u32 = 25_000;
+const STOP: u32 = 28_000;
 /// When the faults end.
-const CLEAR: u32 = 32_000;
-const END: u32 = 42_000;
+const CLEAR: u32 = 35_000;
+const END: u32 = 45_000;
 /// The time from one round to the next.
 const ROUND: u32 = 2500;
 /// After this time without a restart, a module does what it is told.
-const SETTLED: u32 = 9000;
+const SETTLED: u32 = 12_000;
 
 type Kept<P> = Keeper<P, 4>;
 
