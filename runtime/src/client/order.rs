@@ -40,8 +40,8 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     /// What [replaces](Self::hold) `first` leads in its place. If `first` is [cancelled](Self::cancel), or
     /// something that is asked ends it, what follows it ends, too, without an event.
     ///
-    /// Another value that is held of the same message and access without an order, such as a switch-off,
-    /// replaces this request and is sent at once. To hold the same value keeps the order.
+    /// Another value that is held of the same message and access without an order replaces this request. So a
+    /// switch-off is sent at once. To hold the same value keeps the order.
     ///
     /// # Errors
     ///
