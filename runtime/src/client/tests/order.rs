@@ -259,8 +259,8 @@ fn one_lost_answer_to_a_second_of_a_group_does_not_keep_the_group_waiting() {
         members_say(is_set, if !is_set && now < 100 { &[3] } else { &[3, 4] })
     });
     let when = |request: &Request<Message, Heat>| -> Vec<u32> {
-        let sent = steps.iter().filter(|(_, step)| *step == frame_sent(*request.frame()));
-        sent.map(|(now, _)| *now).take(4).collect()
+        let its = steps.iter().filter(|(_, step)| *step == frame_sent(*request.frame()));
+        its.map(|(now, _)| *now).take(4).collect()
     };
     // No answer to the set-point can come from 200 ms on, and none to the first switch-on from 220 ms on.
     assert_eq!([when(&set), when(&on)], [[0, 200, 1200, 2200], [20, 220, 1220, 2220]]);
