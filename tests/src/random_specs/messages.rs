@@ -1,15 +1,14 @@
 //! Accesses, messages, sets of frames, and identifiers of others.
 
+mod long;
+
 use serde_yaml::{Mapping, Value};
 
 use super::draft::Draft;
-use super::fields::{Length, Site};
+use super::fields::Site;
 use super::identifier::{Bus, Chooser, Mode};
 use super::names::Scope;
 use super::yaml::{Map, list};
-
-/// The name of a transport.
-const TRANSPORT: &str = "zz_transport";
 
 /// How messages travel.
 #[derive(Clone)]
@@ -89,49 +88,6 @@ impl Draft {
             self.foreign(bus, &mut traffic);
         }
         traffic
-    }
-
-    /// Adds the transport of the identifier, if there is one.
-    fn transport(&mut self, bus: &Bus, traffic: &mut Traffic) {
-        let Some(mut transport) = bus.transport.clone() else { return };
-        if let Some(priority) = bus.priority.as_ref().filter(|_| self.random.bool()) {
-            let value = self.random.u8(..8);
-            transport.put("send", Map::of([(priority.clone(), self.number(value))]));
-        }
-        self.remark(&mut transport);
-        traffic.transports.put(TRANSPORT, transport);
-    }
-
-    /// Adds a message of up to seven bytes by ISO-TP to few specs. A constant gives each kind of frame a byte. Specs
-    /// without it stay as they are, so the number that decides is drawn apart.
-    pub fn by_isotp(&mut self, bus: &Bus, traffic: &mut Traffic) {
-        if bus.transport.is_some() || bus.header_bytes > 0 || self.random.clone().u8(..100) >= 5 {
-            return;
-        }
-        let is_fit = |known: &&Access| known.role == Role::Ordinary && !known.has_command;
-        let Some(access) = traffic.accesses.iter().find(is_fit).cloned() else { return };
-        let mut transport = Map::of([("kind", "isotp")]);
-        if self.chance(70) {
-            transport.put("fill", self.one(&["none", "0x00", "255"]));
-        }
-        self.remark(&mut transport);
-        traffic.transports.put(TRANSPORT, transport);
-        let (name, value) = self.command(bus, traffic);
-        let mut message = Map::of([("match", Map::of([(name, value)]))]);
-        message.put("access", list([access.name]));
-        message.put("via", TRANSPORT);
-        let (mut fields, mut scope) = (Map::default(), Scope::default());
-        let (first, count) = (self.random.u8(1..3), self.random.u8(1..=5));
-        let mut field = Map::of([("bytes", self.bytes(first, count))]);
-        self.fill(&mut field, 8 * count);
-        let names = [(); 2].map(|()| self.names.plain(&mut scope));
-        let [kind, value] = names;
-        let mut constant = Map::of([("bytes", "0")]);
-        constant.put("const", self.one(&["0", "0x7F"]));
-        fields.put(kind, constant);
-        fields.put(value, field);
-        message.put("fields", fields);
-        self.add_message(traffic, message);
     }
 
     fn accesses(&mut self, bus: &Bus, traffic: &mut Traffic) {
@@ -279,16 +235,7 @@ impl Draft {
         let is_sent = accesses.iter().any(|access| access.sends);
         let is_by_command = !first.has_command && !has_register;
         if bus.transport.is_some() && is_by_command && self.chance(50) {
-            let (fields, length) = self.long_fields();
-            message.put("via", TRANSPORT);
-            match length {
-                Length::Fixed(lengths) if self.chance(40) => {
-                    message.put("length", list(lengths.map(|length| length.to_string())));
-                }
-                Length::Open(range) => message.put("length", range),
-                Length::Fixed(_) | Length::Elements => {}
-            }
-            message.put("fields", fields);
+            self.by_transport(&mut message);
         } else if bus.header_bytes < 5 && !is_sent && self.chance(25) {
             self.in_parts(bus, traffic, &mut message);
         } else {
@@ -296,51 +243,6 @@ impl Draft {
         }
         self.remark(&mut message);
         self.add_message(traffic, message);
-    }
-
-    /// Adds what a message carries in several frames.
-    fn in_parts(&mut self, bus: &Bus, traffic: &mut Traffic, message: &mut Map) {
-        let (number, mut data) = (bus.header_bytes, bus.header_bytes + 1);
-        let mut parts = Map::of([("number", Map::of([("bytes", number.to_string())]))]);
-        if self.chance(30) {
-            let bits = self.one(&["7..5", "3..0"]);
-            parts.put("counter", Map::of([("bytes", data.to_string()), ("bits", bits.to_owned())]));
-            data += 1;
-        }
-        if self.models.is_empty() || self.random.bool() {
-            let first = self.random.u64(..3);
-            parts.put("first", self.number(first));
-        } else {
-            let models = self.models.clone();
-            let firsts = self.some(&models).into_iter().enumerate();
-            parts.put("first", Map::of(firsts.map(|(index, model)| (model, index.to_string()))));
-        }
-        let last = self.random.u8(data..8);
-        parts.put("data", format!("{data}..{last}"));
-        let says_length = last >= data + 2 && self.chance(30);
-        if says_length {
-            let bytes = if self.random.bool() { [data, data + 1] } else { [data + 1, data] };
-            parts.put("length", Map::of([("bytes", format!("{}..{}", bytes[0], bytes[1]))]));
-        }
-        let (fields, length) = self.long_fields();
-        let ordinary = |access: &&Access| access.role == Role::Ordinary && !access.has_command;
-        let access = traffic.accesses.iter().find(ordinary).cloned();
-        let is_open = !says_length && !matches!(length, Length::Fixed(_));
-        if let Some(access) = access.filter(|_| is_open && self.random.bool()) {
-            let (name, value) = self.command(bus, traffic);
-            let mut counting = Map::of([("match", Map::of([(name, value)]))]);
-            counting.put("access", list([access.name]));
-            counting.put("value", Map::of([("bytes", number.to_string())]));
-            let name = self.add_message(traffic, counting);
-            parts.put("count", format!("{name}.value"));
-        } else if is_open && !self.times.is_empty() && self.random.bool() {
-            parts.put("silence", self.times[0].clone());
-        }
-        message.put("parts", parts);
-        if let Length::Open(range) = length {
-            message.put("length", range);
-        }
-        message.put("fields", fields);
     }
 
     /// Says what the bits are that nothing names.
