@@ -284,9 +284,9 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
     ///
     /// What was asked once by the same message and access, and says something else, ends without an event. That
     /// is so if it could go to one of the same modules. It ends also if it was sent and could be sent again.
-    /// Otherwise a switch-on would come after the stop. So a stop of one module ends what was asked of its group. A hurried
-    /// switch-on would end a stop that waits, so hurry only stops. [Cancel](Self::cancel) what is asked
-    /// [again and again](Self::every) and would undo a stop.
+    /// Otherwise a switch-on would come after the stop. So a stop of one module ends what was asked of its
+    /// group. A hurried switch-on would end a stop that waits, so hurry only stops. [Cancel](Self::cancel)
+    /// what is asked [again and again](Self::every) and would undo a stop.
     pub fn hurry(&mut self, ticket: Ticket, now: u32) {
         let mut entries = self.entries.iter_mut().flatten();
         if let Some(entry) = entries.find(|entry| entry.ticket == ticket && entry.due(now).is_some()) {

@@ -117,15 +117,17 @@ impl<P: Protocol, const N: usize, const G: usize> Client<P, N, G> {
 
     /// Ends what follows a request that is not held any more.
     pub(super) fn end_followers(&mut self) {
-        let is_left = |slot: &&mut Option<Entry<P>>, held: &[Option<Entry<P>>; N]| {
-            let leads = |leader: Ticket| held.iter().flatten().any(|held| held.ticket == leader && held.is_held());
-            slot.is_some_and(|entry| entry.is_held() && entry.leader.is_some_and(|leader| !leads(leader.ticket)))
-        };
-        loop {
-            let held = self.entries;
-            let Some(slot) = self.entries.iter_mut().find(|slot| is_left(slot, &held)) else { return };
+        while let Some(place) = self.entries.iter().position(|slot| self.is_left(slot.as_ref())) {
+            let Some(slot) = self.entries.get_mut(place) else { return };
             *slot = slot.and_then(Entry::cancelled);
         }
+    }
+
+    /// Tests whether a request is held after another one that is not held any more.
+    fn is_left(&self, entry: Option<&Entry<P>>) -> bool {
+        let leader = entry.filter(|entry| entry.is_held()).and_then(|entry| entry.leader);
+        let leads = |held: &Entry<P>, first: Ticket| held.ticket == first && held.is_held();
+        leader.is_some_and(|leader| !self.entries.iter().flatten().any(|held| leads(held, leader.ticket)))
     }
 }
 
