@@ -183,7 +183,7 @@ impl<P: Quantities> Received<P> {
     /// [`quantity`](Self::quantity) does.
     ///
     /// It is `None` if
-    /// - the frame is no request or report of the controller that sets the quantity, and no reply that carries it, too,
+    /// - the frame is no request, no report of the controller and no reply that carries it,
     /// - the bits mean something else than a number, or no state of the switch,
     /// - the frame is an error reply, or an `i32` cannot hold the value.
     pub fn setting(&self, quantity: Quantity) -> Option<i32> {
@@ -194,7 +194,9 @@ impl<P: Quantities> Received<P> {
     /// Tests whether the reply says that all quantities which a request sets are in effect. Values of a unit may differ
     /// by `tolerance` thousandths of it.
     ///
-    /// It is false if the request sets nothing, or the reply does not say all of it.
+    /// It is false if
+    /// - the request sets nothing, or the reply does not say all of it,
+    /// - the request goes to another module than that which replies.
     pub fn confirms(&self, request: &Self, tolerance: u32) -> bool {
         let mut paths = P::SETS.iter().filter(|path| path.is_in(request)).peekable();
         let is_said = |path: &SetPath| {
@@ -202,6 +204,8 @@ impl<P: Quantities> Received<P> {
             let both = request.setting(path.quantity).zip(self.setting(path.quantity));
             both.is_some_and(|(asked, said)| asked.abs_diff(said) <= tolerance)
         };
-        self.kind() == Kind::Reply && paths.peek().is_some() && paths.all(is_said)
+        let is_its = [request.kind(), self.kind()] == [Kind::Request, Kind::Reply]
+            && request.node().is_none_or(|node| self.node() == Some(node));
+        is_its && paths.peek().is_some() && paths.all(is_said)
     }
 }

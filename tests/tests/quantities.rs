@@ -214,6 +214,9 @@ fn an_echo_confirms_what_was_asked_within_a_tolerance() {
     assert_eq!([14, 15, 16].map(|tolerance| infy(asked, said, tolerance)), [false, true, true]);
     assert!(!infy(asked, (0x029C_F000, 0x0003_0D40_0000_1770), 999), "6 A, not 5 A");
     assert!(!infy(asked, asked, 100), "it is no reply");
+    assert!(!infy(said, said, 100), "it is no request");
+    assert!(!infy(asked, (0x029C_F001, 0x0003_0D40_0000_1388), 100), "it is another module");
+    assert!(infy((0x029C_3FF0, asked.1), said, 15), "one of all modules");
     assert!(!infy(asked, (0x1E9C_F000, 0x0003_0D40_0000_1388), 100), "it is an error reply");
     // A switch has no tolerance, and what only reads confirms nothing.
     let (off, on) = (0x0100_0000_0000_0000, 0);
