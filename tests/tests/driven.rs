@@ -285,39 +285,35 @@ const fn no_reports<P: Addressed>(_: u8, _: &Kept<P>) -> Vec<Frame> {
     Vec::new()
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "what is set has few digits")]
-fn infy_tells(request: &Received<infy::Message>, module: &Kept<infy::Message>) -> Answer<infy::Message> {
-    use infy::{Message, ModuleOutput, ModuleStatus, Status0, Status1, Status2};
-    let [voltage_v, current_a] = [VOLTAGE, CURRENT].map(|quantity| delivered(module, quantity) as f32);
-    match request.content() {
-        Message::ReadModuleOutput => Answer::Values(Message::ModuleOutput(ModuleOutput { voltage_v, current_a })),
-        Message::ReadModuleStatus => Answer::Values(Message::ModuleStatus(ModuleStatus {
-            group: 0,
-            temperature_c: 30,
-            status_2: Status2::default(),
-            status_1: shown(module, Status1::DC_OFF, Status1::default()),
-            status_0: shown(module, Status0::default(), Status0::OUTPUT_SHORT_CIRCUIT),
-        })),
-        _ => Answer::Silence,
-    }
+/// How modules of INFY and of GCP answer, whose messages are alike.
+macro_rules! tells {
+    ($tells:ident $protocol:ident) => {
+        #[expect(clippy::cast_possible_truncation, reason = "what is set has few digits")]
+        fn $tells(
+            request: &Received<$protocol::Message>,
+            module: &Kept<$protocol::Message>,
+        ) -> Answer<$protocol::Message> {
+            use $protocol::{Message, ModuleOutput, ModuleStatus, Status0, Status1, Status2};
+            let [voltage_v, current_a] = [VOLTAGE, CURRENT].map(|quantity| delivered(module, quantity) as f32);
+            match request.content() {
+                Message::ReadModuleOutput => {
+                    Answer::Values(Message::ModuleOutput(ModuleOutput { voltage_v, current_a }))
+                }
+                Message::ReadModuleStatus => Answer::Values(Message::ModuleStatus(ModuleStatus {
+                    group: 0,
+                    temperature_c: 30,
+                    status_2: Status2::default(),
+                    status_1: shown(module, Status1::DC_OFF, Status1::default()),
+                    status_0: shown(module, Status0::default(), Status0::OUTPUT_SHORT_CIRCUIT),
+                })),
+                _ => Answer::Silence,
+            }
+        }
+    };
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "what is set has few digits")]
-fn gcp_tells(request: &Received<gcp::Message>, module: &Kept<gcp::Message>) -> Answer<gcp::Message> {
-    use gcp::{Message, ModuleOutput, ModuleStatus, Status0, Status1, Status2};
-    let [voltage_v, current_a] = [VOLTAGE, CURRENT].map(|quantity| delivered(module, quantity) as f32);
-    match request.content() {
-        Message::ReadModuleOutput => Answer::Values(Message::ModuleOutput(ModuleOutput { voltage_v, current_a })),
-        Message::ReadModuleStatus => Answer::Values(Message::ModuleStatus(ModuleStatus {
-            group: 0,
-            temperature_c: 30,
-            status_2: Status2::default(),
-            status_1: shown(module, Status1::DC_OFF, Status1::default()),
-            status_0: shown(module, Status0::default(), Status0::OUTPUT_SHORT_CIRCUIT),
-        })),
-        _ => Answer::Silence,
-    }
-}
+tells!(infy_tells infy);
+tells!(gcp_tells gcp);
 
 #[expect(clippy::cast_possible_truncation, reason = "what is set has few digits")]
 fn mxr_tells(request: &Received<mxr::Message>, module: &Kept<mxr::Message>) -> Answer<mxr::Message> {

@@ -164,7 +164,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
     fn add(&mut self, peers: Peers, part: Part, frame: &Frame, now: u32) -> Outcomes<L> {
         let open = self.taken(|open| open.peers.are(&peers)).map(|open| open.at(now));
         let (open, before) = match open {
-            Some(open) if open.is_last(&part) => {
+            Some(open) if open.repeats(&part) => {
                 let kept = self.keep(Transfer { since: now, ..open });
                 return Outcomes { before: None, own: kept };
             }
@@ -242,7 +242,7 @@ impl<L: Parted> Transfer<L> {
     }
 
     /// Tests whether a part is the last one once more.
-    fn is_last(&self, part: &Part) -> bool {
+    fn repeats(&self, part: &Part) -> bool {
         let is_index = self.buffer.end() == part.index.saturating_add(1) && self.is_open_to(part);
         is_index && self.buffer.get(part.index) == Some(part.data::<L>())
     }

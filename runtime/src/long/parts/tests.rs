@@ -280,20 +280,27 @@ fn frames_that_are_none_of_the_message_change_nothing() {
     assert_eq!(CELLS.filter(Kind::Reply).map(|filter| filter.matches(&one)), Some(true));
 }
 
+/// Lets a type have the layout of [`Cells`].
+macro_rules! like_cells {
+    ($name:ident) => {
+        impl LongLayout for $name {
+            const MESSAGE: &'static str = Cells::MESSAGE;
+            const SHORTEST: usize = Cells::SHORTEST;
+            const LONGEST: usize = Cells::LONGEST;
+            const ELEMENTS: Option<(usize, usize)> = Cells::ELEMENTS;
+            const BYTES: fn(usize) -> usize = Cells::BYTES;
+            const DECODE: fn(&[u8]) -> Self = |data| Self(Cells::DECODE(data));
+            const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
+                |own, payload| Cells::ENCODE(&own.0, payload);
+        }
+    };
+}
+
 /// The same as [`Cells`] in fast packets: the frames count their messages, and the first one begins with the length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Packet(Cells);
 
-impl LongLayout for Packet {
-    const MESSAGE: &'static str = Cells::MESSAGE;
-    const SHORTEST: usize = Cells::SHORTEST;
-    const LONGEST: usize = Cells::LONGEST;
-    const ELEMENTS: Option<(usize, usize)> = Cells::ELEMENTS;
-    const BYTES: fn(usize) -> usize = Cells::BYTES;
-    const DECODE: fn(&[u8]) -> Self = |data| Self(Cells::DECODE(data));
-    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
-        |packet, payload| Cells::ENCODE(&packet.0, payload);
-}
+like_cells!(Packet);
 
 impl Parted for Packet {
     type Protocol = Message;
@@ -375,16 +382,7 @@ fn a_length_that_the_message_never_has_is_told() {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pausing(Cells);
 
-impl LongLayout for Pausing {
-    const MESSAGE: &'static str = Cells::MESSAGE;
-    const SHORTEST: usize = Cells::SHORTEST;
-    const LONGEST: usize = Cells::LONGEST;
-    const ELEMENTS: Option<(usize, usize)> = Cells::ELEMENTS;
-    const BYTES: fn(usize) -> usize = Cells::BYTES;
-    const DECODE: fn(&[u8]) -> Self = |data| Self(Cells::DECODE(data));
-    const ENCODE: fn(&Self, &mut LongPayload<'_>) -> Result<(), Error> =
-        |pausing, payload| Cells::ENCODE(&pausing.0, payload);
-}
+like_cells!(Pausing);
 
 impl Parted for Pausing {
     type Protocol = Message;
