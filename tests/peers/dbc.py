@@ -3,9 +3,9 @@
 Called as `dbc.py CANSPEC FRAMES SPEC...` with the two programs and the specs; `.ci/peers` does that.
 """
 
-import itertools
 import json
 import math
+import os
 import random
 import re
 import struct
@@ -71,10 +71,9 @@ class Protocol:
             if not isinstance(signal["raw"], list):
                 yield name, signal
                 continue
-            names = (name_of(message, frame, f"{name}_{number}") for number in itertools.count()) if message else iter(())
-            # A status word has a signal for each of its bits.
-            is_known = lambda element: any(f"{other}_".startswith(f"{element}_") for other in known)
-            first = next((number for number, element in enumerate(names) if is_known(element)), 1)
+            # The elements count from the lowest number that the DBC has; a status word has a signal for each bit.
+            element = re.compile(re.escape(name_of(message, frame, name) if message else name) + r"_(\d+)(?:_|$)")
+            first = min((int(found[1]) for found in map(element.match, known) if found), default=1)
             for index in range(len(signal["raw"])):
                 yield f"{name}_{first + index}", {key: item if key == "unit" else item[index] for key, item in signal.items()}
 
@@ -101,7 +100,15 @@ def name_of(message, frame, signal):
     """Returns the name that a signal has in the DBC."""
     if not message.is_multiplexed():
         return signal
+    if "." in frame["message"]:
+        return beginning(message, frame) + signal
     return frame["message"] if signal == "value" else f"{frame['message']}_{signal}"
+
+
+def beginning(message, frame):
+    """Returns how the names of a transport's frame begin: the DBC names its kinds, which the first selector tells apart."""
+    kind = next(iter(frame["selectors"].values()))
+    return os.path.commonprefix([signal.name for signal in message.signals if kind in (signal.multiplexer_ids or [])])
 
 
 def parts(message, name, raw):
