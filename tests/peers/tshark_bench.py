@@ -114,7 +114,8 @@ class Dissector:
 def rows_of_plain_lua(bench, dissector, lines, model):
     """Returns the fields that each frame has in plain Lua 5.4."""
     frames = (
-        f"{line['line']} {line['channel']} {line['id']} {29 if len(line['id']) == 8 else 11} {line['data'] or '-'}\n"
+        f"{line['line']} {line['time']} {line['channel']} {line['id']} {29 if len(line['id']) == 8 else 11}"
+        f" {line['data'] or '-'}\n"
         for line in lines
     )
     call = ["lua5.4", os.path.join(PEERS, "tshark_lua54.lua"), dissector.lua, str(model)]

@@ -2,7 +2,8 @@
 --
 --   lua5.4 tshark_lua54.lua DISSECTOR MODEL < FRAMES
 --
--- A frame is a line `NUMBER CHANNEL ID BITS DATA`, with `-` for no data. Its fields are written on a line, `NAME=VALUE` with tabs between.
+-- A frame is a line `NUMBER TIME CHANNEL ID BITS DATA`, with `-` for no data.
+-- Its fields are written on a line, `NAME=VALUE` with tabs between.
 
 local shown, current
 
@@ -76,6 +77,7 @@ local function text(kind, value)
     assert(type(value) == "string")
     return value
   end
+  if kind == "relative_time" then return string.format("%.9f", value:tonumber()) end
   return getmetatable(value) == Word and tostring(value) or string.format("%d", value)
 end
 
@@ -146,6 +148,16 @@ Field = {
   end,
 }
 
+-- Moments, and the time between two, in whole nanoseconds.
+
+local Moment = {}
+Moment.__index = Moment
+
+local function moment(nanoseconds) return setmetatable({ nanoseconds = nanoseconds }, Moment) end
+
+function Moment:tonumber() return self.nanoseconds / 1e9 end
+Moment.__sub = function(later, earlier) return moment(later.nanoseconds - earlier.nanoseconds) end
+
 local model = math.tointeger(arg[2])
 Pref = { enum = function() return model end }
 DissectorTable = { get = function() return { add_for_decode_as = function() end } end }
@@ -159,14 +171,14 @@ end
 dofile(arg[1])
 proto.init()
 for line in io.lines() do
-  local number, channel, id, width, data = line:match("(%d+) (%S+) (%x+) (%d+) (%S+)")
+  local number, time, channel, id, width, data = line:match("(%d+) (%S+) (%S+) (%x+) (%d+) (%S+)")
   shown = {}
   current = {
     ["can.id"] = tonumber(id, 16),
     ["can.flags.xtd"] = width == "29",
     ["can.flags.rtr"] = false,
     ["frame.interface_id"] = channel,
-    ["frame.time_epoch"] = tonumber(number),
+    ["frame.time_epoch"] = moment(math.floor(time * 1e9 + 0.5)),
   }
   local pinfo = { cols = {}, number = math.tointeger(number) }
   proto.dissector(buffer(bytes_of(data)), pinfo, setmetatable({}, Item))
