@@ -40,7 +40,11 @@ impl<'a> Demands<'a> {
     fn inside(&mut self, map: &'a Value) -> Map<String, Value> {
         let mut found = Map::new();
         let keys = map["properties"].as_object().into_iter().flatten();
-        let keys: Map<_, _> = keys.filter_map(|(key, value)| Some((key.clone(), self.of(value)?))).collect();
+        let mut keys: Map<_, _> = keys.filter_map(|(key, value)| Some((key.clone(), self.of(value)?))).collect();
+        for demand in keys.values_mut() {
+            // An editor offers the key already.
+            demand["doNotSuggest"] = json!(true);
+        }
         if !keys.is_empty() {
             found.insert("properties".to_owned(), keys.into());
         }
