@@ -41,6 +41,10 @@ seeds count="10000" first="0" minutes="120":
 mistakes word="":
     cargo run --quiet --release --package canspec-station --example mistakes -- "{{word}}"
 
+# A station and its modules on a Cortex-M4 under QEMU, and their size.
+board:
+    .ci/board
+
 # The comparison with other people's programs.
 peers:
     .ci/peers

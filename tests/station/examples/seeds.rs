@@ -4,11 +4,13 @@
 
 #[path = "../tests/bus/mod.rs"]
 mod bus;
+#[path = "../tests/bus/seeds.rs"]
+mod seeds;
 
 use std::process::ExitCode;
 use std::{env, thread};
 
-use bus::seeds::{Counts, run};
+use seeds::{Counts, run};
 
 #[expect(clippy::print_stdout, reason = "people read what happened")]
 fn main() -> ExitCode {

@@ -1,14 +1,16 @@
 //! A station on buses whose modules fail, over hundreds of seeds.
 
 mod bus;
+#[path = "bus/seeds.rs"]
+mod seeds;
 
 use bus::fleets::{infies, maxwells};
-use bus::seeds::{CYCLE, run};
 use bus::{Bus, Charger, RISE_MA};
 use canspec_protocols::{infy, mxr};
 use canspec_runtime::sim::{Faults, Random};
 use canspec_runtime::{Addressed, Quantities, Quantity, Received, Severity};
 use canspec_station::{Refused, State};
+use seeds::{CYCLE, run};
 
 /// The voltage in mV, and the current in mA.
 const FULL: (i32, i32) = (500_000, 10_000);

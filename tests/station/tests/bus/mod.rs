@@ -2,8 +2,11 @@
 #![allow(dead_code, reason = "tests and the example use different parts")]
 
 pub mod fleets;
-pub mod seeds;
 
+extern crate alloc;
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use core::time::Duration;
 
 use canspec_runtime::client::Pace;

@@ -18,7 +18,7 @@ use canspec_runtime::sim::{Event, Faults, Random, Tally};
 use canspec_runtime::{Addressed, Quantities, Quantity, Request};
 use canspec_station::State;
 
-use super::{Bus, RISE_MA, pace};
+use crate::bus::{Bus, RISE_MA, pace};
 
 /// The voltage in mV, and the current in mA.
 const OUTPUT: (i32, i32) = (500_000, 2 * RISE_MA);
@@ -315,10 +315,10 @@ struct Asked {
 pub fn run(seed: u64, end: u32) -> Result<Counts, String> {
     let (random, counts) = (Random::new(!seed), Counts::default());
     if seed.is_multiple_of(2) {
-        let (bus, nodes) = (super::fleets::infies(seed), [0, 1, 2, 3, 4, 5, 6, 7]);
+        let (bus, nodes) = (crate::bus::fleets::infies(seed), [0, 1, 2, 3, 4, 5, 6, 7]);
         Run { bus, groups: [1, 2], nodes, code: 4, random, counts }.until(end)
     } else {
-        let (bus, nodes) = (super::fleets::maxwells(seed), [3, 4, 5, 6]);
+        let (bus, nodes) = (crate::bus::fleets::maxwells(seed), [3, 4, 5, 6]);
         Run { bus, groups: [5], nodes, code: 0xF2, random, counts }.until(end)
     }
 }
