@@ -5,7 +5,7 @@ mod specs;
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -107,7 +107,7 @@ fn of_lines(folder: &Path) -> io::Result<()> {
     );
     let spec = write(folder, "synthetic.yaml", &specs::messages(100))?;
     for count in LENGTHS {
-        let log = write(folder, "long.log", &log(100, count))?;
+        let log = log(folder, "long.log", 100, count)?;
         let [table, json] = ["text", "jsonl"].map(|format| cost(&decode_as(format, &spec, &log)));
         let row =
             |cost: Cost| format!("{} | {:.1} million", cost.cells(), f64::from(count) / cost.wait.as_secs_f64() / 1e6);
@@ -120,7 +120,7 @@ fn of_lines(folder: &Path) -> io::Result<()> {
 fn of_axis(folder: &Path, axis: &Axis) -> io::Result<()> {
     for count in axis.sizes {
         let spec = &write(folder, "growing.yaml", &(axis.spec)(count))?;
-        let log = &write(folder, "growing.log", &log(count.min(1 << 16), LOGGED))?;
+        let log = &log(folder, "growing.log", count.min(1 << 16), LOGGED)?;
         let [out, dbc, jsonl] = &["growing", "growing.dbc", "growing.jsonl"].map(|name| folder.join(name));
         let mut times = vec![run(&["check".as_ref(), spec], None)?];
         if times[0].1 {
@@ -181,15 +181,19 @@ fn print_row(what: &str, count: u32, times: impl Iterator<Item = Option<Duration
     println!("| {what} | {count} | {} |", times.join(" | "));
 }
 
-/// Returns a log of replies that go through all messages.
-fn log(messages: u32, lines: u32) -> String {
-    (0..lines).fold(String::new(), |mut log, line| {
+/// Writes a log of replies that go through all messages, line by line: a command inherits the memory that this program
+/// has when it is called, in what the system counts.
+fn log(folder: &Path, name: &str, messages: u32, lines: u32) -> io::Result<PathBuf> {
+    let path = folder.join(name);
+    let mut log = BufWriter::new(File::create(&path)?);
+    for line in 0..lines {
         // A step without a common divisor goes through all messages in no order that a cache likes.
         let (command, node, mixed) = (line.wrapping_mul(7_919) % messages, line % 64, line.wrapping_mul(2_654_435_761));
         let (seconds, id) = (line / 1_000, command << 10 | node << 3);
-        let _ = writeln!(log, "({seconds}.{:06}) can0 {id:08X}#{mixed:08X}{line:06X}00", line % 1_000 * 1_000);
-        log
-    })
+        writeln!(log, "({seconds}.{:06}) can0 {id:08X}#{mixed:08X}{line:06X}00", line % 1_000 * 1_000)?;
+    }
+    log.flush()?;
+    Ok(path)
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> io::Result<PathBuf> {
@@ -234,7 +238,7 @@ fn run(arguments: &[&Path], out: Option<&Path>) -> io::Result<(Cost, bool)> {
 fn time_a_line(folder: &Path, spec: &Path, messages: u32) -> io::Result<Duration> {
     let [few, many] = TIMED;
     let [least, most] = TIMED.map(|lines| {
-        let log = write(folder, "timed.log", &log(messages, lines))?;
+        let log = log(folder, "timed.log", messages, lines)?;
         time(&decode(spec, &log))
     });
     Ok(most?.saturating_sub(least?) / (many - few))
@@ -245,7 +249,7 @@ fn instructions_a_line(folder: &Path, spec: &Path, messages: u32) -> io::Result<
     let [few, many] = LINES;
     let mut counts = Vec::new();
     for lines in [few, many] {
-        let log = write(folder, "counted.log", &log(messages, lines))?;
+        let log = log(folder, "counted.log", messages, lines)?;
         counts.extend(instructions(&decode(spec, &log)));
     }
     let [least, most] = counts.as_slice() else { return Ok(None) };
