@@ -179,7 +179,7 @@ impl Known {
     }
 }
 
-/// Polls two batteries, one of which restarts, until each is known.
+/// Polls two batteries that restart, until each is known.
 fn poll(seed: u64) {
     let mut random = Random::new(seed);
     let batteries = [1, 0x1F].map(|node| (node, Battery::random(&mut random)));

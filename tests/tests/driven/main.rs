@@ -48,7 +48,7 @@ struct Facts<P: Addressed> {
     starting_up: Option<u64>,
     /// How bad a defect is at least, if a module can say it.
     severity: Option<Severity>,
-    /// What a module says, and what it reports in turn, every so many milliseconds.
+    /// What a module says, what it reports in turn, and the milliseconds from one report to the next.
     tell: Tell<P, 4>,
     reports: fn(u8, &Kept<P>) -> Vec<Frame>,
     interval: u32,
