@@ -56,6 +56,7 @@ mod report;
 mod request;
 mod route;
 mod scale;
+pub mod schedule;
 mod set;
 mod signal;
 pub mod sim;

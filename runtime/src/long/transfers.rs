@@ -3,7 +3,7 @@
 //! An [`Assembler`] puts them together, for many nodes at a time and without allocation. It is given
 //! every frame of the bus. A message that one frame has room for is whole with that frame. So a
 //! program sees each message as the same struct, whichever way it came. A [`Sender`] makes the
-//! frames of a message.
+//! frames of a message. [`Outgoing`] is one with its own memory, which keeps the times of J1939.
 //!
 //! The modules [`tp`](crate::tp) and [`isotp`](crate::isotp) do the same with bytes alone.
 
@@ -11,6 +11,7 @@ mod assembler;
 mod group;
 pub mod isotp;
 mod j1939;
+mod outgoing;
 mod sender;
 mod standard;
 
@@ -26,6 +27,7 @@ pub use crate::tp::{Answer, Broken, Cause, Reason, memory};
 pub use assembler::{Assembler, Event, Whole};
 pub use isotp::{Filled, Isotp};
 pub use j1939::{Grouped, J1939};
+pub use outgoing::{Next, Outgoing};
 pub use sender::Sender;
 
 /// A transport of a protocol. Generated code implements it, and an [`Assembler`] needs it.

@@ -40,6 +40,17 @@ impl<'a> Sender<'a> {
         Some(Self { data, group, packets: packets(data.len())?, limit: limit.max(1), next: 1, allowed: 0 })
     }
 
+    /// Returns what goes on with the same message, whose data lie elsewhere.
+    pub(crate) fn over<'b>(&self, data: &'b [u8]) -> Sender<'b> {
+        let Self { group, packets, limit, next, allowed, .. } = *self;
+        Sender { data, group, packets, limit, next, allowed }
+    }
+
+    /// Returns the data.
+    pub(crate) const fn data(&self) -> &'a [u8] {
+        self.data
+    }
+
     /// Returns the control frame that begins a message to one receiver.
     pub fn rts(&self) -> Data {
         Control::Rts { size: self.size(), packets: self.packets, limit: self.limit }.encode(self.group)
