@@ -37,6 +37,11 @@ struct Errors;
 #[doc = include_str!("../../docs/how-to/controllers.md")]
 struct Controllers;
 
+/// The Rust of the page on two equal peers compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/peers.md")]
+struct Peers;
+
 /// The Rust of the page on messages in parts compiles and runs.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/how-to/parts.md")]
