@@ -220,7 +220,7 @@ fn poll(seed: u64) {
         assert_eq!(known.battery().as_ref(), Some(&battery), "seed {seed}: battery {node}");
         let cells = known.cells.expect("it was asked");
         let highest = battery.cells_v.iter().copied().fold(f64::MIN, f64::max);
-        let at = battery.cells_v.iter().position(|cell| *cell == highest).expect("it is one of them");
+        let at = battery.cells_v.iter().position(|cell| *cell >= highest).expect("it is one of them");
         assert_eq!((cells.maximum_voltage_v, usize::from(cells.maximum_cell)), (highest, at + 1), "seed {seed}");
         let lowest = battery.temperatures_c.iter().copied().fold(f64::MAX, f64::min);
         assert_eq!(known.temperatures.map(|known| known.minimum_temperature_c), Some(lowest), "seed {seed}");

@@ -317,9 +317,9 @@ fn megmeet_modules_are_driven() {
 #[test]
 fn huawei_modules_are_driven() {
     // Section 7.2: status 2 is a parameter error. Section 9.1: about 377 ms. Section 4.3 names no alarm.
-    let (code, severity, interval, reports) = (Some(2), None, 377, modules::huawei_reports);
+    let (code, severity, reports, interval) = (Some(2), None, modules::huawei_reports, 377);
     let on = &[(VOLTAGE, 53_500), (DELIVERING, 1)];
-    drive_all(&Facts { on, code, severity, interval, reports, ..silent([1, 2, 3], [4, 0x7F], modules::huawei_tells) });
+    drive_all(&Facts { on, code, severity, reports, interval, ..silent([1, 2, 3], [4, 0x7F], modules::huawei_tells) });
 }
 
 #[test]

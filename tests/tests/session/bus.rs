@@ -56,5 +56,5 @@ pub fn message_of(frame: &Frame) -> u32 {
 }
 
 pub fn hex(data: &[u8]) -> String {
-    data.iter().map(|byte| format!("{byte:02X}")).collect()
+    data.iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().concat()
 }

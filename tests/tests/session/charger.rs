@@ -18,7 +18,7 @@ pub struct Charger {
     is_ready: bool,
     is_stopped_by_vehicle: bool,
     demand: Option<Bcl>,
-    has_state: bool,
+    state: Option<Bcs>,
 }
 
 impl Charger {
@@ -31,7 +31,7 @@ impl Charger {
             is_ready: false,
             is_stopped_by_vehicle: false,
             demand: None,
-            has_state: false,
+            state: None,
         };
         charger.begin(0);
         charger
@@ -39,7 +39,7 @@ impl Charger {
 
     fn begin(&mut self, now: u32) {
         (self.is_recognised, self.is_ready, self.is_stopped_by_vehicle) = (false, false, false);
-        (self.demand, self.has_state) = (None, false);
+        (self.demand, self.state) = (None, None);
         self.side.rest();
         self.side.go(Phase::Handshake);
         self.side.repeat(&["chm"], now);
@@ -48,7 +48,7 @@ impl Charger {
 
     /// Begins to charge as soon as a demand and a state have come.
     fn charge(&mut self, now: u32) {
-        if self.demand.is_none() || !self.has_state {
+        if self.demand.is_none() || self.state.is_none() {
             return;
         }
         self.side.rest();
@@ -169,7 +169,7 @@ impl Station for Charger {
             self.side.wait("bro", GENERAL, now);
             self.side.wait("bro_ready", READY, now);
         } else if whole.values::<Bcs>().is_some() && self.is_ready_to_charge() {
-            self.has_state = true;
+            self.state = whole.values();
             self.charge(now);
         } else if whole.values::<Bcs>().is_some() && self.side.phase == Phase::Charging {
             self.side.wait("bcs", GENERAL, now);

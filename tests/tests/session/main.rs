@@ -68,7 +68,9 @@ fn a_session_goes_through_each_phase_with_the_data_of_the_document() {
     ];
     let came = first(&session);
     let mut sorted = [came.clone(), expected.map(|(name, data)| (name, data.to_owned())).into()];
-    sorted.iter_mut().for_each(|list| list.sort());
+    for list in &mut sorted {
+        list.sort();
+    }
     assert_eq!(sorted[0], sorted[1]);
     // Long messages of one cycle follow each other, and charging begins between them.
     let is_led = |name: &&str| !["bcs", "ccs", "bmv", "bmt", "bsp"].contains(name);
@@ -220,7 +222,7 @@ fn notices(loss: &Loss, session: &Session) {
     assert_eq!((error.name, error.data.as_str()), loss.error, "after {} ms", error.at);
     let is_since = |came: &&Came| came.name == loss.since.0 && came.data.starts_with(loss.since.1);
     let mut begins = before.iter().filter(is_since);
-    let begin = if loss.from == 0 { begins.next() } else { begins.last() };
+    let begin = if loss.from == 0 { begins.next() } else { begins.next_back() };
     assert_eq!(
         begin.map(|begin| error.at - 1 - begin.at),
         Some(loss.wait),
@@ -240,8 +242,12 @@ fn run_with(loss: &Loss, charger: Charger) -> Session {
 
 #[test]
 fn a_message_that_never_comes_leads_to_the_error_message_of_the_document() {
-    LOSSES.iter().for_each(|loss| notices(loss, &run_with(loss, Charger::new(None))));
-    STOPS.iter().for_each(|(enough, loss)| notices(loss, &run_with(loss, Charger::new(*enough))));
+    for loss in &LOSSES {
+        notices(loss, &run_with(loss, Charger::new(None)));
+    }
+    for (enough, loss) in &STOPS {
+        notices(loss, &run_with(loss, Charger::new(*enough)));
+    }
 }
 
 #[test]

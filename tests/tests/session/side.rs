@@ -106,7 +106,9 @@ impl Side {
 
     /// Sends messages no more.
     pub fn stop(&mut self, names: &[&'static str]) {
-        names.iter().for_each(|name| self.cycles.cancel(name));
+        for name in names {
+            self.cycles.cancel(name);
+        }
     }
 
     /// Waits for something from now on.
@@ -123,7 +125,9 @@ impl Side {
 
     /// Waits no more for some of it.
     pub fn has(&mut self, names: &[&'static str]) {
-        names.iter().for_each(|name| self.waits.cancel(name));
+        for name in names {
+            self.waits.cancel(name);
+        }
     }
 
     /// Neither sends nor waits.
