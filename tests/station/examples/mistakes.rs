@@ -113,7 +113,14 @@ const MISTAKES: &[Mistake] = &[
 fn main() -> ExitCode {
     let word = env::args().nth(1).unwrap_or_default();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let wanted = MISTAKES.iter().filter(|mistake| mistake.name.contains(&word));
+    let wanted: Vec<_> = MISTAKES.iter().filter(|mistake| mistake.name.contains(&word)).collect();
+    if wanted.is_empty() {
+        println!("no name of a mistake has `{word}` in it; the names are:");
+        for mistake in MISTAKES {
+            println!("  {}", mistake.name);
+        }
+        return ExitCode::from(2);
+    }
     let mut are_found = true;
     for mistake in wanted {
         match verdict(mistake, &root, &root.join("target/mistakes")) {

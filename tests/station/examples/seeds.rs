@@ -12,12 +12,28 @@ use std::{env, thread};
 
 use seeds::{Counts, run};
 
+/// Returns the numbers of a call: how many seeds, the first one, and the minutes of each. What is left out is as usual.
+fn numbers(words: &[String]) -> Result<[u64; 3], String> {
+    let mut numbers = [200, 0, 120];
+    if words.len() > numbers.len() {
+        return Err(format!("there are {} numbers: call it as `seeds COUNT [FIRST] [MINUTES]`", words.len()));
+    }
+    for (number, word) in numbers.iter_mut().zip(words) {
+        *number = word.parse().map_err(|_| format!("`{word}` is no whole number from 0 on"))?;
+    }
+    Ok(numbers)
+}
+
 #[expect(clippy::print_stdout, reason = "people read what happened")]
 fn main() -> ExitCode {
-    let numbers: Option<Vec<u64>> = env::args().skip(1).map(|text| text.parse().ok()).collect();
-    let numbers = numbers.unwrap_or_default();
-    let [count, first, minutes] =
-        [(0, 200), (1, 0), (2, 120)].map(|(place, usual)| *numbers.get(place).unwrap_or(&usual));
+    let words: Vec<_> = env::args().skip(1).collect();
+    let [count, first, minutes] = match numbers(&words) {
+        Ok(numbers) => numbers,
+        Err(wrong) => {
+            eprintln!("seeds: {wrong}");
+            return ExitCode::from(2);
+        }
+    };
     let end = u32::try_from(minutes * 60_000).unwrap_or(u32::MAX / 2);
     let cores = thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
     let runs = thread::scope(|scope| {
