@@ -10,8 +10,8 @@ use super::Map;
 #[serde(deny_unknown_fields)]
 pub struct Quantity {
     /// Message and signal of a reply or a report that has the value: `output.voltage`. A status bit stands behind its
-    /// word: `status.alarms.off`. A switch also has its states: `{signal: status.alarms.off, active: 0, inactive: 1}`. If absent,
-    /// nobody reads it.
+    /// word: `status.alarms.off`. A switch also has its states: `{signal: status.alarms.off, active: 0, inactive: 1}`. If
+    /// absent, nobody reads it.
     pub read: Option<SignalPath>,
     /// Message and signal of a request that sets the value: `set_output.voltage`. A switch also has its states:
     /// `{signal: switch.power, active: "on", inactive: "off"}`. If absent, nobody sets it.

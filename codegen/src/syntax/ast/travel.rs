@@ -58,8 +58,8 @@ pub struct Access {
     #[serde(rename = "in", default)]
     pub kinds: Vec<String>,
     /// The addressing modes that may be used, and who answers in each: `one`, `each`, `coordinator`
-    /// or `nobody`. For a report it is who sends it, or who gets it from the controller. An example is `{single: one, broadcast: nobody}`. If absent, no mode may be
-    /// used.
+    /// or `nobody`. For a report it is who sends it, or who gets it from the controller. An example is
+    /// `{single: one, broadcast: nobody}`. If absent, no mode may be used.
     #[serde(default)]
     pub answers: Map<String>,
     /// Entry of `timing` that says how often a report comes: `cycle`; not stated if absent.
