@@ -81,6 +81,8 @@ struct Tables {
     header: Vec<SelectorId>,
     enumerations: Table<EnumerationId, model::Enumeration>,
     status_words: Table<StatusWordId, model::StatusWord>,
+    /// Where the spec says how wide the widest place of each status word is.
+    widest_words: Table<StatusWordId, At>,
     /// Remarks of words. Words are no signals themselves.
     words: Vec<model::Doc>,
     /// Fields that were given up because of an error, by message. What examples say about them is
@@ -122,6 +124,7 @@ impl Resolver<'_> {
         let directions = direction::directions(&identifier, &address_types, &modes);
         let accesses = self.accesses(&modes, &timing);
         let (messages, frames) = self.messages(&identifier, &modes, &accesses, &timing);
+        self.check_width_of_words();
         let foreign = self.foreign(&identifier);
         let quantities = self.quantities(&messages);
         let examples = self.examples(&identifier, &messages);

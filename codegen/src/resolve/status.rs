@@ -1,11 +1,12 @@
 //! Makes status words: which bit has which name.
 
 use canspec_runtime::Place;
+use indexmap::IndexMap;
 
 use super::Resolver;
 use super::texts::{remarks, text};
 use super::types::Merged;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{At, Diagnostic};
 use crate::misplaced::{Claim, misplaced};
 use crate::model::{Doc, StatusBit, StatusWord, StatusWordId};
 use crate::resolve::rules;
@@ -17,31 +18,80 @@ use crate::words::SEVERITIES;
 /// Bits of the widest word.
 const WIDEST: u8 = 64;
 
-/// A word, for the numbers of its bits.
-#[derive(Clone, Copy)]
-struct Word {
-    place: Place,
-    /// How many bits it may have at most.
-    width: u8,
+/// What names a bit, or several in a row.
+struct Entry {
+    path: Path,
+    first: u8,
+    count: usize,
 }
 
 impl Resolver<'_> {
-    /// Finds or makes the status word of a field.
+    /// Finds or makes the status word of a field. Its bits may lie anywhere, until the widest place of the word is known.
     pub fn status_word(&mut self, merged: &Merged, otherwise: &str, place: Place, doc: &Doc) -> StatusWordId {
         let (name, source) = self.type_name(merged, Key::Status, otherwise);
         let made = |known: &StatusWord| known.name == name && known.doc.path == source;
         if let Some(index) = self.tables.status_words.position(made) {
-            let known = &mut self.tables.status_words[index];
-            known.width = known.width.max(place.width());
+            if place.width() > self.tables.status_words[index].width {
+                self.tables.status_words[index].width = place.width();
+                self.tables.widest_words[index] = self.place_of_word(merged);
+            }
             self.check_same_bytes(merged, place, index);
             return index;
         }
         let doc = self.type_doc(&name, &source, doc);
-        let width = if self.holds_bits(merged, place.width()) { place.width() } else { WIDEST };
-        let mut bits = self.status_bits(merged, Word { place, width }, &doc);
+        let mut bits = self.status_bits(merged, place, &doc);
         self.check_status_bits(&bits);
         bits.sort_by_key(|bit| bit.bit);
+        let at = self.place_of_word(merged);
+        self.tables.widest_words.push(at);
         self.tables.status_words.push(StatusWord { name, doc, width: place.width(), bits })
+    }
+
+    /// Returns where the spec says how wide a word is.
+    fn place_of_word(&mut self, merged: &Merged) -> At {
+        let key = if merged.field.bytes.is_some() { Key::Bytes } else { Key::Bits };
+        merged.path(self.diagnostics, key).at_value()
+    }
+
+    /// Tests that the bits of each status word lie in its widest place, and takes out the others.
+    pub fn check_width_of_words(&mut self) {
+        for id in self.tables.status_words.ids() {
+            let StatusWord { width, bits, .. } = &self.tables.status_words[id];
+            let (width, entries) = (*width, entries(bits));
+            let beyond = |width: u8| entries.iter().filter(move |entry| (width..WIDEST).contains(&entry.first));
+            let is_place_wrong = beyond(width).count() > 1;
+            if is_place_wrong {
+                self.refuse_place(width, &beyond(width).collect::<Vec<_>>(), id);
+            }
+            let width = if is_place_wrong { WIDEST } else { width };
+            entries.iter().for_each(|entry| self.check_entry(entry, width));
+            self.tables.status_words[id].bits.retain(|bit| bit.bit < width);
+        }
+    }
+
+    /// Refuses the place of a word. If several of its bits lie beyond the end, the place is probably wrong.
+    fn refuse_place(&mut self, width: u8, beyond: &[&Entry], id: StatusWordId) {
+        let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
+        let help = "correct the place of the word, or the numbers of the bits";
+        let diagnostic = Diagnostic::error(&rules::NUMBER, self.tables.widest_words[id].clone(), text).help(help);
+        let first = beyond.iter().map(|entry| entry.path.key("bit").at_value()).next();
+        self.diagnostics.push(match first {
+            Some(first) => diagnostic.other(first, "the first of them"),
+            None => diagnostic,
+        });
+    }
+
+    /// Tests that a bit, or a row of bits, lies in a word.
+    fn check_entry(&mut self, Entry { path, first, count }: &Entry, width: u8) {
+        if *first >= width {
+            let help = format!("its bits are 0 to {}; correct the bit, or the place of the word", width - 1);
+            let text = format!("there is no bit {first} in this word of {width} bits");
+            self.error_with_help(&rules::NUMBER, path.key("bit").at_value(), text, help);
+        } else if *count > usize::from(width - first) {
+            let text = format!("{count} bits from bit {first} on are more than this word of {width} has");
+            let help = format!("at most {} bits are left; correct the count, or the place", width - first);
+            self.error_with_help(&rules::NUMBER, path.key("repeat").at_value(), text, help);
+        }
     }
 
     /// Tests that bits named by their byte have the same numbers as where the type stands first.
@@ -60,26 +110,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Tests that at most one bit lies beyond the end of the word. If several do, the place of the
-    /// word is probably wrong.
-    fn holds_bits(&mut self, merged: &Merged, width: u8) -> bool {
-        let is_beyond = |bit: &ast::StatusBit| {
-            bit.byte.is_none() && bit.bit.parse::<u8>().is_ok_and(|bit| (width..WIDEST).contains(&bit))
-        };
-        let path = merged.path(self.diagnostics, Key::Status);
-        let beyond = merged.field.status.iter().flatten().filter(|(_, bit)| is_beyond(bit));
-        let beyond: Vec<_> = beyond.map(|(name, _)| path.key(name).key("bit").at_value()).collect();
-        let [first, _, ..] = beyond.as_slice() else { return true };
-        let key = if merged.field.bytes.is_some() { Key::Bytes } else { Key::Bits };
-        let at = merged.path(self.diagnostics, key);
-        let text = format!("this word has {width} bits, and {} of its status bits lie beyond", beyond.len());
-        let help = "correct the place of the word, or the numbers of the bits";
-        let diagnostic = Diagnostic::error(&rules::NUMBER, at.at_value(), text).help(help);
-        self.diagnostics.push(diagnostic.other(first.clone(), "the first of them"));
-        false
-    }
-
-    fn status_bits(&mut self, merged: &Merged, word: Word, outer: &Doc) -> Vec<StatusBit> {
+    fn status_bits(&mut self, merged: &Merged, word: Place, outer: &Doc) -> Vec<StatusBit> {
         let path = merged.path(self.diagnostics, Key::Status);
         let entries = merged.field.status.iter().flatten();
         entries.flat_map(|(name, bit)| self.status_entry(&path.key(name), name, bit, word, outer)).collect()
@@ -91,7 +122,7 @@ impl Resolver<'_> {
         path: &Path,
         name: &str,
         entry: &ast::StatusBit,
-        word: Word,
+        word: Place,
         outer: &Doc,
     ) -> Vec<StatusBit> {
         let Some(first) = self.status_bit(path, name, entry, word, outer) else { return Vec::new() };
@@ -103,15 +134,10 @@ impl Resolver<'_> {
             return vec![first];
         };
         let Some(count) = self.integer(&path.key("repeat"), text, 2, WIDEST) else { return Vec::new() };
-        if count > word.width - first.bit {
-            let text = format!("{count} bits from bit {} on are more than this word of {} has", first.bit, word.width);
-            let help = format!("at most {} bits are left; correct the count, or the place", word.width - first.bit);
-            self.error_with_help(&rules::NUMBER, path.key("repeat").at_value(), text, help);
-            return Vec::new();
-        }
         let start = entry.first.as_ref().map_or(Some(1), |text| self.integer(&path.key("first"), text, 0, u16::MAX));
         let Some(start) = start else { return Vec::new() };
-        (0..count).map(|index| numbered(&first, index, start + u16::from(index))).collect()
+        let bits = (0..count).filter_map(|index| numbered(&first, index, start + u16::from(index)));
+        bits.collect()
     }
 
     fn status_bit(
@@ -119,7 +145,7 @@ impl Resolver<'_> {
         path: &Path,
         name: &str,
         bit: &ast::StatusBit,
-        word: Word,
+        word: Place,
         outer: &Doc,
     ) -> Option<StatusBit> {
         self.check_name(path, name);
@@ -141,29 +167,18 @@ impl Resolver<'_> {
     }
 
     /// Reads the number of a bit in its word. With a `byte` it is written as the number in that byte.
-    fn number_of_bit(&mut self, path: &Path, bit: &ast::StatusBit, word: Word) -> Option<u8> {
-        let Some(byte) = &bit.byte else { return self.bit(&path.key("bit"), &bit.bit, word.width) };
+    fn number_of_bit(&mut self, path: &Path, bit: &ast::StatusBit, word: Place) -> Option<u8> {
+        let at = path.key("bit");
+        let Some(byte) = &bit.byte else { return self.integer(&at, &bit.bit, 0, u8::MAX) };
         let byte = self.integer(&path.key("byte"), byte, 0, 7)?;
-        self.integer(&path.key("bit"), &bit.bit, 0, 7)?;
-        let number = in_byte(bit, word.place);
+        self.integer(&at, &bit.bit, 0, 7)?;
+        let number = in_byte(bit, word);
         if number.is_none() {
             let text = format!("byte {byte} is not in this word");
             let help = "a `byte` counts in the frame, from 0; correct it, or the place of the word";
             self.error_with_help(&rules::NUMBER, path.key("byte").at_value(), text, help);
         }
         number
-    }
-
-    /// Reads the number of a bit of a word.
-    fn bit(&mut self, path: &Path, text: &str, width: u8) -> Option<u8> {
-        let number = self.integer(path, text, 0, u8::MAX)?;
-        if number >= width {
-            let help = format!("its bits are 0 to {}; correct the bit, or the place of the word", width - 1);
-            let message = format!("there is no bit {number} in this word of {width} bits");
-            self.error_with_help(&rules::NUMBER, path.at_value(), message, help);
-            return None;
-        }
-        Some(number)
     }
 
     fn check_status_bits(&mut self, bits: &[StatusBit]) {
@@ -195,13 +210,25 @@ fn in_byte(bit: &ast::StatusBit, place: Place) -> Option<u8> {
     u8::try_from(place.get(&data).trailing_zeros()).ok().filter(|number| *number < WIDEST)
 }
 
-/// Returns the bit of a row that comes `index` bits after the first, with its number in name and title.
-fn numbered(first: &StatusBit, index: u8, number: u16) -> StatusBit {
+/// Returns the bit of a row that comes `index` bits after the first, with its number in name and title. There are no
+/// more than 256.
+fn numbered(first: &StatusBit, index: u8, number: u16) -> Option<StatusBit> {
     let title = first.doc.title.as_ref().map(|title| Text::new(&format!("{} {number}", title.for_people())));
-    StatusBit {
+    Some(StatusBit {
         name: format!("{}_{number}", first.name),
         doc: Doc { title, ..first.doc.clone() },
-        bit: first.bit + index,
+        bit: first.bit.checked_add(index)?,
         ..first.clone()
+    })
+}
+
+/// Returns the entries that name bits, in the order of the spec.
+fn entries(bits: &[StatusBit]) -> Vec<Entry> {
+    let mut entries: IndexMap<&Path, Entry> = IndexMap::new();
+    for bit in bits {
+        let path = &bit.doc.path;
+        let entry = entries.entry(path).or_insert_with(|| Entry { path: path.clone(), first: bit.bit, count: 0 });
+        entry.count += 1;
     }
+    entries.into_values().collect()
 }
