@@ -264,3 +264,48 @@ fn silence_by_the_stamps_of_a_log_ends_messages_the_oldest_first() {
     assert_eq!(said, lines.each_ref().map(|lines| (lines, &Value::Null)));
     assert_eq!(wholes[4]["signals"]["trip"]["value"], json!([5, 10, 15, 20, 25, 30]));
 }
+
+#[test]
+fn fast_packets_are_not_joined_beyond_their_silence() {
+    // 3000 is 0x0BB8, so this is what an engine prints in the feature. The silence is 750 ms.
+    let log = |pause: &str| {
+        format!(
+            "(1.000) can0 19F20123#A00E00B80BE78B8C\n\
+             (1.010) can0 19F20123#A10580EE3600FF2D\n\
+             ({pause}) can0 19F20123#A27FFFFFFFFFFFFF\n"
+        )
+    };
+    let wholes = |pause| {
+        let call = ["decode", "--assemble", "--format", "jsonl", "-"];
+        let (out, _) = canspec_with("fast_packets.yaml", &call, &log(pause));
+        let objects = out.lines().map(|line| serde_json::from_str(line).expect("a line is an object"));
+        let wholes = objects.filter(|line: &Value| line.get("lines").is_some());
+        wholes.map(|whole| (whole["lines"].clone(), whole["incomplete"].clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(wholes("1.759"), [(json!([1, 2, 3]), Value::Null)]);
+    let late = [(json!([1, 2]), json!("part 2 is missing")), (json!([3]), json!("the parts 0, 1 are missing"))];
+    assert_eq!(wholes("1.760"), late);
+    assert_eq!(wholes("3601.010"), late);
+}
+
+#[test]
+fn fields_that_are_called_like_those_of_a_part_are_given_by_name() {
+    let call = ["encode", "label", "part=1", "data=22 °C", "text=Oven ready", "counter=2"];
+    let (out, _) = canspec_with("parts_of_controller.yaml", &call, "");
+    assert_eq!(out, "0EF#400D0100DC4F7665\n0EF#416E207265616479\n");
+}
+
+#[test]
+fn limits_of_fields_hold_before_the_first_part_is_printed() {
+    let call = |values: &[&str]| {
+        let call = [&["encode", "set", "program", "--to", "oven:3", "hold=10"], values].concat();
+        canspec_with("parts_to_modules.yaml", &call, "")
+    };
+    assert_eq!(call(&["temperature=180,200,210"]).0, "0A3#010A070807D00800\n0A3#0234000000000000\n");
+    let (out, refused) = call(&["temperature=180,200,301"]);
+    assert!(out.is_empty() && refused.contains("temperature_3: 301 °C is outside 20..300 °C"), "{refused}");
+    let (out, refused) = call(&["temperature=180,200,251", "--model", "OV1"]);
+    assert!(out.is_empty() && refused.contains("251 °C is outside 30..250 °C"), "{refused}");
+    let (out, refused) = call(&["part=1", "data=0A070807D008"]);
+    assert!(out.is_empty() && refused.contains("there is no signal"), "{refused}");
+}

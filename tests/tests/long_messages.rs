@@ -8,6 +8,8 @@ use canspec_runtime::parts::{Assembler, Outcome, Parted as _};
 use canspec_runtime::{Elements, Frame, Kind, LongLayout, Text};
 use canspec_tests::features_long_fields::Pack;
 use canspec_tests::features_parts_by_model::{self as by_model, Model};
+use canspec_tests::features_parts_of_controller::{self as labels, Label};
+use canspec_tests::features_parts_to_modules::{self as ovens, Program, ProgramPart, Target};
 use canspec_tests::features_parts_until_marker::{self as until_marker, LabelPart};
 use canspec_tests::long::{is_same, long, member};
 use canspec_tests::{LongVisitor, Optional, protocol, visit_long};
@@ -179,4 +181,61 @@ fn each_model_numbers_the_parts_in_its_own_way() {
     assert_eq!(frames(Model::A).collect::<Vec<_>>(), of_a);
     assert_eq!(frames(Model::B).collect::<Vec<_>>(), of_b);
     assert!(label.frames(&blank).is_err() && label.parts().is_err(), "the first number is not known");
+}
+
+/// Returns a program of three temperatures, the last one of some value.
+fn program(last: f64) -> Program {
+    Program { hold_min: 10, temperature_c: Elements::from_slice(&[180.0, 200.0, last]).expect("three of six") }
+}
+
+#[test]
+fn a_controller_sends_a_module_the_frames_that_the_document_prints() {
+    let frames = program(210.0).set(Target::Oven(3)).expect("it fits").map(|frame| frame.to_string());
+    assert_eq!(frames.collect::<Vec<_>>(), ["0A3#010A070807D00800", "0A3#0234000000000000"]);
+    let label = Label { part: 1, data_c: 22.0, text: Text::new("Oven ready").expect("ten letters") };
+    let frames = label.tell(labels::Target::All).expect("it fits").with_counter(2).map(|frame| frame.to_string());
+    assert_eq!(frames.collect::<Vec<_>>(), ["0EF#400D0100DC4F7665", "0EF#416E207265616479"]);
+}
+
+#[test]
+fn no_part_of_values_outside_their_limits_is_built_for_a_module() {
+    let blank = ProgramPart::SET.blank_request(Target::Oven(3)).expect("a documented address");
+    assert_eq!(blank.to_string(), "0A3#0000000000000000");
+    for (last, is_within, is_of_ov1) in [(210.0, true, true), (250.1, true, false), (300.1, false, false)] {
+        let program = program(last);
+        assert_eq!(program.set(Target::Oven(3)).is_ok(), is_within, "{last}");
+        assert_eq!(program.frames(&blank).is_ok(), is_within, "{last}");
+        assert_eq!(program.frames_for(ovens::Model::Ov1, &blank).is_ok(), is_of_ov1, "{last}");
+        assert_eq!(program.parts().is_ok(), is_within, "{last}");
+        // What a module says of itself is sent as it is.
+        let reply = Frame::new_raw(0x0B3, false, [0; 8], 8);
+        assert!(program.frames(&reply).is_ok() && program.frames_for(ovens::Model::Ov1, &reply).is_ok(), "{last}");
+    }
+    assert!(program(210.0).set(Target::Oven(10)).is_err(), "there are nine ovens");
+}
+
+#[test]
+fn what_goes_to_a_module_is_not_mixed_with_what_comes_from_it() {
+    let sent = program(210.0).set(Target::Oven(3)).expect("it fits");
+    let answer = |frame: &Frame| Frame::new_raw(frame.raw_id() | 0x10, false, frame.bytes(), 8);
+    let mut assembler = Assembler::<Program, 4>::new(100);
+    let frames = sent.flat_map(|frame| [frame, answer(&frame)]).collect::<Vec<_>>();
+    // Byte 0 has the number of steps, which the parts of both directions then have.
+    let state = Frame::new_raw(0x053, false, [3, 0, 0, 0, 0, 0, 0, 0], 8);
+    let ended: Vec<_> = [state].iter().chain(&frames).flat_map(|frame| assembler.receive(frame, 0)).collect();
+    let whole = ended.iter().map(|outcome| match outcome {
+        Outcome::Whole(whole) => (whole.values, whole.is_to_module()),
+        other => panic!("{other:?}"),
+    });
+    assert_eq!(whole.collect::<Vec<_>>(), [(program(210.0), true), (program(210.0), false)]);
+    // A bare request begins anew what the module sends, and leaves alone what it is sent.
+    let [first, answered, last, _] = frames[..] else { panic!("four frames") };
+    let bare = Frame::new_raw(0x083, false, [0; 8], 8);
+    let ended: Vec<_> = [first, answered, bare, last].iter().flat_map(|frame| assembler.receive(frame, 0)).collect();
+    let is_whole = ended.iter().map(|outcome| match outcome {
+        Outcome::Whole(whole) => (true, whole.is_to_module()),
+        Outcome::Incomplete(partial) => (false, partial.is_to_module()),
+        Outcome::Full(frame) => panic!("no room for {frame}"),
+    });
+    assert_eq!(is_whole.collect::<Vec<_>>(), [(false, false), (true, true)]);
 }

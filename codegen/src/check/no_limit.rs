@@ -13,9 +13,12 @@ const HARMFUL: [&str; 3] = ["V", "A", "W"];
 
 pub fn check(protocol: &Protocol, diagnostics: &mut Diagnostics) {
     for message in &protocol.messages {
-        for (id, signal) in message.signals.entries() {
+        let content = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
+        // An array is one field.
+        let fields = content.signals.entries().filter(|(_, signal)| signal.element.is_none_or(|of| of.index == 0));
+        for (id, signal) in fields {
             if signal.on_each().any(is_unlimited) && is_set(protocol, message, id) {
-                diagnostics.push(unlimited(message, signal));
+                diagnostics.push(unlimited(content, signal));
             }
         }
     }
@@ -26,12 +29,14 @@ fn is_unlimited(signal: &Signal) -> bool {
     signal.unit.is_some_and(|unit| HARMFUL.contains(&&*unit.symbol)) && signal.ranges().next().is_none()
 }
 
+/// Tests whether a request carries a signal, alone or in the parts of a long message.
 fn is_set(protocol: &Protocol, message: &Message, signal: SignalId) -> bool {
-    protocol.frames_of(message).any(|frame| frame.kind == Kind::Request && frame.signals.contains(&signal))
+    let mut requests = protocol.layouts_of(message).filter(|frame| frame.kind == Kind::Request);
+    requests.any(|frame| protocol.part_of(frame).is_some() || frame.signals.contains(&signal))
 }
 
 fn unlimited(message: &Message, signal: &Signal) -> Diagnostic {
-    let text = format!("a request sets `{}.{}` without a limit", message.name, signal.name);
+    let text = format!("a request sets `{}.{}` without a limit", message.name, message.field_name(signal));
     let place = signal.types.first().map_or_else(String::new, |name| format!(", or that of its type `{name}`"));
     let help = format!(
         "write its `range`{place}, as the document or the ratings state it; if neither does, `allow` the warning"

@@ -7,14 +7,15 @@ use super::transfer::Transfers;
 use super::{Decoded, Frame, Note};
 use crate::model::{
     AddressTypeId, Kind, LongMessage, LongMessageId, MessageId, ModelId, NoteRule, Parts, Protocol, Reserved,
-    SelectorPlace, SignalId,
+    SelectorPlace, Side, SignalId,
 };
 
 /// The parts that came so far. `M` is what the caller remembers of each frame.
 ///
 /// A device sends the parts of a message in their order. Another message begins with a part whose number is not greater
-/// than that of the part before, or which has another counter. A part after a request begins one, too. A frame that is
-/// repeated at once counts once.
+/// than that of the part before, or which has another counter. So does a part of a device after a request to it that
+/// carries none. A frame that is repeated at once counts once. What goes to a device is never mixed with what comes from
+/// it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {
     transfers: Vec<Transfer<M>>,
@@ -46,6 +47,7 @@ struct Count {
 struct Transfer<M> {
     long: LongMessageId,
     peers: Peers,
+    sender: Side,
     /// What all of its parts show.
     counter: Option<u64>,
     /// How many data bytes the first part announces.
@@ -181,13 +183,14 @@ impl<M: Clone> Assembly<M> {
         let Some((id, long, parts)) = found else { return Taken::NOTHING };
         let part = Part::of(protocol, (long, parts), model, frame, decoded);
         let mut ended = Vec::new();
-        let open = self.transfers.iter().position(|known| (known.long, &known.peers) == (id, &peers));
+        let of = |side| self.transfers.iter().position(|known| known.is(id, &peers, side));
         let Some(part) = part else {
-            if let Some(open) = open.filter(|_| decoded.kind == Kind::Request) {
+            if let Some(open) = of(Side::Module).filter(|_| decoded.kind == Kind::Request) {
                 ended.push(self.end(protocol, model, open, None));
             }
             return Taken { is_part: false, ended };
         };
+        let open = of(decoded.sender);
         let open = match open {
             Some(open) if self.transfers[open].repeats(&part) => {
                 self.transfers[open].since = now;
@@ -263,8 +266,13 @@ impl<M: Clone> Transfer<M> {
     /// Returns a message that begins with a part.
     fn new((long, peers): (LongMessageId, Peers), part: &Part, frame: &Frame, decoded: &Decoded) -> Self {
         let Part { counter, announced, .. } = *part;
-        let (frame, decoded) = (frame.clone(), decoded.clone());
-        Self { long, peers, counter, announced, since: None, parts: Vec::new(), is_ended: false, frame, decoded }
+        let (sender, parts, frame, decoded) = (decoded.sender, Vec::new(), frame.clone(), decoded.clone());
+        Self { long, peers, sender, counter, announced, since: None, parts, is_ended: false, frame, decoded }
+    }
+
+    /// Tests whether it is a message between these peers, from that side.
+    fn is(&self, long: LongMessageId, peers: &Peers, sender: Side) -> bool {
+        (self.long, &self.peers, self.sender) == (long, peers, sender)
     }
 
     /// Tests whether silence has ended the message.

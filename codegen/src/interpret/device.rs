@@ -2,8 +2,8 @@
 
 use super::arrays::parted_texts;
 use super::content::{blank_data, constant_data};
-use super::encode::{continue_all_but_last, find_message, frame, length_with, refuse};
-use super::long::{typed, typed_parts};
+use super::encode::{find_message, frame, length_with, refuse};
+use super::long::{typed, typed_frames};
 use super::request::{Target, address, put_signals, raw_address, written_address};
 use super::transfer::frames;
 use super::{Frame, Limits, Refusal, decode};
@@ -80,11 +80,7 @@ pub fn sent(protocol: &Protocol, sent: Sent<'_>, signals: &[(String, String)]) -
         let data = typed(protocol, (long.extent(layout), header), signals, (sent.model, Limits::Bits))?;
         return frames(protocol, transport, (layout, id), &data);
     }
-    let parts = typed_parts(protocol, message, signals, sent.model)?;
-    let Some(parts) = parts else { return Ok(vec![one(protocol, sent, layout, signals)?]) };
-    let mut frames = parts.iter().map(|signals| one(protocol, sent, layout, signals)).collect::<Result<Vec<_>, _>>()?;
-    continue_all_but_last(protocol, &mut frames);
-    Ok(frames)
+    typed_frames(protocol, layout, signals, (sent.model, Limits::Bits), |signals| one(protocol, sent, layout, signals))
 }
 
 /// Makes one frame that a module sends.

@@ -60,13 +60,15 @@ fn encode_parts(
     (known, parts): (&LongMessage, &Parts),
 ) -> Result<Vec<Frame>, Refusal> {
     let message = &protocol[known.message];
-    let limits = (model, Limits::Bits);
-    let whole = (known.whole(), [0; 8]);
-    let data = long::joined(protocol, whole, &content.signals, Some(&content.reserved), limits)?;
     let mut selectors = content.selectors.clone();
     let counter = parts.counter.map(|counter| &message[counter].name);
     let given = selectors.iter().position(|(name, _)| Some(name) == counter).map(|place| selectors.remove(place));
     let counter = counter.map(|name| (name.clone(), Input::Integer(given.map_or(0, |(_, value)| value.into()))));
+    let bare = Content { selectors: selectors.clone(), ..content.clone() };
+    let layout = layout(protocol, message, protocol.frames_of(message), &bare, identifier(protocol, content)?)?;
+    let limits = (model, Limits::of(layout, model));
+    let whole = (known.whole(), [0; 8]);
+    let data = long::joined(protocol, whole, &content.signals, Some(&content.reserved), limits)?;
     let mut frames = Vec::new();
     for (number, data) in long::parts(known, model, &data)? {
         let mut signals = vec![

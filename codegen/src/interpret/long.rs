@@ -4,15 +4,17 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::arrays::parted_texts;
-use super::encode::{refuse, twice};
+use super::encode::{continue_all_but_last, refuse, twice};
 use super::notes::signal_note;
 use super::value::{Limits, bytes_of, raw_of};
-use super::{Input, Note, Reading, Refusal};
+use super::{Frame, Input, Note, Reading, Refusal};
 use crate::hex;
-use crate::model::{Announcement, Extent, LongMessage, Message, ModelId, NoteRule, Parts, Protocol, Signal, TextForm};
+use crate::model::{
+    Announcement, Extent, FrameLayout, LongMessage, ModelId, NoteRule, Parts, Protocol, Signal, TextForm,
+};
 
 /// What a call writes for each signal, by name.
-pub type Texts = Vec<(String, String)>;
+type Texts = Vec<(String, String)>;
 
 /// The data of a long message, as far as they came.
 pub struct Joined {
@@ -241,25 +243,54 @@ fn filled(long: &LongMessage, data: &[u8]) -> Vec<u8> {
     whole
 }
 
-/// Returns the texts for the signals of each frame, if what is given are signals of a message in parts.
-pub fn typed_parts(
+/// Makes the frames of what a call writes: one, or as many as a message in parts has. `one` makes a frame of the texts for
+/// its signals.
+pub fn typed_frames(
     protocol: &Protocol,
-    message: &Message,
+    layout: &FrameLayout,
     given: &[(String, String)],
-    model: Option<ModelId>,
+    limits: (Option<ModelId>, Limits),
+    one: impl Fn(&[(String, String)]) -> Result<Frame, Refusal>,
+) -> Result<Vec<Frame>, Refusal> {
+    let Some(parts) = typed_parts(protocol, layout, given, limits)? else { return Ok(vec![one(given)?]) };
+    let mut frames = parts.iter().map(|signals| one(signals)).collect::<Result<Vec<_>, _>>()?;
+    continue_all_but_last(protocol, &mut frames);
+    Ok(frames)
+}
+
+/// Returns the texts for the signals of each frame, unless what is given is one frame. Signals of the whole come before
+/// those of a frame that have the same name. To a module goes the whole alone, since its limits are those of its signals.
+fn typed_parts(
+    protocol: &Protocol,
+    layout: &FrameLayout,
+    given: &[(String, String)],
+    (model, limits): (Option<ModelId>, Limits),
 ) -> Result<Option<Vec<Texts>>, Refusal> {
-    let Some((_, long)) = protocol.long_message(message) else { return Ok(None) };
+    let Some(long) = protocol.part_of(layout).map(|id| &protocol[id]) else { return Ok(None) };
     let Some(carried) = long.parts() else { return Ok(None) };
+    let message = &protocol[layout.message];
+    let is_of_whole = |name: &str| {
+        let mut signals = long.content.signals.iter();
+        signals.any(|signal| signal.name == name || long.content.field_name(signal) == name)
+    };
     let [number, data] = [carried.number, carried.data].map(|id| &message[id].name);
-    if given.is_empty() || given.iter().any(|(name, _)| name == number || name == data) {
+    let is_of_frame = |name: &str| !is_of_whole(name) && (name == number || name == data);
+    if !layout.is_to_module() && given.iter().any(|(name, _)| is_of_frame(name)) {
         return Ok(None);
     }
-    let counter = carried.counter.map(|id| (message[id].name.clone(), "0".to_owned()));
-    let joined = typed(protocol, (long.whole(), [0; 8]), given, (model, Limits::Bits))?;
+    let counter = carried.counter.map(|id| &message[id].name);
+    let (counters, given): (Vec<_>, Vec<_>) =
+        given.iter().cloned().partition(|(name, _)| Some(name) == counter && !is_of_whole(name));
+    let counters = if counters.is_empty() {
+        counter.map(|name| (name.clone(), "0".to_owned())).into_iter().collect()
+    } else {
+        counters
+    };
+    let joined = typed(protocol, (long.whole(), [0; 8]), &given, (model, limits))?;
     let parts = parts(long, model, &joined)?.into_iter();
     let texts = |(part, text): (u16, String)| {
         let known = [(number.clone(), part.to_string()), (data.clone(), text)];
-        known.into_iter().chain(counter.clone()).collect()
+        known.into_iter().chain(counters.clone()).collect()
     };
     Ok(Some(parts.map(texts).collect()))
 }

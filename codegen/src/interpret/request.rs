@@ -121,17 +121,25 @@ pub fn accesses<'a>(
     signals: &[(String, String)],
 ) -> Result<Vec<&'a str>, Refusal> {
     let (_, message) = find_message(protocol, message)?;
-    let content = protocol.by_transport(message).map_or(message, |long| &protocol[long].content);
+    let content = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
     let signals = parted_texts(content, signals)?;
     let mut requests = requests_of(protocol, message, |_| true);
     requests.sort_by_key(|frame| {
-        let carried: Vec<_> = protocol.signals_of(frame).map(|(_, signal)| signal.name.as_str()).collect();
+        let carried = carried(protocol, frame);
         let missing = signals.iter().filter(|(name, _)| !carried.contains(&name.as_str())).count();
         (missing, carried.len())
     });
     let mut names: Vec<_> = requests.into_iter().map(|frame| protocol[frame.access].name.as_str()).collect();
     names.dedup();
     Ok(names)
+}
+
+/// Returns the names of the signals that a request carries. Those of a message in parts are the signals of the whole.
+fn carried<'a>(protocol: &'a Protocol, frame: &'a FrameLayout) -> Vec<&'a str> {
+    match protocol.part_of(frame) {
+        Some(long) => protocol[long].content.signals.iter().map(|signal| signal.name.as_str()).collect(),
+        None => protocol.signals_of(frame).map(|(_, signal)| signal.name.as_str()).collect(),
+    }
 }
 
 /// Returns the requests of a message. Those by the accesses of its sets count if none of its own is meant.
@@ -176,7 +184,8 @@ pub fn requests(
     }
     let layout = request_layout(protocol, known, access)?;
     let Some((transport, long)) = protocol.carried(layout) else {
-        return Ok(vec![made(protocol, model, (known, layout), (target, source), signals)?]);
+        let made = |signals: &[_]| made(protocol, model, (known, layout), (target, source), signals);
+        return super::long::typed_frames(protocol, layout, signals, (model, Limits::Range(model)), made);
     };
     if let Some(model) = model.filter(|model| !known.is_of(*model)) {
         return Err(not_of(protocol, known, model));
@@ -232,7 +241,7 @@ pub fn request(
 ) -> Result<Frame, Refusal> {
     let (_, message) = find_message(protocol, message)?;
     let layout = request_layout(protocol, message, access)?;
-    if protocol.carried(layout).is_some() {
+    if protocol.carried(layout).is_some() || protocol.part_of(layout).is_some() {
         return Err(refuse(message, "it can be longer than a frame"));
     }
     made(protocol, model, (message, layout), (target, source), signals)
@@ -387,11 +396,12 @@ pub fn put_signals(
 /// Says why a request has no place for a value.
 fn not_carried(protocol: &Protocol, message: &Message, layout: &FrameLayout, name: &str) -> String {
     let access = &protocol[layout.access].name;
-    let carries = |frame: &&FrameLayout| protocol.signals_of(frame).any(|(_, signal)| signal.name == name);
+    let carries = |frame: &&FrameLayout| carried(protocol, frame).contains(&name);
     let senders = protocol.frames_of(message).filter(|frame| frame.is_to_module()).filter(carries);
     let senders: Vec<_> = senders.map(|frame| format!("`{}`", protocol[frame.access].name)).collect();
     let sent: Vec<_> = protocol.signals_of(layout).map(|(_, signal)| format!("`{}`", signal.name)).collect();
-    match (message.signals.iter().any(|signal| signal.name == name), sent.is_empty()) {
+    let content = protocol.long_message(message).map_or(message, |(_, long)| &long.content);
+    match (content.signals.iter().any(|signal| signal.name == name), sent.is_empty()) {
         (true, _) if senders.is_empty() => format!("`{name}` is read only: `{access}` asks for it"),
         (true, _) => format!("`{access}` does not send `{name}`; {} does", senders.join(", ")),
         (false, true) => format!("there is no signal `{name}`; `{access}` sends none"),

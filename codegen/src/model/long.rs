@@ -211,6 +211,11 @@ impl Protocol {
         message.long.filter(|long| self[*long].parts().is_some())
     }
 
+    /// Returns the long message of which a frame carries a part.
+    pub fn part_of(&self, frame: &FrameLayout) -> Option<LongMessageId> {
+        self.in_parts(&self[frame.message]).filter(|_| !frame.signals.is_empty())
+    }
+
     /// Returns the long message that a transport carries, if the message travels so.
     pub fn by_transport(&self, message: &Message) -> Option<LongMessageId> {
         message.long.filter(|long| self[*long].transport().is_some())

@@ -160,7 +160,6 @@ impl Resolver<'_> {
             refusals.extend(self.refusal(&owner, &choice, surroundings));
         }
         if let Some(parts) = &message.parts {
-            self.check_senders(path, name, &frames);
             self.check_whole(path, &frames, &signals);
             if let Some(long) = long {
                 self.silence(long, &path.key("parts"), parts, surroundings.timing);

@@ -173,15 +173,6 @@ impl Resolver<'_> {
         firsts
     }
 
-    /// Tests that no frame to a module carries parts.
-    pub fn check_senders(&mut self, path: &Path, name: &str, frames: &[FrameLayout]) {
-        let Some(frame) = frames.iter().find(|frame| frame.is_to_module() && !frame.signals.is_empty()) else { return };
-        let text = format!("a {} of `{name}` would carry parts to a module", frame.kind.name());
-        let help = "only modules send parts yet, since generated Rust could not test the limits of their values; \
-                    write `in: [reply]` in the access";
-        self.error_with_help(&rules::PARTS, path.key("parts").at_key(), text, help);
-    }
-
     /// Lets the number of a part be one of those that its message has.
     pub fn set_numbers(&mut self, path: &Path, signal: &mut Signal, numbers: Option<(u16, u16)>) {
         let Some((first, last)) = numbers else { return };
@@ -225,17 +216,6 @@ impl Resolver<'_> {
     pub fn silence(&mut self, id: LongMessageId, path: &Path, written: &ast::Parts, timing: &Times) {
         let Some(name) = &written.silence else { return };
         let path = path.key("silence");
-        let long = &self.tables.long_messages[id];
-        let other = match (written.length.is_some(), written.count.is_some(), long.varying()) {
-            (true, _, _) => Some("beside `length`, which says where a message ends"),
-            (_, true, _) => Some("beside `count`, which says where a message ends"),
-            (_, _, None) => Some("here: each message has as many parts as the others"),
-            (false, false, Some(_)) => None,
-        };
-        if let Some(other) = other {
-            let text = format!("`silence` means nothing {other}");
-            return self.error_with_help(&rules::PARTS, path.at_key(), text, "take it out");
-        }
         let names = self.spec.timing.keys().map(String::as_str);
         self.lookup_or(&path, "timing", name, names, "add the time to `timing` and write its name");
         let silence = timing.position(|known| known.name == *name);

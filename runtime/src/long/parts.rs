@@ -5,8 +5,9 @@
 //! missing. Parts of two nodes are never mixed.
 //!
 //! A node sends the parts of a message in their order. Another message begins with a part whose
-//! number is not greater than that of the part before, or which has another counter. A part after a
-//! request begins one, too. A frame that is repeated at once counts once.
+//! number is not greater than that of the part before, or which has another counter. So does a part
+//! of a node after a request to it that carries none. A frame that is repeated at once counts once.
+//! What goes to a node is never mixed with what comes from it.
 //!
 //! Where a message ends by silence, the document says how long that is, whatever the patience of the
 //! assembler. Then [`timed_out`](Assembler::timed_out) gives whole messages.
@@ -23,7 +24,7 @@ use core::fmt;
 use super::LongLayout;
 use super::buffer::Buffer;
 use crate::plumbing::Continuation;
-use crate::{Frame, IdentifierFields, Layout, Place, Protocol};
+use crate::{Exchange, Frame, IdentifierFields, Kind, Layout, Place, Protocol};
 
 pub use super::buffer::Memory;
 pub use assembler::{Assembler, Outcomes};
@@ -59,6 +60,8 @@ pub trait Parted: LongLayout {
     const MODEL_FIRSTS: &'static [(u8, u16)] = &[];
     /// The field that says whether more parts follow, if there is one.
     const CONTINUATION: Option<Continuation> = None;
+    /// How the message travels to a module, and what its frames are for.
+    const TO_MODULE: &'static [(&'static Exchange, Kind)] = &[];
 
     /// Returns what a frame says about such a message.
     const SAID: fn(&Self::Protocol) -> Said;
@@ -71,13 +74,15 @@ pub trait Parted: LongLayout {
     ///
     /// # Errors
     ///
-    /// The same as [`encode`](LongLayout::encode). It also refuses a message whose first part has
-    /// another number on each device model; [`frames_for`](Self::frames_for) builds that.
+    /// The same as [`encode`](LongLayout::encode). In frames to a module it also refuses values outside
+    /// their limits. It refuses a message whose first part has another number on each device model;
+    /// [`frames_for`](Self::frames_for) builds that.
     fn frames(&self, blank: &Frame) -> Result<Frames<Self>, crate::Error> {
         Frames::new(self, blank, None)
     }
 
-    /// Returns the frames that carry the message in parts, as a device model numbers them.
+    /// Returns the frames that carry the message in parts, as a device model numbers them. Values have
+    /// the scales and the limits of that model.
     ///
     /// # Errors
     ///
@@ -90,10 +95,11 @@ pub trait Parted: LongLayout {
     ///
     /// # Errors
     ///
-    /// The same as [`frames`](Self::frames).
+    /// The same as [`encode`](LongLayout::encode). If the message can go to a module, it also refuses
+    /// values outside their limits. It refuses a message whose first part has another number on each
+    /// device model.
     fn parts(&self) -> Result<impl Iterator<Item = Self::Part>, crate::Error> {
-        let frames = self.frames(&Frame::new_raw(0, true, [0; 8], 8))?;
-        Ok(frames.map(|frame| Self::Part::decode(&frame.bytes())))
+        Ok(Frames::anywhere(self)?.map(|frame| Self::Part::decode(&frame.bytes())))
     }
 }
 
@@ -129,6 +135,7 @@ pub struct Whole<L: Parted> {
     /// have room for.
     pub is_counted: bool,
     frame: Frame,
+    is_to_module: bool,
 }
 
 /// A message that did not come whole.
@@ -138,6 +145,7 @@ pub struct Incomplete<L: Parted> {
     first: u16,
     expected: usize,
     frame: Frame,
+    is_to_module: bool,
 }
 
 impl<L: Parted> Whole<L> {
@@ -150,6 +158,11 @@ impl<L: Parted> Whole<L> {
     pub const fn frame(&self) -> &Frame {
         &self.frame
     }
+
+    /// Tests whether it goes to a module.
+    pub const fn is_to_module(&self) -> bool {
+        self.is_to_module
+    }
 }
 
 impl<L: Parted> Incomplete<L> {
@@ -161,6 +174,11 @@ impl<L: Parted> Incomplete<L> {
     /// Returns the last frame.
     pub const fn frame(&self) -> &Frame {
         &self.frame
+    }
+
+    /// Tests whether it goes to a module.
+    pub const fn is_to_module(&self) -> bool {
+        self.is_to_module
     }
 
     /// Returns the numbers of the parts that did not come, as far as it is known how many there are.

@@ -233,10 +233,13 @@ pub fn parted<L: Parted<Protocol: Protocol<Identifier: Unknown> + Unknown> + Unk
 
 fn outcome<L: Parted>(outcome: Outcome<L>) {
     match outcome {
-        Outcome::Whole(whole) => sink((whole.values, whole.is_counted, whole.identifier(), whole.frame())),
+        Outcome::Whole(whole) => {
+            sink((whole.values, whole.is_counted, whole.identifier(), whole.frame(), whole.is_to_module()));
+        }
         Outcome::Incomplete(partial) => {
             partial.missing().for_each(sink);
             sink((partial.part(unknown()), partial.data(), partial.identifier(), partial.frame()));
+            sink(partial.is_to_module());
         }
         Outcome::Full(frame) => sink(frame),
     }

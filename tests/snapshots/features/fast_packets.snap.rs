@@ -226,6 +226,7 @@ impl Parted for Engine {
     const DATA: Place = EnginePart::DATA.place();
     const COUNTER: Option<Place> = Some(EnginePart::COUNTER.place());
     const LENGTH: Option<Place> = Some(Place::byte(1));
+    const SILENCE: Option<u32> = Some(750);
     const FIRST: Option<u16> = Some(0);
     const SAID: fn(&Message) -> Said = |message| match message {
         Message::EnginePart(_) => Said::Part,

@@ -19,8 +19,6 @@ struct Access {
     is_apart: bool,
     /// Whether it says the command too, so that its messages have a register alone.
     has_command: bool,
-    /// Whether its requests carry values.
-    sends: bool,
     role: Role,
 }
 
@@ -125,7 +123,6 @@ impl Draft {
             access.put(*kind, constants.clone());
         }
         let carrying = self.carrying(kinds, role);
-        let sends = carrying.contains(&"request") || role == Role::Call;
         if carrying.len() < kinds.len() || self.chance(20) {
             access.put("in", list(carrying));
         }
@@ -142,7 +139,7 @@ impl Draft {
         self.remark(&mut access);
         let name = self.names.plain(&mut traffic.access_names);
         traffic.access.put(name.clone(), access);
-        traffic.accesses.push(Access { name, kinds: kinds.to_vec(), is_apart, has_command, sends, role });
+        traffic.accesses.push(Access { name, kinds: kinds.to_vec(), is_apart, has_command, role });
     }
 
     fn carrying(&mut self, kinds: &[&'static str], role: Role) -> Vec<&'static str> {
@@ -232,11 +229,10 @@ impl Draft {
             let reserved = self.reserved();
             message.put("reserved", reserved);
         }
-        let is_sent = accesses.iter().any(|access| access.sends);
         let is_by_command = !first.has_command && !has_register;
         if bus.transport.is_some() && is_by_command && self.chance(50) {
             self.by_transport(&mut message);
-        } else if bus.header_bytes < 5 && !is_sent && self.chance(25) {
+        } else if bus.header_bytes < 5 && self.chance(25) {
             self.in_parts(bus, traffic, &mut message);
         } else {
             self.content(bus, &mut message, &kinds, false);

@@ -1,4 +1,4 @@
--- Numbered parts: joins those of each device. A device sends them in their order.
+-- Numbered parts: joins those of each device, and those to it. They come in their order.
 
 local open_parts, counts
 
@@ -136,12 +136,15 @@ local function take_part(frame, decoded, ended)
   local long = message.long
   if not (long and long.parts) then return end
   local first = first_part(long.parts, frame.model)
-  local this = peers(frame, decoded) .. " " .. message.name
-  local open, part = open_parts[this], not is_error and part_of(frame, decoded, first)
+  local between = peers(frame, decoded) .. " " .. message.name
+  local part = not is_error and part_of(frame, decoded, first)
   if not part then
-    if open and decoded.layout.kind == "request" then end_parts(open, nil, ended) end
+    local answer = open_parts[between .. " false"]
+    if answer and decoded.layout.kind == "request" then end_parts(answer, nil, ended) end
     return
   end
+  local this = between .. " " .. tostring(is_to_module(decoded.layout))
+  local open = open_parts[this]
   local is_its = open and open.counter == part.counter
   if is_its and open.last == part.index and open.parts[open.last] == part.data then
     open.since = frame.time

@@ -4,6 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::plan::carrier::Carrier;
+use super::plan::message::Request;
 
 /// Emits what an assembler and a sender need.
 pub fn carrier(carrier: &Carrier) -> TokenStream {
@@ -38,6 +39,9 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             const CONTINUATION: Option<Continuation> = Some(CONTINUATION);
         )
     });
+    let to_module = carrier.to_module.iter().map(|(exchange, kind)| quote!((&#exchange, Kind::#kind)));
+    let to_module = (!carrier.to_module.is_empty())
+        .then(|| quote!(const TO_MODULE: &'static [(&'static Exchange, Kind)] = &[#(#to_module),*];));
     let counts =
         carrier.counts.iter().map(|(variants, place)| quote!(#(Message::#variants(_))|* => Said::Count(#place),));
     let others = others.iter().map(|others| quote!(#others => Said::Nothing,));
@@ -54,11 +58,22 @@ pub fn carrier(carrier: &Carrier) -> TokenStream {
             const FIRST: Option<u16> = #first;
             #of_models
             #continues
+            #to_module
             const SAID: fn(&Message) -> Said = |message| match message {
                 #(Message::#parts(_))|* => Said::Part,
                 #(#counts)*
                 #(#others)*
             };
+        }
+    }
+}
+
+/// Emits the method that builds the frames of a message in parts.
+pub fn in_parts(Request { method, comment, exchange, .. }: &Request) -> TokenStream {
+    quote! {
+        #comment
+        pub fn #method(&self, route: impl Into<Route<Target>>) -> Result<parts::Frames<Self>, Error> {
+            #exchange.parts_to(route, self)
         }
     }
 }

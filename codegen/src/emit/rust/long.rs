@@ -3,11 +3,12 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::carrier::in_parts;
 use super::derives::Derives;
 use super::exchange::exchange;
 use super::message::{kinds, request, special_value, value};
 use super::plan::literal::decimal;
-use super::plan::long::{Field, Length, Long, Row, Step};
+use super::plan::long::{Carriage, Field, Length, Long, Row, Step};
 use super::plan::message::Message;
 use super::plan::signal::Member;
 use super::scales;
@@ -19,18 +20,19 @@ const LONGEST_OF_SERDE: usize = 32;
 /// Emits the struct of a long message.
 pub fn long(message: &Message, long: &Long, derives: Derives) -> TokenStream {
     let (definition, layout) = (definition(long, derives), (!long.fields.is_empty()).then(|| layout(long)));
-    let Long { name, fields, requests, transfer, .. } = long;
+    let Long { name, fields, requests, carriage: Carriage { parts, transfer }, .. } = long;
     let exchanges = message.exchanges.iter().filter(|_| *name == message.owner).map(exchange);
     let transfers = transfer.iter().flat_map(|transfer| transfer.requests.iter().map(|own| sent(own, transfer)));
     let bare = transfer.iter().flat_map(|transfer| transfer.bare.iter().map(|own| bare(own, transfer)));
     let transferred = transfer.as_ref().filter(|_| !fields.is_empty()).map(|transfer| transferred(name, transfer));
     let (signals, requests) = (fields.iter().map(signal), requests.iter().map(request));
+    let parts = parts.iter().map(in_parts);
     let by_model = fields.iter().filter(|field| field.row.is_none());
     let by_model = by_model.filter_map(|field| scales::methods(&field.signal, &quote!(Self)));
     let optional = if fields.is_empty() { derives.message(name, true) } else { derives.long_message(name) };
     quote! {
         #definition
-        impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#transfers)* #(#bare)* #(#by_model)* }
+        impl #name { #(#signals)* #(#exchanges)* #(#requests)* #(#parts)* #(#transfers)* #(#bare)* #(#by_model)* }
         #layout
         #transferred
         #optional

@@ -96,8 +96,8 @@ pub struct Parts {
     /// Signal of the same device with the number of elements that an array really has, or of bytes that an open text
     /// has: `status.cells`. If absent, the number is not known.
     pub count: Option<String>,
-    /// Name of the entry of `timing` that ends a message: no further part has come for so long. If absent, silence says
-    /// nothing.
+    /// Name of the entry of `timing` that ends a message: no further part has come for so long. It is whole if nothing
+    /// says that more of it comes. If absent, silence says nothing.
     pub silence: Option<String>,
 }
 

@@ -123,7 +123,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
                 Outcomes::NONE
             }
             _ if is_own && received.kind() == Kind::Request => {
-                let open = self.taken(|open| open.peers.are(&peers));
+                let open = self.taken(|open| open.peers.answer(&peers));
                 Outcomes { before: open.map(|open| self.ended(&open.at(now), None)), own: None }
             }
             _ => Outcomes::NONE,
@@ -209,7 +209,7 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
     /// Returns what became of a message. `expected` is the number of its parts, if the frames say it.
     fn ended(&self, open: &Transfer<L>, expected: Option<usize>) -> Outcome<L> {
         let Transfer { buffer, frame, .. } = *open;
-        let count = self.count(open);
+        let (count, is_to_module) = (self.count(open), open.peers.is_to_module());
         let expected = expected.or_else(|| self::expected::<L>(&buffer, count)).unwrap_or(buffer.end());
         let (data, announced) = (data::<L>(&buffer), announced::<L>(&buffer));
         let data = data.get(..announced.unwrap_or_else(|| bytes_with::<L>(count))).unwrap_or(data);
@@ -219,13 +219,14 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
             Some(values) => {
                 let is_told = count.is_some() || announced.is_some() || open.is_ended;
                 let is_counted = L::ELEMENTS.is_none() || is_told;
-                Outcome::Whole(Whole { values, is_counted, frame })
+                Outcome::Whole(Whole { values, is_counted, frame, is_to_module })
             }
             None => Outcome::Incomplete(Incomplete {
                 buffer,
                 first: first::<L>(self.model).unwrap_or_default(),
                 expected,
                 frame,
+                is_to_module,
             }),
         }
     }

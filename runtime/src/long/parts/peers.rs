@@ -3,23 +3,34 @@
 use crate::plumbing::Address;
 use crate::{AddressType, Protocol, Received};
 
-/// The addresses that an identifier shows, of one side or of both.
+/// The addresses that an identifier shows, of one side or of both, and where its frame goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Peers {
     id: u32,
     addresses: &'static [Address],
+    is_to_module: bool,
 }
 
 impl Peers {
     /// Returns those of a frame, if its identifier shows an addressing mode.
     pub fn of<P: Protocol>(received: &Received<P>) -> Option<Self> {
         let addresses = received.addressing()?.addresses();
-        Some(Self { id: received.frame().raw_id(), addresses })
+        Some(Self { id: received.frame().raw_id(), addresses, is_to_module: received.is_to_module() })
     }
 
-    /// Tests whether both show the same addresses, wherever in the identifier.
+    /// Tests whether the frame goes to a module.
+    pub fn is_to_module(&self) -> bool {
+        self.is_to_module
+    }
+
+    /// Tests whether both go the same way and show the same addresses, wherever in the identifier.
     pub fn are(&self, other: &Self) -> bool {
-        are_same(&self.numbers(), &other.numbers())
+        self.is_to_module == other.is_to_module && are_same(&self.numbers(), &other.numbers())
+    }
+
+    /// Tests whether a module answers to a request by these frames.
+    pub fn answer(&self, request: &Self) -> bool {
+        self.are(&Self { is_to_module: false, ..*request })
     }
 
     /// Tests whether both show the same module. Addresses that are sent unless somebody says otherwise are not its own.

@@ -3,7 +3,8 @@
 use core::fmt;
 
 use super::{Memory, Parted, first, head, parts_of, size, word};
-use crate::{Error, Frame};
+use crate::protocol::{Heading, heading};
+use crate::{Destination, Error, Exchange, Frame, Payload, Request, Route};
 
 /// The frames that carry a long message in parts, in their order.
 #[derive(Clone)]
@@ -17,10 +18,20 @@ pub struct Frames<L: Parted> {
 }
 
 impl<L: Parted> Frames<L> {
+    /// Returns the frames, which are like `blank`.
     pub(super) fn new(values: &L, blank: &Frame, model: Option<u8>) -> Result<Self, Error> {
+        Self::keeping(values, blank, model, is_to_module::<L>(blank))
+    }
+
+    /// Returns frames whose values keep to limits if they can go to a module.
+    pub(super) fn anywhere(values: &L) -> Result<Self, Error> {
+        Self::keeping(values, &Frame::new_raw(0, true, [0; 8], 8), None, !L::TO_MODULE.is_empty())
+    }
+
+    fn keeping(values: &L, blank: &Frame, model: Option<u8>, is_to_module: bool) -> Result<Self, Error> {
         let Some(first) = first::<L>(model) else { return Err(Error::Model { message: L::MESSAGE }) };
         let mut data = L::Memory::BLANK;
-        let length = values.encode(data.as_mut())?.len();
+        let length = values.encode_by(rules::<L>(model, is_to_module)?, 0, data.as_mut())?.len();
         Ok(Self { data, blank: *blank, length, first, next: 0, count: parts_of::<L>(length) })
     }
 
@@ -67,5 +78,52 @@ impl<L: Parted> Iterator for Frames<L> {
 impl<L: Parted> fmt::Debug for Frames<L> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_list().entries(self.clone()).finish()
+    }
+}
+
+impl Exchange {
+    /// Builds the request whose signals are 0, or such a report of the controller. The parts of a
+    /// [long message](crate::parts::Parted::frames) are made like it.
+    ///
+    /// # Errors
+    ///
+    /// Refuses a mode that the message does not have, and an address that the document does not name.
+    pub fn blank_request<T: Destination>(&'static self, route: impl Into<Route<T>>) -> Result<Frame, Error> {
+        let blank: Request<T::Protocol, ()> = self.request_to(route, &())?;
+        Ok(*blank.frame())
+    }
+
+    /// Returns the frames that carry `message` to a module in parts. Generated code calls it.
+    ///
+    /// # Errors
+    ///
+    /// The same as [`request_to`](Self::request_to).
+    #[doc(hidden)]
+    pub fn parts_to<T: Destination, L: Parted<Protocol = T::Protocol>>(
+        &'static self,
+        route: impl Into<Route<T>>,
+        message: &L,
+    ) -> Result<Frames<L>, Error> {
+        message.frames(&self.blank_request(route)?)
+    }
+}
+
+/// Returns the rules by which the values of a message are written.
+fn rules<L: Parted>(model: Option<u8>, is_to_module: bool) -> Result<Payload, Error> {
+    let payload = Payload::new(L::MESSAGE, [0; 8]).for_model(model);
+    if !is_to_module {
+        return Ok(payload);
+    }
+    let is_of_model = L::TO_MODULE.iter().all(|(exchange, _)| exchange.is_of(model));
+    if is_of_model { Ok(payload.keeping_limits()) } else { Err(Error::Model { message: L::MESSAGE }) }
+}
+
+/// Tests whether frames like `blank` go to a module.
+fn is_to_module<L: Parted>(blank: &Frame) -> bool {
+    let shows = || L::TO_MODULE.iter().filter_map(|(exchange, kind)| exchange.filter(*kind));
+    match heading::<L::Protocol>(blank.raw_id()) {
+        Some(Heading::Module) => true,
+        Some(Heading::Either) => shows().any(|filter| filter.matches(blank)),
+        Some(Heading::Controller) | None => false,
     }
 }

@@ -103,7 +103,8 @@ impl Draft {
             counting.put("value", Map::of([("bytes", number.to_string())]));
             let name = self.add_message(traffic, counting);
             parts.put("count", format!("{name}.value"));
-        } else if is_open && !self.times.is_empty() && self.random.bool() {
+        }
+        if !self.times.is_empty() && self.random.bool() {
             parts.put("silence", self.times[0].clone());
         }
         message.put("parts", parts);

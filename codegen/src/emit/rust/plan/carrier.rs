@@ -8,6 +8,7 @@ use quote::{ToTokens as _, quote};
 use super::message::Message;
 use super::models::Models;
 use super::place::Written;
+use super::transport::{Carried, carried};
 use super::types::Types;
 use super::variant::{self, Variant};
 use crate::model::{FrameLayout, LongMessage, LongMessageId, MessageId, Protocol, SignalId, Table};
@@ -36,6 +37,8 @@ pub struct Carrier {
     pub model_firsts: Vec<(Ident, u16)>,
     /// Whether a field says that more parts follow.
     pub continues: bool,
+    /// The exchanges by which it goes to a module, and what these frames are for.
+    pub to_module: Vec<Carried>,
     /// The variants whose frames carry parts.
     pub parts: Vec<Ident>,
     /// The variants whose frames say how many elements there are, and where.
@@ -59,6 +62,13 @@ pub struct Planner<'a> {
 }
 
 impl Planner<'_> {
+    /// Returns how the parts of a message go to a module.
+    fn to_module(&self, id: LongMessageId) -> Vec<Carried> {
+        let frames = self.protocol.frames_of(&self.protocol[self.protocol[id].message]);
+        let carrying = frames.filter(|frame| frame.is_to_module() && self.protocol.part_of(frame) == Some(id));
+        carrying.map(|frame| carried(self.messages, frame)).collect()
+    }
+
     /// Plans how a long message is carried, if it has numbered parts.
     pub fn carrier(&self, id: LongMessageId) -> Option<Carrier> {
         let long = &self.protocol[id];
@@ -87,6 +97,7 @@ impl Planner<'_> {
                 .iter()
                 .map(|own| (self.models.variant(own.model).clone(), own.value))
                 .collect(),
+            to_module: self.to_module(id),
             continues: self.protocol.continuation().is_some(),
             others: variant::others(self.variants, |name| known.contains(name)),
             parts,

@@ -34,7 +34,15 @@ pub struct Long {
     pub are_ones: bool,
     /// The methods that build requests.
     pub requests: Vec<Request>,
-    /// How it travels, if a transport carries it.
+    /// How it travels.
+    pub carriage: Carriage,
+}
+
+/// How a long message travels.
+pub struct Carriage {
+    /// The methods that build frames with its numbered parts for a module.
+    pub parts: Vec<Request>,
+    /// How a transport carries it, if one does.
     pub transfer: Option<Transfer>,
 }
 
@@ -95,7 +103,7 @@ impl Long {
         name: &Ident,
         (comment, requests): (Comment, Vec<Request>),
         signals: Vec<(Signal, SignalId)>,
-        transfer: Option<Transfer>,
+        carriage: Carriage,
     ) -> Self {
         let lengths = lengths(long, &signals);
         let fields: Vec<_> = signals.into_iter().map(|(signal, id)| Field::new(&long.content, signal, id)).collect();
@@ -112,7 +120,7 @@ impl Long {
             lengths,
             are_ones: long.content.reserved.are_ones,
             requests,
-            transfer,
+            carriage,
         }
     }
 }

@@ -6,7 +6,7 @@ use quote::quote;
 use super::doc::{self, Comment};
 use super::exchange::{Accesses, Exchange, exchange_name};
 use super::literal;
-use super::long::{Long, Transfer};
+use super::long::{Carriage, Long, Transfer};
 use super::models::depends_on_model;
 use super::naming::Pool;
 use super::selector::Selectors;
@@ -202,7 +202,8 @@ impl Planner<'_> {
         let frames = protocol[host.id].frames.iter().filter(|id| {
             let frame = &protocol[**id];
             let carried = types.frames[**id].carried.as_ref();
-            frame.is_to_module() && frame.set.is_none() && carried.map_or(host.is_whole, |carried| carried == host.name)
+            let is_built_alone = frame.set.is_none() && protocol.part_of(frame).is_none();
+            frame.is_to_module() && is_built_alone && carried.map_or(host.is_whole, |carried| carried == host.name)
         });
         frames.map(|id| &protocol[*id])
     }
@@ -216,8 +217,25 @@ impl Planner<'_> {
         let comment = Comment::new(usage::paragraphs(protocol, self.accesses, id));
         let requests = self.hosted(&host).map(|frame| self.request(&host, ways, frame)).collect();
         let signals = self.context.long_signals(&protocol[long], &mut members);
-        let transfer = self.transfer(&host, long, ways);
-        Long::new((long, &protocol[long]), host.name, (comment, requests), signals, transfer)
+        let carriage = Carriage { parts: self.in_parts(&host, long, ways), transfer: self.transfer(&host, long, ways) };
+        Long::new((long, &protocol[long]), host.name, (comment, requests), signals, carriage)
+    }
+
+    /// Plans the methods that build what goes to a module in parts. Without a model nobody knows the number of the
+    /// first part if each model has its own.
+    fn in_parts(&self, host: &Host, long: LongMessageId, ways: &Ways) -> Vec<Request> {
+        let protocol = self.context.protocol;
+        let is_numbered = protocol[long].first(None).is_some();
+        let frames = protocol.frames_of(&protocol[host.id]).filter(|frame| frame.is_to_module() && frame.set.is_none());
+        let carrying = frames.filter(|frame| is_numbered && protocol.part_of(frame) == Some(long));
+        carrying.map(|frame| self.sending_parts(host, ways, frame)).collect()
+    }
+
+    /// Plans the method that builds the frames of a message in parts.
+    fn sending_parts(&self, host: &Host, ways: &Ways, frame: &FrameLayout) -> Request {
+        let mut comment = self.request_comment(frame, " with these values, in parts", "values outside their limits, ");
+        comment[0] = comment[0].replacen("Builds", "Builds the frames of", 1);
+        Request { comment: Comment::new(comment), ..self.request(host, ways, frame) }
     }
 
     /// Plans how a transport carries a long message.

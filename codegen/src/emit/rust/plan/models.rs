@@ -137,12 +137,13 @@ fn type_name(signal: &Signal) -> Option<&str> {
     }
 }
 
-/// Tests whether a frame is a request with values that depend on the device model.
+/// Tests whether a frame is a request with values that depend on the device model. A part of a long message is none.
 pub fn depends_on_model(protocol: &Protocol, frame: &FrameLayout) -> bool {
     let message = &protocol[frame.message];
     let lacks =
         |signal: &Signal| protocol.models_of(message).any(|model| protocol.lacking(message, signal, model).is_some());
     let depends_itself = |(_, signal): (SignalId, &Signal)| !signal.model_ranges.is_empty() || lacks(signal);
     let depends = !message.models.is_empty() || protocol.signals_of(frame).any(depends_itself);
-    frame.is_to_module() && frame.set.is_none() && depends && !frame.signals.is_empty()
+    let is_whole = !frame.signals.is_empty() && protocol.part_of(frame).is_none();
+    frame.is_to_module() && frame.set.is_none() && depends && is_whole
 }

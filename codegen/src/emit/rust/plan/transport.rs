@@ -58,11 +58,7 @@ impl Transport {
         let field = |id: FieldId| screaming(&protocol[id].name);
         let carried = || protocol.long_messages.iter().filter(|long| long.transport() == Some(id));
         let layouts = || carried().flat_map(|long| &long.frames);
-        let exchange = |frame: &FrameLayout| {
-            let Message { owner, exchanges, .. } = &messages[frame.message];
-            let exchange = &exchanges[frame.exchange].constant;
-            (quote!(#owner::#exchange), ident(&camel_case(frame.kind.name())))
-        };
+        let exchange = |frame: &FrameLayout| self::carried(messages, frame);
         let longest = carried().map(LongMessage::longest).max().unwrap_or(0);
         let (memory, standard) = match &known.standard {
             Standard::J1939(groups) => {
@@ -88,4 +84,11 @@ impl Transport {
             carries: layouts().map(exchange).collect(),
         }
     }
+}
+
+/// Returns the exchange by which a frame travels, and what the frame is for.
+pub fn carried(messages: &Table<MessageId, Message>, frame: &FrameLayout) -> Carried {
+    let Message { owner, exchanges, .. } = &messages[frame.message];
+    let exchange = &exchanges[frame.exchange].constant;
+    (quote!(#owner::#exchange), ident(&camel_case(frame.kind.name())))
 }
