@@ -5,7 +5,7 @@ mod output;
 mod transport;
 
 pub use input::{Content, Line, Message};
-pub use output::{Outcome, Whole, addresses, bit_names, set_bits, write};
+pub use output::{Outcome, Whole, addresses, all_selectors, bit_names, selected, set_bits, write};
 pub use transport::content as of_transport;
 
 use serde::{Serialize, Serializer};

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Unrecognised, Value};
-use canspec_codegen::model::{Kind, Mode, Protocol, Side};
+use canspec_codegen::model::{Kind, Mode, Protocol, SelectorId, Side};
 
 use crate::columns::{Columns, Lines, wrap};
 use crate::fields::{Field, Read, fields};
@@ -177,6 +177,11 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
     match outcome.decoded {
         Ok(decoded) if decoded.is_error_reply() => refusal(lines, item, outcome, decoded, room),
         Ok(decoded) => {
+            for (name, value) in open_selectors(outcome.protocol, decoded) {
+                item.clear();
+                item.extend([name, " ", &value, GAP]);
+                lines.add(item, "", room + 1);
+            }
             for (name, field) in fields(decoded.content(outcome.protocol), decoded) {
                 item.clear();
                 item.extend([name, " "]);
@@ -199,6 +204,19 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
             lines.add_sentence(&format!("{separated}! {}: {text}", problem.name()), room);
         }
     }
+}
+
+/// Returns the fields of the header that neither the message nor its access fixes, and their values. Those that tell an
+/// error are none, since a note says it.
+fn open_selectors<'a>(protocol: &'a Protocol, decoded: &'a Decoded) -> impl Iterator<Item = (&'a str, String)> {
+    let mut layouts = protocol.layouts_of(&protocol[decoded.message]);
+    let layout = layouts.find(|layout| (layout.access, layout.kind) == (decoded.access, decoded.kind));
+    let constants = layout.map_or(&[][..], |layout| &layout.constants);
+    let is_open = |(id, _): &&(SelectorId, u64)| {
+        protocol[*id].normal.is_none() && constants.iter().all(|constant| constant.selector != *id)
+    };
+    let open = decoded.selectors.iter().filter(is_open);
+    open.map(|(id, raw)| (protocol[*id].name.as_str(), protocol.selector_value(*id, *raw)))
 }
 
 /// Adds the data of a frame that reports an error in place of its values, and why.

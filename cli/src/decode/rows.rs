@@ -4,11 +4,12 @@ use std::io::{self, Write};
 
 use canspec_codegen::interpret::{Decoded, Note, Reading, Unrecognised, Value, escape};
 
-use crate::line::{Outcome, bit_names};
+use crate::line::{Outcome, all_selectors, bit_names, selected};
 use crate::log;
 use crate::table::others;
 
-const HEADING: &str = "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes,data";
+const HEADING: &str =
+    "line,time,channel,id,protocol,message,access,kind,address,signal,raw,value,unit,notes,data,selectors";
 
 /// Rows that are written as their frames come.
 #[derive(Clone, Default, PartialEq)]
@@ -25,13 +26,15 @@ impl Rows {
     pub fn write(&mut self, out: &mut impl Write, outcome: &Outcome<'_>) -> io::Result<()> {
         self.begin(out)?;
         let mut address = String::new();
-        let (names, readings, notes) = match outcome.decoded {
+        let (names, readings, notes, selectors) = match outcome.decoded {
             Ok(decoded) => {
                 others(&mut address, outcome, decoded);
-                (names(outcome, decoded), &decoded.signals[..], notes(outcome, &decoded.notes))
+                let notes = notes(outcome, &decoded.notes);
+                (names(outcome, decoded), &decoded.signals[..], notes, pairs(all_selectors(outcome, decoded)))
             }
-            Err(Unrecognised { problem, text, .. }) => {
-                (Default::default(), &[][..], format!("{}: {text}", problem.name()))
+            Err(Unrecognised { problem, text, selectors, .. }) => {
+                let notes = format!("{}: {text}", problem.name());
+                (Default::default(), &[][..], notes, pairs(selected(outcome.protocol, selectors)))
             }
         };
         let line = outcome.line.to_string();
@@ -43,8 +46,9 @@ impl Rows {
             [&line, time, channel, &id, &outcome.protocol.name].into_iter().chain(names).chain([address.as_str()]);
         let signals = readings.iter().map(|reading| cells(outcome, reading));
         let signals: Vec<_> = if readings.is_empty() { vec![Default::default()] } else { signals.collect() };
+        let behind = [notes.as_str(), &data, &selectors];
         for signal in signals {
-            let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain([notes.as_str(), data.as_str()]);
+            let cells = frame.clone().chain(signal.iter().map(String::as_str)).chain(behind);
             writeln!(out, "{}", cells.map(quoted).collect::<Vec<_>>().join(","))?;
         }
         Ok(())
@@ -57,6 +61,11 @@ impl Rows {
         }
         Ok(())
     }
+}
+
+/// Writes numbers with their names.
+fn pairs<'a>(selectors: impl Iterator<Item = (&'a str, u64)>) -> String {
+    selectors.map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns message, access and kind.

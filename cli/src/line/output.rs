@@ -98,12 +98,9 @@ fn recognised(out: &mut impl Write, outcome: &Outcome<'_>, decoded: &Decoded) ->
     out.write_all(b",\"addresses\":")?;
     let addresses = addresses(outcome, decoded).map(|(kind, number)| (kind.name.as_str(), number));
     object(out, addresses, integer)?;
-    let (content, known) = (decoded.content(protocol), selected(protocol, &decoded.selectors));
+    let content = decoded.content(protocol);
     let is_number = |signal: &Signal| transport.is_some() && transport::is_number(signal);
-    let numbers = decoded.signals.iter().map(|reading| (&content[reading.signal], reading.bits));
-    let numbers = numbers.filter(|(signal, _)| is_number(signal)).map(|(signal, bits)| (signal.name.as_str(), bits));
-    let counter = outcome.whole.as_ref().and_then(|whole| whole.counter);
-    selectors(out, protocol, &decoded.identifier, known.chain(numbers).chain(counter))?;
+    selectors(out, protocol, &decoded.identifier, all_selectors(outcome, decoded))?;
     out.write_all(b",\"signals\":")?;
     let values = fields(content, decoded);
     let shown = values.iter().filter(|(_, field)| match field {
@@ -144,8 +141,22 @@ fn unknown(out: &mut impl Write, protocol: &Protocol, unrecognised: &Unrecognise
     selectors(out, protocol, &unrecognised.identifier, selected(protocol, &unrecognised.selectors))
 }
 
+/// Names the selectors of a frame, and what numbers a frame of a transport or a message in parts.
+pub fn all_selectors<'a>(
+    outcome: &'a Outcome<'a>,
+    decoded: &'a Decoded,
+) -> impl Iterator<Item = (&'a str, u64)> + Clone {
+    let content = decoded.content(outcome.protocol);
+    let signals = decoded.signals.iter().filter(|_| transport::name(outcome.protocol, decoded).is_some());
+    let numbers = signals.map(|reading| (&content[reading.signal], reading.bits));
+    let numbers = numbers.filter(|(signal, _)| transport::is_number(signal));
+    let numbers = numbers.map(|(signal, bits)| (signal.name.as_str(), bits));
+    let counter = outcome.whole.as_ref().and_then(|whole| whole.counter);
+    selected(outcome.protocol, &decoded.selectors).chain(numbers).chain(counter)
+}
+
 /// Names selectors.
-fn selected<'a>(
+pub fn selected<'a>(
     protocol: &'a Protocol,
     selectors: &'a [(SelectorId, u64)],
 ) -> impl Iterator<Item = (&'a str, u64)> + Clone {
