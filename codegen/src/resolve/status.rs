@@ -64,7 +64,9 @@ impl Resolver<'_> {
                 self.refuse_place(width, &beyond(width).collect::<Vec<_>>(), id);
             }
             let width = if is_place_wrong { WIDEST } else { width };
-            entries.iter().for_each(|entry| self.check_entry(entry, width));
+            for entry in &entries {
+                self.check_entry(entry, width);
+            }
             self.tables.status_words[id].bits.retain(|bit| bit.bit < width);
         }
     }

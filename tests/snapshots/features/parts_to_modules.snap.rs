@@ -18,8 +18,8 @@ pub struct Identifier {
     pub command: u8,
     /// Set: bit 5.
     pub set: u8,
-    /// To host: bit 4.
-    pub to_host: u8,
+    /// Host: bit 4.
+    pub host: u8,
     /// Oven: bits 3..0.
     pub oven: u8,
 }
@@ -29,8 +29,8 @@ impl Identifier {
     pub const COMMAND: Bits = Bits::new(10, 6);
     /// Place of `set`.
     pub const SET: Bits = Bits::new(5, 5);
-    /// Place of `to_host`.
-    pub const TO_HOST: Bits = Bits::new(4, 4);
+    /// Place of `host`.
+    pub const HOST: Bits = Bits::new(4, 4);
     /// Place of `oven`.
     pub const OVEN: Bits = Bits::new(3, 0);
 
@@ -41,7 +41,7 @@ impl Identifier {
         Self {
             command: Self::COMMAND.read(id),
             set: Self::SET.read(id),
-            to_host: Self::TO_HOST.read(id),
+            host: Self::HOST.read(id),
             oven: Self::OVEN.read(id),
         }
     }
@@ -52,7 +52,7 @@ impl Identifier {
     pub fn to_raw(self) -> u32 {
         Self::COMMAND.write(self.command)
             | Self::SET.write(self.set)
-            | Self::TO_HOST.write(self.to_host)
+            | Self::HOST.write(self.host)
             | Self::OVEN.write(self.oven)
     }
 }
@@ -64,7 +64,7 @@ impl IdentifierFields for Identifier {
 
     #[inline(always)]
     fn head<H: Headed>(id: u32, frame: H) -> H::Output {
-        match Self::TO_HOST.of(id) {
+        match Self::HOST.of(id) {
             0x0 => frame.to_module(),
             _ => frame.to_controller(),
         }
@@ -72,14 +72,14 @@ impl IdentifierFields for Identifier {
 
     #[inline]
     fn documented_modes(id: u32) -> u8 {
-        u8::from(Self::TO_HOST.of(id) == 0x0 && (0x1..=0x9).contains(&Self::OVEN.of(id)))
+        u8::from(Self::HOST.of(id) == 0x0 && (0x1..=0x9).contains(&Self::OVEN.of(id)))
     }
 }
 
 /// Whom a request addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// Single: `0x01..=0x09`. Section 1.
+    /// Single: `0x01..=0x09`.
     Oven(u8),
 }
 
@@ -105,7 +105,7 @@ impl Destination for Target {
     fn request(self, _: Option<i32>) -> Result<IdFilter, Error> {
         Ok(match self {
             Self::Oven(number) => {
-                IdFilter::ANY.id(Identifier::TO_HOST, 0x0).documented(Identifier::OVEN, &OVEN_ADDRESS, number.into())?
+                IdFilter::ANY.id(Identifier::HOST, 0x0).documented(Identifier::OVEN, &OVEN_ADDRESS, number.into())?
             }
         })
     }
@@ -114,7 +114,7 @@ impl Destination for Target {
     fn replies(self, who: Who, _: Option<i32>) -> Option<IdFilter> {
         Some(match (self, who) {
             (Self::Oven(number), Who::One) => {
-                IdFilter::ANY.id(Identifier::TO_HOST, 0x1).address(Identifier::OVEN, &OVEN_ADDRESS, number.into())
+                IdFilter::ANY.id(Identifier::HOST, 0x1).address(Identifier::OVEN, &OVEN_ADDRESS, number.into())
             }
             _ => return None,
         })
@@ -130,31 +130,31 @@ impl Destination for Target {
     }
 }
 
-/// Oven: `0x01..=0x09`. Section 1.
+/// Oven: `0x01..=0x09`.
 pub const OVEN_ADDRESS: AddressType = AddressType::new("oven", 0x01, 0x09);
 
-/// Single. Section 1.
+/// Single.
 pub const SINGLE_MODE: Mode = Mode {
     name: "single",
     target: Some(&OVEN_ADDRESS),
     request: Some(Pattern {
-        constants: &[(Identifier::TO_HOST, 0x0)],
+        constants: &[(Identifier::HOST, 0x0)],
         addresses: &[Address::new(Identifier::OVEN, &OVEN_ADDRESS)],
     }),
     one: Some(Pattern {
-        constants: &[(Identifier::TO_HOST, 0x1)],
+        constants: &[(Identifier::HOST, 0x1)],
         addresses: &[Address::new(Identifier::OVEN, &OVEN_ADDRESS)],
     }),
     each: None,
     coordinator: None,
 };
 
-/// Read. Section 1.
+/// Read.
 pub const READ_ACCESS: Exchange = Exchange::new("read", &[Some(Who::One)])
     .request(FRAME.id(Identifier::SET, 0x0))
     .reply(FRAME.id(Identifier::SET, 0x0));
 
-/// Set. Section 1.
+/// Set.
 pub const SET_ACCESS: Exchange = Exchange::new("set", &[Some(Who::One)])
     .with_values()
     .request(FRAME.id(Identifier::SET, 0x1))
@@ -196,8 +196,6 @@ const HEAT_LIMITS: &[(u8, Option<(f64, f64)>)] =
 
 /// State: `command` 0x01. Section 2.
 /// - [`read`](READ_ACCESS): the module answers (`single`).
-/// - Request `043#0000000000000000`.
-/// - Reply `053#0300000000000000`: `steps` 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct State {
     /// Steps: byte 0.
@@ -229,7 +227,6 @@ impl Layout for State {
 /// Temperatures that the oven goes through: `command` 0x02. Section 2.1.
 /// - [`read`](READ_ACCESS): the module answers (`single`).
 /// - [`set`](SET_ACCESS): the module answers (`single`).
-/// - Request `083#0000000000000000`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Program {
     /// Hold in min: byte 0, `1..=60`.
@@ -384,11 +381,8 @@ impl Protocol for Message {
 
     fn way(shown: &Shown) -> Option<Way> {
         Way::best([
-            shown.request(0).id(Identifier::TO_HOST, 0x0).address(&Address::new(Identifier::OVEN, &OVEN_ADDRESS)),
-            shown
-                .reply(0, Who::One)
-                .id(Identifier::TO_HOST, 0x1)
-                .address(&Address::new(Identifier::OVEN, &OVEN_ADDRESS)),
+            shown.request(0).id(Identifier::HOST, 0x0).address(&Address::new(Identifier::OVEN, &OVEN_ADDRESS)),
+            shown.reply(0, Who::One).id(Identifier::HOST, 0x1).address(&Address::new(Identifier::OVEN, &OVEN_ADDRESS)),
         ])
     }
 
