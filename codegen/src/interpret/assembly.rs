@@ -13,9 +13,9 @@ use crate::model::{
 /// The parts that came so far. `M` is what the caller remembers of each frame.
 ///
 /// A device sends the parts of a message in their order. Another message begins with a part whose number is not greater
-/// than that of the part before, or which has another counter. So does a part of a device after a request to it that
-/// carries none. A frame that is repeated at once counts once. What goes to a device is never mixed with what comes from
-/// it.
+/// than that of the part before, or which has another counter. After a request that carries no part, the next part of the
+/// device begins one, too. A frame that is repeated at once counts once. What goes to a device is never mixed with what
+/// comes from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly<M> {
     transfers: Vec<Transfer<M>>,

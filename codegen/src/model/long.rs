@@ -211,7 +211,7 @@ impl Protocol {
         message.long.filter(|long| self[*long].parts().is_some())
     }
 
-    /// Returns the long message of which a frame carries a part.
+    /// Returns the long message whose part a frame carries.
     pub fn part_of(&self, frame: &FrameLayout) -> Option<LongMessageId> {
         self.in_parts(&self[frame.message]).filter(|_| !frame.signals.is_empty())
     }

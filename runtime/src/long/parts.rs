@@ -5,9 +5,9 @@
 //! missing. Parts of two nodes are never mixed.
 //!
 //! A node sends the parts of a message in their order. Another message begins with a part whose
-//! number is not greater than that of the part before, or which has another counter. So does a part
-//! of a node after a request to it that carries none. A frame that is repeated at once counts once.
-//! What goes to a node is never mixed with what comes from it.
+//! number is not greater than that of the part before, or which has another counter. After a request
+//! that carries no part, the next part of the node begins one, too. A frame that is repeated at once
+//! counts once. What goes to a node is never mixed with what comes from it.
 //!
 //! Where a message ends by silence, the document says how long that is, whatever the patience of the
 //! assembler. Then [`timed_out`](Assembler::timed_out) gives whole messages.
