@@ -170,7 +170,8 @@ impl Filter {
     /// Also requires this of the identifier. If both require a bit, `other` counts.
     #[inline(always)]
     pub(crate) const fn narrowed(self, other: IdFilter) -> Self {
-        self.id_bits(other.mask, other.value)
+        let id_value = (self.id_value & !other.mask) | other.value;
+        Self { id_mask: self.id_mask | other.mask, id_value, ..self }
     }
 
     /// Returns what identifiers must show, and that is also `other`. If both require a bit, `other` counts.

@@ -81,12 +81,3 @@ impl Task for Signals {
         L::SIGNALS
     }
 }
-
-impl Task for &mut Payload {
-    type Output = Result<(), Error>;
-
-    #[inline(always)]
-    fn run<L: Layout>(self, values: &L) -> Self::Output {
-        values.encode(self)
-    }
-}

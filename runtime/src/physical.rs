@@ -68,6 +68,9 @@ impl<R: Raw + 'static> Physical<R> for R {
 ///
 /// Each calculates only in its own precision.
 pub trait Scaled: Copy + PartialOrd + Sealed + 'static {
+    /// The greatest width for which [`raw_of`](Self::raw_of) tests all that the bits cannot hold.
+    const TESTED: u8;
+
     /// Returns the physical value of `raw`. A constant scale folds.
     fn decoded(raw: i64, scale: Scale) -> Self;
 
@@ -113,6 +116,8 @@ impl Sealed for f32 {}
 impl Sealed for f64 {}
 
 impl Scaled for f64 {
+    const TESTED: u8 = 32;
+
     #[inline(always)]
     fn decoded(raw: i64, scale: Scale) -> Self {
         scale.physical(raw)
@@ -164,6 +169,8 @@ impl Scaled for f64 {
 }
 
 impl Scaled for f32 {
+    const TESTED: u8 = 22;
+
     #[inline(always)]
     fn decoded(raw: i64, scale: Scale) -> Self {
         scale.physical_f32(raw)

@@ -4,14 +4,14 @@ use core::mem::discriminant;
 
 use crate::frame::{classic, without_data};
 use crate::incoming::{Incoming, problem};
-use crate::layout::Signals;
+use crate::layout::{Signals, Task};
 use crate::plumbing::Way;
 use crate::protocol::{is_own, own_id};
 use crate::reply::{has_error, selected};
 use crate::status::set_bits;
 use crate::{
     Addressed, Addressing, AnySignal, Data, Destination, Error, Exchange, Failure, Frame, IdentifierFields, Kind,
-    Meaning, Payload, Place, Problem, Protocol, Reading, Route, Selector, Severity, StatusBit,
+    Layout, Meaning, Payload, Place, Problem, Protocol, Reading, Route, Selector, Severity, StatusBit,
 };
 
 /// A recognised frame.
@@ -235,9 +235,9 @@ impl<P: Protocol> Received<P> {
     /// - addresses that the document does not name.
     #[inline]
     pub fn encode(&self) -> Result<Frame, Error> {
-        let payload = self.payload()?;
-        let length = P::LENGTH.or(payload.length()).unwrap_or(self.exchange.data_length());
-        let frame = self.frame.with(*payload.data(), length);
+        let (data, length) = self.content.run(Writing(self))?;
+        let length = P::LENGTH.or(length).unwrap_or(self.exchange.data_length());
+        let frame = self.frame.with(data, length);
         if self.is_other {
             self.check_recognised(frame)?;
         }
@@ -263,14 +263,12 @@ impl<P: Protocol> Received<P> {
         is_same_frame && self.identifier() == other.identifier()
     }
 
-    /// Writes the signals over the received data.
+    /// Returns the received data, over which the signals are written.
     #[inline(always)]
-    fn payload(&self) -> Result<Payload, Error> {
+    fn payload(&self) -> Payload {
         let payload = Payload::of(self.exchange, self.frame.bytes()).for_model(self.model);
         let payload = payload.received_with(self.frame.byte_count());
-        let mut payload = if self.is_to_module() { payload.keeping_limits() } else { payload };
-        self.content.run(&mut payload)?;
-        Ok(payload)
+        if self.is_to_module() { payload.keeping_limits() } else { payload }
     }
 
     /// Refuses a request in a wrong addressing mode, to an undocumented address, or of a message
@@ -317,6 +315,24 @@ impl<P: Addressed> Received<P> {
     /// Returns the [`target`](Self::target), and the address of the controller that sent the request.
     pub fn route(&self) -> Option<Route<P::Target>> {
         P::Target::shown(&self.way()?)
+    }
+}
+
+/// Writes the values of a message over the data that were received. It returns the data, and their number if the message
+/// can have several.
+///
+/// Each message has a payload of its own, so none has to be in memory.
+struct Writing<'a, P: Protocol>(&'a Received<P>);
+
+impl<P: Protocol> Task for Writing<'_, P> {
+    type Output = Result<(Data, Option<u8>), Error>;
+
+    #[inline(always)]
+    fn run<L: Layout>(self, values: &L) -> Self::Output {
+        let Self(received) = self;
+        let mut payload = received.payload();
+        values.encode(&mut payload)?;
+        Ok((*payload.data(), payload.length()))
     }
 }
 

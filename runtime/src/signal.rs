@@ -214,11 +214,17 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
         if R::SIGNED { self.place.get_signed(&data) as u64 } else { self.place.get(&data) }
     }
 
+    /// Returns data with the low bits of a raw value in place.
+    #[inline(always)]
+    fn with(&self, mut data: Data, bits: u64) -> Data {
+        self.place.put(&mut data, bits);
+        data
+    }
+
     /// Writes bits if they can be read back unchanged. Returns whether they can.
     #[inline(always)]
     fn store(&self, bits: u64, payload: &mut Payload) -> bool {
-        let mut data = *payload.data();
-        self.place.put(&mut data, bits);
+        let data = self.with(*payload.data(), bits);
         let is_kept = self.bits(data) == bits;
         if is_kept {
             payload.replace(data);
@@ -250,32 +256,32 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
     /// Tests the value that limits apply to.
     #[inline(always)]
     fn check(&self, value: F, payload: &Payload) -> Result<(), Error> {
-        if F::IS_RAW { self.check_limits(value, payload) } else { self.check_physical(value, payload) }
+        let (model, message) = (payload.model(), payload.message());
+        if F::IS_RAW { self.check_limits(value, model, message) } else { self.check_physical(value, model, message) }
     }
 
     /// Tests a physical value against the limits. Small programs have the code once for all signals of a type, because
-    /// comparing doubles is large where the processor does not do it.
+    /// comparing doubles is large where the processor does not do it. It takes the parts of the payload, or there would
+    /// have to be one in memory.
     #[inline]
-    fn check_physical(&self, value: F, payload: &Payload) -> Result<(), Error> {
-        self.check_limits(value, payload)
+    fn check_physical(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), Error> {
+        self.check_limits(value, model, message)
     }
 
     /// Tests a value against the limits. None lies between them that is not finite.
     #[inline(always)]
-    fn check_limits(&self, value: F, payload: &Payload) -> Result<(), Error> {
-        match self.limits_in(payload) {
+    fn check_limits(&self, value: F, model: Option<u8>, message: &'static str) -> Result<(), Error> {
+        match self.limits_in(model) {
             Some((minimum, maximum)) if value.is_within(minimum, maximum) => Ok(()),
             None if value.is_finite() => Ok(()),
-            Some((minimum, maximum)) if value.is_finite() => {
-                Err(self.outside(value, minimum, maximum, payload.message()))
-            }
-            _ => Err(self.not_finite(payload.message())),
+            Some((minimum, maximum)) if value.is_finite() => Err(self.outside(value, minimum, maximum, message)),
+            _ => Err(self.not_finite(message)),
         }
     }
 
     #[inline(always)]
-    fn limits_in(&self, payload: &Payload) -> Option<(F, F)> {
-        match payload.model() {
+    fn limits_in(&self, model: Option<u8>) -> Option<(F, F)> {
+        match model {
             Some(model) if !self.model_limits.is_empty() => self.limits_for(model),
             _ => self.limits,
         }

@@ -152,7 +152,7 @@ impl<R: Raw, F: Physical<R>> Signal<R, F> {
             return Ok(());
         }
         let number = Number::Float(value);
-        let limits = self.limits_in(payload).map(|limits| self.numbers(limits));
+        let limits = self.limits_in(payload.model()).map(|limits| self.numbers(limits));
         match (limits, self.special(raw.to_bits())) {
             (Some((minimum, maximum)), _) if !(minimum.to_f64()..=maximum.to_f64()).contains(&value) => {
                 Err(self.beyond([number, minimum, maximum], payload.message()))

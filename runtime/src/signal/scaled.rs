@@ -63,6 +63,12 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
         if payload.keeps_limits() && !is_decided && self.check_model(bits, payload)? {
             self.check_rounded(physical, raw, bits, payload)?;
         }
+        // What was tested already needs no second test, and no second error for the compiler to place.
+        let is_tested = !R::IS_DECIMAL && self.place.width() <= F::TESTED;
+        if is_tested {
+            payload.replace(self.with(*payload.data(), bits));
+            return Ok(());
+        }
         if self.store(bits, payload) { Ok(()) } else { Err(self.unheld(physical, bits, payload)) }
     }
 
@@ -122,10 +128,19 @@ impl<R: Raw, F: Physical<R> + Scaled> Signal<R, F> {
     /// They are steps that the bits hold, no value between them means something else, and no device model has others.
     #[inline(always)]
     fn limits_decide(&self, payload: &Payload) -> bool {
-        let is_held = |limit: F| limit.raw_of(self.exact_scale(), self.place.width(), R::SIGNED).is_some();
         let has_no_others = self.specials.is_empty() && self.lacking.is_empty() && self.model_limits.is_empty();
-        let is_plain = has_no_others && self.has_limits_on_steps(payload);
-        is_plain && self.limits.is_some_and(|(minimum, maximum)| is_held(minimum) && is_held(maximum))
+        match self.limits {
+            Some((minimum, maximum)) if has_no_others && self.has_limits_on_steps(payload) => {
+                self.is_held(minimum) && self.is_held(maximum)
+            }
+            _ => false,
+        }
+    }
+
+    /// Tests whether the bits hold a physical value.
+    #[inline(always)]
+    fn is_held(&self, physical: F) -> bool {
+        physical.raw_of(self.exact_scale(), self.place.width(), R::SIGNED).is_some()
     }
 
     /// Tests whether the limits are steps, and known when a program is compiled.
