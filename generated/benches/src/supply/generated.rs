@@ -41,7 +41,7 @@ impl Codec for Generated {
 
     #[inline(always)]
     fn request((route, message): &Self::Request) -> Option<impl embedded_can::Frame> {
-        request(*route, message).ok()
+        request(*route, message)
     }
 
     fn to_values(received: &Received) -> Received {
@@ -82,18 +82,18 @@ macro_rules! codec {
         }
 
         #[inline(always)]
-        fn request(route: Route<Target>, message: &Message) -> Result<canspec_runtime::Frame, Error> {
-            fn frame<R>(request: Request<R>) -> canspec_runtime::Frame {
-                *request.frame()
+        fn request(route: Route<Target>, message: &Message) -> Option<canspec_runtime::Frame> {
+            fn frame<R>(request: Result<Request<R>, Error>) -> Option<canspec_runtime::Frame> {
+                request.ok().map(|request| *request.frame())
             }
             match message {
-                Message::Output(m) => m.set(route).map(frame),
-                Message::SetPoint(m) => m.set(route).map(frame),
-                Message::State(m) => m.set(route).map(frame),
-                Message::Input(m) => m.set(route).map(frame),
-                $(Message::$real(m) => m.set(route).map(frame),)*
-                $(Message::$whole(m) => m.set(route).map(frame),)*
-                $(Message::$signal(m) => m.set(route).map(frame),)*
+                Message::Output(m) => frame(m.set(route)),
+                Message::SetPoint(m) => frame(m.set(route)),
+                Message::State(m) => frame(m.set(route)),
+                Message::Input(m) => frame(m.set(route)),
+                $(Message::$real(m) => frame(m.set(route)),)*
+                $(Message::$whole(m) => frame(m.set(route)),)*
+                $(Message::$signal(m) => frame(m.set(route)),)*
             }
         }
 
