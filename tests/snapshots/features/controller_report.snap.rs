@@ -152,6 +152,7 @@ impl Delivered {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }

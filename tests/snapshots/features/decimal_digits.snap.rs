@@ -221,6 +221,7 @@ impl Delay {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -252,6 +253,7 @@ impl Month {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }

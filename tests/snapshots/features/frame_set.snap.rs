@@ -188,6 +188,7 @@ impl All {
     /// Builds the request [`scan`](SCAN_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn scan(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SCAN.request_to(route, &())
     }

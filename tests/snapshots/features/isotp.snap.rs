@@ -397,6 +397,7 @@ impl TpSingleFrame {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -492,6 +493,7 @@ impl TpFirstFrame {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -554,6 +556,7 @@ impl TpConsecutiveFrame {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -663,6 +666,7 @@ impl TpFlowControl {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }

@@ -206,6 +206,7 @@ impl SetSpeed {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -215,6 +216,7 @@ impl Within<SetSpeed> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         SetSpeed::SET.request_within(self.model, route, &self.values)
     }

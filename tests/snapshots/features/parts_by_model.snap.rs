@@ -192,6 +192,7 @@ impl Label {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<LabelPart>, Error> {
         LabelPart::READ.request_to(route, &())
     }

@@ -203,6 +203,7 @@ impl VoltageLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -210,6 +211,7 @@ impl VoltageLimit {
     /// Builds the request [`write`](WRITE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn write(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::WRITE.request_to(route, self)
     }

@@ -242,6 +242,7 @@ impl SetLimits {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -251,6 +252,7 @@ impl Within<SetLimits> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetLimits>, Error> {
         SetLimits::SET.request_within(self.model, route, &self.values)
     }

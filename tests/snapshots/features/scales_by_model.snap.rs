@@ -224,6 +224,7 @@ impl SetOutput {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -264,6 +265,7 @@ impl Within<SetOutput> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         SetOutput::SET.request_within(self.model, route, &self.values)
     }

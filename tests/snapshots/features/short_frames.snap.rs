@@ -188,6 +188,7 @@ impl KeepAlive {
     /// Builds the request [`tell`](TELL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.request_to(route, self)
     }
@@ -224,6 +225,7 @@ impl Drift {
     /// Builds the request [`ask`](ASK_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn ask(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::ASK.request_to(route, &())
     }

@@ -142,6 +142,7 @@ impl State {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -173,6 +174,7 @@ impl Load {
     /// Builds the report [`tell`](TELL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tell(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.request_to(route, self)
     }

@@ -163,6 +163,7 @@ impl Version {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -199,6 +200,7 @@ impl Label {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }

@@ -180,6 +180,7 @@ impl Temperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -204,6 +205,7 @@ impl Alive {
     /// Builds the request [`tell`](TELL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tell(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TELL.request_to(route, &())
     }

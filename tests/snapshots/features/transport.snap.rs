@@ -335,6 +335,7 @@ impl TpRequestToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -394,6 +395,7 @@ impl TpClearToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -446,6 +448,7 @@ impl TpEndOfMessage {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -498,6 +501,7 @@ impl TpBroadcast {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -546,6 +550,7 @@ impl TpAbort {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -588,6 +593,7 @@ impl TpData {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }

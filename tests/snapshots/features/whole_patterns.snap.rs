@@ -141,6 +141,7 @@ impl Wanted {
     /// Builds the request [`demand`](DEMAND_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn demand(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::DEMAND.request_to(route, self)
     }
@@ -197,6 +198,7 @@ impl Cycles {
     /// Builds the request [`query`](QUERY_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn query(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::QUERY.request_to(route, &())
     }

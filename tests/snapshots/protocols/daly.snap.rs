@@ -855,6 +855,7 @@ impl PackValues {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -924,6 +925,7 @@ impl CellVoltageExtremes {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -999,6 +1001,7 @@ impl TemperatureExtremes {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1075,6 +1078,7 @@ impl ChargeState {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1139,6 +1143,7 @@ impl StatusInformation {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1210,6 +1215,7 @@ impl CellVoltages {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1289,6 +1295,7 @@ impl Temperatures {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1350,6 +1357,7 @@ impl BalanceState {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1389,6 +1397,7 @@ impl FailureStatus {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }

@@ -1715,6 +1715,7 @@ impl Chm {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -1804,6 +1805,7 @@ impl Crm {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -2266,6 +2268,7 @@ impl Cts {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -2360,6 +2363,7 @@ impl Cml {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -2432,6 +2436,7 @@ impl Cro {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -2687,6 +2692,7 @@ impl Ccs {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -3644,6 +3650,7 @@ impl Cst {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -3836,6 +3843,7 @@ impl Csd {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -4018,6 +4026,7 @@ impl Cem {
     /// Builds the report [`charger_cycle`](CHARGER_CYCLE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_cycle(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_CYCLE.request_to(route, self)
     }
@@ -4201,6 +4210,7 @@ impl Dm1Frame {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm1::CHARGER_EVENT.request_to(route, self)
     }
@@ -4417,6 +4427,7 @@ impl Dm2Frame {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm2::CHARGER_EVENT.request_to(route, self)
     }
@@ -4502,6 +4513,7 @@ impl Dm3 {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.request_to(route, self)
     }
@@ -4532,6 +4544,7 @@ impl Dm4 {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.request_to(route, &())
     }
@@ -4553,6 +4566,7 @@ impl Dm5 {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.request_to(route, &())
     }
@@ -4645,6 +4659,7 @@ impl Dm6Frame {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Dm6::CHARGER_EVENT.request_to(route, self)
     }
@@ -4736,6 +4751,7 @@ impl Rqst {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.request_to(route, self)
     }
@@ -4782,6 +4798,7 @@ impl Ackm {
     /// Builds the report [`charger_event`](CHARGER_EVENT_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn charger_event(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::CHARGER_EVENT.request_to(route, self)
     }
@@ -4839,6 +4856,7 @@ impl TpRequestToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -4899,6 +4917,7 @@ impl TpClearToSend {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -4951,6 +4970,7 @@ impl TpEndOfMessage {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -5007,6 +5027,7 @@ impl TpBroadcast {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -5056,6 +5077,7 @@ impl TpAbort {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }
@@ -5098,6 +5120,7 @@ impl TpData {
     /// Builds the report [`tp_of_controller`](TP_OF_CONTROLLER_ACCESS_2) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn tp_of_controller(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::TP_OF_CONTROLLER.request_to(route, self)
     }

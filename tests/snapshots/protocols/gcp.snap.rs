@@ -1053,6 +1053,7 @@ impl SystemOutput {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.request_to(route, &())
     }
@@ -1091,6 +1092,7 @@ impl ModuleCount {
     /// Builds the request [`read_total`](READ_TOTAL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read_total(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ_TOTAL.request_to(route, &())
     }
@@ -1131,6 +1133,7 @@ impl ModuleOutput {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1192,6 +1195,7 @@ impl ModuleStatus {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1262,6 +1266,7 @@ impl InputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1325,6 +1330,7 @@ impl InputVoltageDc {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1380,6 +1386,7 @@ impl ExternalVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1431,6 +1438,7 @@ impl LimitInputCurrent {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.request_to(route, self)
     }
@@ -1440,6 +1448,7 @@ impl Within<LimitInputCurrent> {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         LimitInputCurrent::SET_UNANSWERED.request_within(self.model, route, &self.values)
     }
@@ -1510,6 +1519,7 @@ impl SetOperatingMode {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::SET_UNANSWERED.request_to(route, self)
     }
@@ -1519,6 +1529,7 @@ impl Within<SetOperatingMode> {
     /// Builds the request [`set_unanswered`](SET_UNANSWERED_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set_unanswered(&self, route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         SetOperatingMode::SET_UNANSWERED.request_within(self.model, route, &self.values)
     }
@@ -1588,6 +1599,7 @@ impl SetWalkIn {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<SetWalkInReply>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -1657,6 +1669,7 @@ impl SetLed {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -1697,6 +1710,7 @@ impl SwitchModules {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -1741,6 +1755,7 @@ impl SetTotalOutput {
     /// Builds the request [`set_total`](SET_TOTAL_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set_total(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET_TOTAL.request_to(route, self)
     }
@@ -1788,6 +1803,7 @@ impl SetModuleOutput {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }

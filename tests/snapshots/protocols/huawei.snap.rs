@@ -1225,6 +1225,7 @@ impl MeasuredData {
     /// Builds the request [`read_all`](READ_ALL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ_ALL.request_to(route, &())
     }
@@ -1322,6 +1323,7 @@ impl OperatingHours {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1362,6 +1364,7 @@ impl InputPower {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1399,6 +1402,7 @@ impl InputFrequency {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1436,6 +1440,7 @@ impl InputCurrent {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1473,6 +1478,7 @@ impl OutputPower {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1510,6 +1516,7 @@ impl Efficiency {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1548,6 +1555,7 @@ impl OutputVoltage {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1606,6 +1614,7 @@ impl MaximumOutputCurrent {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1662,6 +1671,7 @@ impl InputVoltage {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1699,6 +1709,7 @@ impl OutputTemperature {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1741,6 +1752,7 @@ impl InputTemperature {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1782,6 +1794,7 @@ impl OutputCurrent1 {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1823,6 +1836,7 @@ impl OutputCurrent2 {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1867,6 +1881,7 @@ impl Alarms {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1910,6 +1925,7 @@ impl FanState {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }
@@ -1957,6 +1973,7 @@ impl Information {
     /// Builds the request [`read_all`](READ_ALL_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ_ALL.request_to(route, &())
     }
@@ -2208,6 +2225,7 @@ impl ELabel {
     /// Builds the request [`read_text`](READ_TEXT_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read_text(route: impl Into<Route<Target>>) -> Result<Request<ELabelPart>, Error> {
         ELabelPart::READ_TEXT.request_to(route, &())
     }
@@ -2310,6 +2328,7 @@ impl OutputVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2319,6 +2338,7 @@ impl Within<OutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
         OutputVoltageSetting::SET.request_within(self.model, route, &self.values)
     }
@@ -2372,6 +2392,7 @@ impl DefaultOutputVoltage {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2381,6 +2402,7 @@ impl Within<DefaultOutputVoltage> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
         DefaultOutputVoltage::SET.request_within(self.model, route, &self.values)
     }
@@ -2432,6 +2454,7 @@ impl OvervoltageProtection {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2441,6 +2464,7 @@ impl Within<OvervoltageProtection> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtection>, Error> {
         OvervoltageProtection::SET.request_within(self.model, route, &self.values)
     }
@@ -2511,6 +2535,7 @@ impl CurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2535,6 +2560,7 @@ impl Within<CurrentLimit> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<CurrentLimit>, Error> {
         CurrentLimit::SET.request_within(self.model, route, &self.values)
     }
@@ -2605,6 +2631,7 @@ impl DefaultCurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2630,6 +2657,7 @@ impl Within<DefaultCurrentLimit> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultCurrentLimit>, Error> {
         DefaultCurrentLimit::SET.request_within(self.model, route, &self.values)
     }
@@ -2672,6 +2700,7 @@ impl InputCurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2729,6 +2758,7 @@ impl FanDuty {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2738,6 +2768,7 @@ impl Within<FanDuty> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<FanDuty>, Error> {
         FanDuty::SET.request_within(self.model, route, &self.values)
     }
@@ -2769,6 +2800,7 @@ impl Standby {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2813,6 +2845,7 @@ impl FanMode {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2820,6 +2853,7 @@ impl FanMode {
     /// Builds the request [`get`](GET_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn get(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::GET.request_to(route, &())
     }

@@ -1874,6 +1874,7 @@ impl CharacteristicWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -1954,6 +1955,7 @@ impl Versions {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2020,6 +2022,7 @@ impl HardwareAddress {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2073,6 +2076,7 @@ impl OutputVoltageSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2080,6 +2084,7 @@ impl OutputVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2089,6 +2094,7 @@ impl Within<OutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OutputVoltageSetting>, Error> {
         OutputVoltageSetting::SET.request_within(self.model, route, &self.values)
     }
@@ -2147,6 +2153,7 @@ impl DefaultOutputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2154,6 +2161,7 @@ impl DefaultOutputVoltage {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2161,6 +2169,7 @@ impl DefaultOutputVoltage {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -2170,6 +2179,7 @@ impl Within<DefaultOutputVoltage> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
         DefaultOutputVoltage::SET.request_within(self.model, route, &self.values)
     }
@@ -2177,6 +2187,7 @@ impl Within<DefaultOutputVoltage> {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<DefaultOutputVoltage>, Error> {
         DefaultOutputVoltage::STORE.request_within(self.model, route, &self.values)
     }
@@ -2227,6 +2238,7 @@ impl OvervoltageProtectionPoint {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2234,6 +2246,7 @@ impl OvervoltageProtectionPoint {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2241,6 +2254,7 @@ impl OvervoltageProtectionPoint {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -2250,6 +2264,7 @@ impl Within<OvervoltageProtectionPoint> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtectionPoint>, Error> {
         OvervoltageProtectionPoint::SET.request_within(self.model, route, &self.values)
     }
@@ -2257,6 +2272,7 @@ impl Within<OvervoltageProtectionPoint> {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<OvervoltageProtectionPoint>, Error> {
         OvervoltageProtectionPoint::STORE.request_within(self.model, route, &self.values)
     }
@@ -2296,6 +2312,7 @@ impl CurrentLimitSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2303,6 +2320,7 @@ impl CurrentLimitSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2345,6 +2363,7 @@ impl DefaultCurrentLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2352,6 +2371,7 @@ impl DefaultCurrentLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2359,6 +2379,7 @@ impl DefaultCurrentLimit {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -2398,6 +2419,7 @@ impl WalkInTime {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2405,6 +2427,7 @@ impl WalkInTime {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2412,6 +2435,7 @@ impl WalkInTime {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -2455,6 +2479,7 @@ impl TotalRunningTime {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2462,6 +2487,7 @@ impl TotalRunningTime {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2469,6 +2495,7 @@ impl TotalRunningTime {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -2504,6 +2531,7 @@ impl SwitchModules {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2534,6 +2562,7 @@ impl ResetOvervoltageLockout {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2566,6 +2595,7 @@ impl FlashGreenLight {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2601,6 +2631,7 @@ impl AssignAddresses {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2639,6 +2670,7 @@ impl ControlLights {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2683,6 +2715,7 @@ impl ShieldAlarms {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2719,6 +2752,7 @@ impl ShieldCommunicationAlarm {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -2726,6 +2760,7 @@ impl ShieldCommunicationAlarm {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -2761,6 +2796,7 @@ impl InputPower {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2796,6 +2832,7 @@ impl InputFrequency {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2831,6 +2868,7 @@ impl InputCurrent {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2866,6 +2904,7 @@ impl OutputPower {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2901,6 +2940,7 @@ impl OutputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2936,6 +2976,7 @@ impl ActualCurrentLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -2970,6 +3011,7 @@ impl ActualPowerLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3009,6 +3051,7 @@ impl InputVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3048,6 +3091,7 @@ impl AmbientTemperature {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3083,6 +3127,7 @@ impl OutputCurrent {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3124,6 +3169,7 @@ impl ModuleStatus {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3161,6 +3207,7 @@ impl ExternalVoltage {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3191,6 +3238,7 @@ impl RatedCurrent {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3240,6 +3288,7 @@ impl AddressModeSwitch {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3247,6 +3296,7 @@ impl AddressModeSwitch {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3254,6 +3304,7 @@ impl AddressModeSwitch {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -3263,6 +3314,7 @@ impl Within<AddressModeSwitch> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<AddressModeSwitch>, Error> {
         AddressModeSwitch::SET.request_within(self.model, route, &self.values)
     }
@@ -3270,6 +3322,7 @@ impl Within<AddressModeSwitch> {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<AddressModeSwitch>, Error> {
         AddressModeSwitch::STORE.request_within(self.model, route, &self.values)
     }
@@ -3308,6 +3361,7 @@ impl BarcodeVersion {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3315,6 +3369,7 @@ impl BarcodeVersion {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3322,6 +3377,7 @@ impl BarcodeVersion {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -3360,6 +3416,7 @@ impl Barcode1 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3367,6 +3424,7 @@ impl Barcode1 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3374,6 +3432,7 @@ impl Barcode1 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -3412,6 +3471,7 @@ impl Barcode2 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3419,6 +3479,7 @@ impl Barcode2 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3426,6 +3487,7 @@ impl Barcode2 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -3464,6 +3526,7 @@ impl Barcode3 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3471,6 +3534,7 @@ impl Barcode3 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3478,6 +3542,7 @@ impl Barcode3 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -3516,6 +3581,7 @@ impl Barcode4 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3523,6 +3589,7 @@ impl Barcode4 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3530,6 +3597,7 @@ impl Barcode4 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -3560,6 +3628,7 @@ impl FanDutyCycle {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3597,6 +3666,7 @@ impl RectifierCurrentLimitSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3604,6 +3674,7 @@ impl RectifierCurrentLimitSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3639,6 +3710,7 @@ impl PvCurrentLimitSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3646,6 +3718,7 @@ impl PvCurrentLimitSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3700,6 +3773,7 @@ impl RectifierOutputVoltageSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3707,6 +3781,7 @@ impl RectifierOutputVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3716,6 +3791,7 @@ impl Within<RectifierOutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<RectifierOutputVoltageSetting>, Error> {
         RectifierOutputVoltageSetting::SET.request_within(self.model, route, &self.values)
     }
@@ -3764,6 +3840,7 @@ impl PvOutputVoltageSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3771,6 +3848,7 @@ impl PvOutputVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -3780,6 +3858,7 @@ impl Within<PvOutputVoltageSetting> {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<PvOutputVoltageSetting>, Error> {
         PvOutputVoltageSetting::SET.request_within(self.model, route, &self.values)
     }
@@ -3814,6 +3893,7 @@ impl PfcAlarmWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3844,6 +3924,7 @@ impl PfcFaultWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3874,6 +3955,7 @@ impl PfcStatusWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3904,6 +3986,7 @@ impl DcdcAlarmWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3934,6 +4017,7 @@ impl DcdcFaultWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -3964,6 +4048,7 @@ impl DcdcStatusWord {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4003,6 +4088,7 @@ impl AutoBootSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4010,6 +4096,7 @@ impl AutoBootSetting {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4046,6 +4133,7 @@ impl PvVoltageSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4053,6 +4141,7 @@ impl PvVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4080,6 +4169,7 @@ impl Reserved271 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4101,6 +4191,7 @@ impl Reserved272 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4128,6 +4219,7 @@ impl MpptSingleScan {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4135,6 +4227,7 @@ impl MpptSingleScan {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4174,6 +4267,7 @@ impl MpptScanCycle {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4181,6 +4275,7 @@ impl MpptScanCycle {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4188,6 +4283,7 @@ impl MpptScanCycle {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4224,6 +4320,7 @@ impl WindVoltageSetting {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4231,6 +4328,7 @@ impl WindVoltageSetting {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4267,6 +4365,7 @@ impl WindVoltageUpperLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4274,6 +4373,7 @@ impl WindVoltageUpperLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4310,6 +4410,7 @@ impl WindVoltageLowerLimit {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4317,6 +4418,7 @@ impl WindVoltageLowerLimit {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4355,6 +4457,7 @@ impl CustomerInformation1 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4362,6 +4465,7 @@ impl CustomerInformation1 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4369,6 +4473,7 @@ impl CustomerInformation1 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4407,6 +4512,7 @@ impl CustomerInformation2 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4414,6 +4520,7 @@ impl CustomerInformation2 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4421,6 +4528,7 @@ impl CustomerInformation2 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4459,6 +4567,7 @@ impl CustomerInformation3 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4466,6 +4575,7 @@ impl CustomerInformation3 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4473,6 +4583,7 @@ impl CustomerInformation3 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4511,6 +4622,7 @@ impl CustomerInformation4 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4518,6 +4630,7 @@ impl CustomerInformation4 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4525,6 +4638,7 @@ impl CustomerInformation4 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4563,6 +4677,7 @@ impl CustomerInformation5 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4570,6 +4685,7 @@ impl CustomerInformation5 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4577,6 +4693,7 @@ impl CustomerInformation5 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4615,6 +4732,7 @@ impl CustomerInformation6 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4622,6 +4740,7 @@ impl CustomerInformation6 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4629,6 +4748,7 @@ impl CustomerInformation6 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4667,6 +4787,7 @@ impl CustomerInformation7 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4674,6 +4795,7 @@ impl CustomerInformation7 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4681,6 +4803,7 @@ impl CustomerInformation7 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4719,6 +4842,7 @@ impl CustomerInformation8 {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -4726,6 +4850,7 @@ impl CustomerInformation8 {
     /// Builds the request [`set`](SET_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn set(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::SET.request_to(route, self)
     }
@@ -4733,6 +4858,7 @@ impl CustomerInformation8 {
     /// Builds the request [`store`](STORE_ACCESS) with these values.
     /// # Errors
     /// Refuses values outside their limits, other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn store(&self, route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::STORE.request_to(route, self)
     }
@@ -4861,6 +4987,7 @@ impl RealTimeData {
     /// Builds the request [`read_all`](READ_ALL_ACCESS_2).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read_all(route: impl Into<Route<Target>>) -> Result<Request<()>, Error> {
         Self::READ_ALL.request_to(route, &())
     }

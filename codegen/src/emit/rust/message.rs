@@ -114,6 +114,7 @@ pub fn request(Request { method, comment, exchange, reply, carries }: &Request) 
     let (receiver, content) = if *carries { (quote!(&self,), quote!(self)) } else { (quote!(), quote!(&())) };
     quote! {
         #comment
+        #[inline]
         pub fn #method(#receiver route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
             #exchange.request_to(route, #content)
         }
@@ -124,6 +125,7 @@ pub fn request(Request { method, comment, exchange, reply, carries }: &Request) 
 fn request_of_model(Request { method, comment, exchange, reply, .. }: &Request) -> TokenStream {
     quote! {
         #comment
+        #[inline]
         pub fn #method(&self, route: impl Into<Route<Target>>) -> Result<Request<#reply>, Error> {
             #exchange.request_within(self.model, route, &self.values)
         }
