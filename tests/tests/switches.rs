@@ -6,7 +6,7 @@ use arbitrary::{Arbitrary, Unstructured};
 use canspec_codegen::interpret;
 use canspec_protocols::gcp::{SetWalkIn, WalkIn};
 use canspec_protocols::infy::{self, BarcodeValue, Message, Status1, Target};
-use canspec_runtime::plumbing::Raw;
+use canspec_runtime::plumbing::{Raw, Task};
 use canspec_runtime::with_serde::{array, float};
 use canspec_runtime::{Bcd, Bytes, Elements, Frame, Layout, Payload, Protocol, Text};
 use canspec_tests::features_status_word_switched::State;
@@ -28,11 +28,17 @@ fn both_ways<T: Optional>(value: &T) -> [T; 2] {
     ]
 }
 
-/// Returns the bytes that hold the values of a message.
-fn bytes(message: &impl Protocol) -> [u8; 8] {
-    let mut payload = Payload::new("message", [0; 8]);
-    message.run(&mut payload).expect("what was decoded fits its signals");
-    *payload.data()
+/// Writes the values of a message into bytes.
+struct Bytewise;
+
+impl Task for Bytewise {
+    type Output = [u8; 8];
+
+    fn run<L: Layout>(self, values: &L) -> [u8; 8] {
+        let mut payload = Payload::new("message", [0; 8]);
+        values.encode(&mut payload).expect("what was decoded fits its signals");
+        *payload.data()
+    }
 }
 
 struct Examples {
@@ -76,8 +82,8 @@ impl SwitchedVisitor for Random {
         let mut frames = Frames::new(&protocol, 0x5E7D);
         for model in models(&protocol).cycle().take(FRAMES) {
             let Ok(received) = received::<P>(model, &frames.next_frame()) else { continue };
-            let expected = bytes(received.content());
-            assert_eq!(both_ways(received.content()).map(|content| bytes(&content)), [expected; 2], "{path}");
+            let expected = received.content().run(Bytewise);
+            assert_eq!(both_ways(received.content()).map(|content| content.run(Bytewise)), [expected; 2], "{path}");
             assert_eq!(both_ways(&received.identifier()), [received.identifier(); 2], "{path}");
         }
     }
@@ -135,7 +141,7 @@ fn a_float_that_is_no_number_is_the_text_of_its_bits() {
     let written = json!({"module_output": {"voltage_v": "0x7FC01234", "current_a": "0xFF800000"}});
     assert_eq!(shown(output.content()), written);
     let back: Message = serde_json::from_value(written).expect("what was written");
-    assert_eq!(bytes(&back), [0x7F, 0xC0, 0x12, 0x34, 0xFF, 0x80, 0, 0]);
+    assert_eq!(back.run(Bytewise), [0x7F, 0xC0, 0x12, 0x34, 0xFF, 0x80, 0, 0]);
     for wrong in [json!("NaN"), json!("0x7FC0"), json!(null), json!("7FC01234")] {
         refused::<infy::ModuleOutput>(json!({"voltage_v": wrong, "current_a": 0.0}));
     }
