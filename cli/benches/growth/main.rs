@@ -181,8 +181,9 @@ fn print_row(what: &str, count: u32, times: impl Iterator<Item = Option<Duration
     println!("| {what} | {count} | {} |", times.join(" | "));
 }
 
-/// Writes a log of replies that go through all messages, line by line: a command inherits the memory that this program
-/// has when it is called, in what the system counts.
+/// Writes a log of replies that go through all messages, line by line.
+///
+/// The system counts the memory of this program in that of a command that it calls.
 fn log(folder: &Path, name: &str, messages: u32, lines: u32) -> io::Result<PathBuf> {
     let path = folder.join(name);
     let mut log = BufWriter::new(File::create(&path)?);
