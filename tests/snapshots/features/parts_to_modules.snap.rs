@@ -213,6 +213,7 @@ impl State {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<Self>, Error> {
         Self::READ.request_to(route, &())
     }
@@ -253,6 +254,7 @@ impl Program {
     /// Builds the request [`read`](READ_ACCESS).
     /// # Errors
     /// Refuses other addressing modes, and undocumented addresses.
+    #[inline]
     pub fn read(route: impl Into<Route<Target>>) -> Result<Request<ProgramPart>, Error> {
         ProgramPart::READ.request_to(route, &())
     }

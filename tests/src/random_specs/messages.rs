@@ -217,9 +217,11 @@ impl Draft {
         if kinds.contains(&"report") && !self.times.is_empty() && self.chance(40) {
             message.put("every", self.times[0].clone());
         }
-        if !self.models.is_empty() && self.chance(15) {
-            let models = self.models.clone();
-            message.put("models", list(self.some(&models)));
+        let models = self.models.clone();
+        if !models.is_empty() && self.chance(15) {
+            // What is in the message is on some of its models.
+            self.models = self.some(&models);
+            message.put("models", list(self.models.clone()));
         }
         if let Some(priority) = bus.priority.as_ref().filter(|_| self.random.u8(..100) < 20) {
             let value = self.random.u8(..8);
@@ -237,6 +239,7 @@ impl Draft {
         } else {
             self.content(bus, &mut message, &kinds, false);
         }
+        self.models = models;
         self.remark(&mut message);
         self.add_message(traffic, message);
     }
@@ -358,10 +361,11 @@ impl Draft {
             return;
         }
         let (name, value) = self.command(bus, traffic);
-        for models in [list([first.clone()]), list(others.to_vec())] {
+        for some in [vec![first.clone()], others.to_vec()] {
             let mut message = Map::of([("match", Map::of([(name.clone(), value.clone())]))]);
             message.put("access", list([access.name.clone()]));
-            message.put("models", models);
+            message.put("models", list(some.clone()));
+            self.models = some;
             let fields = self.fields(&Site {
                 first: bus.header_bytes,
                 length: 8,
@@ -369,6 +373,7 @@ impl Draft {
                 spare: None,
                 is_member: true,
             });
+            self.models.clone_from(&models);
             if !fields.is_empty() {
                 message.put("fields", fields);
             }
