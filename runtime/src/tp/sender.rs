@@ -15,6 +15,8 @@ pub struct Sender<'a> {
     next: u16,
     /// The last packet that may be sent now.
     allowed: u16,
+    /// The last packet that was sent. All before it were sent, too.
+    sent: u16,
 }
 
 /// What a control frame of the receiver changes.
@@ -26,7 +28,8 @@ pub enum Answer {
     Done,
     /// The receiver has given up.
     Aborted(Reason),
-    /// It is about another message, or none of a receiver.
+    /// It is about another message, or none of a receiver. So is one that leaves out packets that were
+    /// never sent: an acknowledgement, or a request for those after them.
     Other,
     /// It asks for packets that the message does not have, or acknowledges another size. The
     /// transfer is to be aborted.
@@ -37,13 +40,14 @@ impl<'a> Sender<'a> {
     /// Returns the sender of a message to one receiver, who may allow up to `limit` packets at once; 255 means any.
     /// Returns `None` unless there are 9 to 1,785 bytes.
     pub fn new(group: u32, data: &'a [u8], limit: u8) -> Option<Self> {
-        Some(Self { data, group, packets: packets(data.len())?, limit: limit.max(1), next: 1, allowed: 0 })
+        let (packets, limit) = (packets(data.len())?, limit.max(1));
+        Some(Self { data, group, packets, limit, next: 1, allowed: 0, sent: 0 })
     }
 
     /// Returns what goes on with the same message, whose data lie elsewhere.
     pub(crate) fn over<'b>(&self, data: &'b [u8]) -> Sender<'b> {
-        let Self { group, packets, limit, next, allowed, .. } = *self;
-        Sender { data, group, packets, limit, next, allowed }
+        let Self { group, packets, limit, next, allowed, sent, .. } = *self;
+        Sender { data, group, packets, limit, next, allowed, sent }
     }
 
     /// Returns the data.
@@ -77,24 +81,26 @@ impl<'a> Sender<'a> {
                 Answer::Allowed(0)
             }
             Some(Control::Cts { packets, next }) => self.allow(packets, next),
-            Some(Control::EndOfMsgAck { size, packets }) => {
-                if (size, packets) == (self.size(), self.packets) {
-                    Answer::Done
-                } else {
-                    Answer::Wrong
-                }
+            Some(Control::EndOfMsgAck { size, packets }) if (size, packets) != (self.size(), self.packets) => {
+                Answer::Wrong
             }
+            Some(Control::EndOfMsgAck { .. }) if self.sent < self.packets.into() => Answer::Other,
+            Some(Control::EndOfMsgAck { .. }) => Answer::Done,
             Some(Control::Abort(reason)) => Answer::Aborted(reason),
             Some(Control::Rts { .. } | Control::Bam { .. }) | None => Answer::Other,
         }
     }
 
     fn allow(&mut self, packets: u8, next: u8) -> Answer {
-        let last = u16::from(next).saturating_add(packets.into()).saturating_sub(1);
+        let next = u16::from(next);
+        let last = next.saturating_add(packets.into()).saturating_sub(1);
         if next == 0 || last > self.packets.into() || packets > self.limit {
             return Answer::Wrong;
         }
-        (self.next, self.allowed) = (next.into(), last);
+        if next > self.sent.saturating_add(1) {
+            return Answer::Other;
+        }
+        (self.next, self.allowed) = (next, last);
         Answer::Allowed(packets)
     }
 
@@ -113,6 +119,7 @@ impl Iterator for Sender<'_> {
         let mut packet = [0xFF; 8];
         let chunk = [number].into_iter().chain(self.data.get(start..)?.iter().copied().take(PACKET));
         packet.iter_mut().zip(chunk).for_each(|(place, byte)| *place = byte);
+        self.sent = self.sent.max(self.next);
         self.next = self.next.saturating_add(1);
         Some(packet)
     }

@@ -210,6 +210,20 @@ fn a_receiver_can_ask_to_wait() {
 }
 
 #[test]
+fn a_sender_takes_an_acknowledgement_only_of_all_packets() {
+    let data = bytes(BCP_DATA);
+    let mut sender = Sender::new(0x0600, &data, 255).expect("13 bytes");
+    let ack = Control::EndOfMsgAck { size: 13, packets: 2 }.encode(0x0600);
+    let cts = |packets, next| Control::Cts { packets, next }.encode(0x0600);
+    assert_eq!(sender.control(&ack), Answer::Other);
+    assert_eq!((sender.control(&cts(1, 2)), sender.next()), (Answer::Other, None), "packet 1 was never sent");
+    assert_eq!((sender.control(&cts(2, 1)), sender.next().is_some()), (Answer::Allowed(2), true));
+    assert_eq!((sender.control(&ack), sender.next().is_some()), (Answer::Other, true));
+    assert_eq!((sender.control(&cts(1, 1)), sender.next().is_some()), (Answer::Allowed(1), true));
+    assert_eq!(sender.control(&ack), Answer::Done, "packet 2 was sent, too");
+}
+
+#[test]
 fn a_sender_refuses_what_no_receiver_may_ask() {
     let mut sender = Sender::new(0x1500, &[1; 20], 2).expect("twenty bytes");
     let wrong = [

@@ -6,13 +6,17 @@ use canspec_tests::features_transport::{Battery, Frame, Message, Tp};
 
 /// Returns what sends 14 bytes, which are two packets.
 fn begun(target: u32) -> Outgoing<Tp> {
+    let mut outgoing = Outgoing::new();
+    begin(&mut outgoing, target, 0);
+    outgoing
+}
+
+fn begin(outgoing: &mut Outgoing<Tp>, target: u32, now: u32) {
     let maker = Text::new("ACME").expect("four letters");
     let battery =
         Battery { maker, voltage_v: 400.0, capacity_ah: 180.0, cycles: 515, year: Some(2022.0), month: Some(4) };
     let blank = Frame::new_raw(0x1C02_00F4 | target << 8, true, [0; 8], 8);
-    let mut outgoing = Outgoing::new();
-    outgoing.begin(&battery, &blank, 0).expect("it has room");
-    outgoing
+    outgoing.begin(&battery, &blank, now).expect("it has room");
 }
 
 /// Returns a control frame of the charger.
@@ -79,6 +83,38 @@ fn a_message_ends_where_its_receiver_gives_up_or_asks_for_too_much() {
     let _ = sent(&mut outgoing, 0);
     assert_eq!(outgoing.receive(&control([0x11, 3, 1, 0xFF, 0xFF]), 10), Answer::Wrong);
     assert_eq!(sent(&mut outgoing, 10), ["lost 1CEC56F4#FFFAFFFFFF000200"]);
+}
+
+#[test]
+fn what_was_not_sent_yet_is_neither_acknowledged_nor_asked_for_again() {
+    const ACK: [u8; 5] = [0x13, 14, 0, 2, 0xFF];
+    let mut outgoing = begun(0x56);
+    for head in [ACK, CTS, [0x11, 3, 1, 0xFF, 0xFF], [0xFF, 2, 0xFF, 0xFF, 0xFF]] {
+        assert_eq!(outgoing.receive(&control(head), 0), Answer::Other, "{head:02X?} before the announcement");
+    }
+    assert_eq!(sent(&mut outgoing, 0), [RTS]);
+    assert_eq!(outgoing.receive(&control(ACK), 10), Answer::Other);
+    assert_eq!(outgoing.receive(&control([0x11, 1, 2, 0xFF, 0xFF]), 10), Answer::Other, "the first is left out");
+    assert_eq!(outgoing.poll(10), Next::Wait(Some(1250)));
+    assert_eq!(outgoing.receive(&control([0x11, 1, 1, 0xFF, 0xFF]), 20), Answer::Allowed(1));
+    assert_eq!(sent(&mut outgoing, 20), PACKETS[..1]);
+    assert_eq!((outgoing.receive(&control(ACK), 30), outgoing.is_busy()), (Answer::Other, true));
+    assert_eq!(outgoing.receive(&control([0x11, 1, 2, 0xFF, 0xFF]), 40), Answer::Allowed(1));
+    assert_eq!(sent(&mut outgoing, 40), PACKETS[1..]);
+    assert_eq!((outgoing.receive(&control(ACK), 50), outgoing.is_busy()), (Answer::Done, false));
+}
+
+#[test]
+fn a_message_that_begins_while_another_is_on_its_way_is_sent_from_its_beginning() {
+    let mut outgoing = begun(0x56);
+    let _ = sent(&mut outgoing, 0);
+    let _ = outgoing.receive(&control([0x11, 1, 1, 0xFF, 0xFF]), 10);
+    assert_eq!(sent(&mut outgoing, 10), PACKETS[..1]);
+    begin(&mut outgoing, 0x56, 20);
+    assert_eq!(outgoing.receive(&control([0x11, 1, 2, 0xFF, 0xFF]), 20), Answer::Other, "it is about the first");
+    assert_eq!((sent(&mut outgoing, 20), outgoing.poll(20)), (vec![RTS.to_owned()], Next::Wait(Some(1270))));
+    assert_eq!(outgoing.receive(&control(CTS), 30), Answer::Allowed(2));
+    assert_eq!(sent(&mut outgoing, 30), PACKETS);
 }
 
 #[test]

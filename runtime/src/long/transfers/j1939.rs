@@ -135,11 +135,15 @@ impl<T: Grouped> Frames<T> for Packets<'_> {
     }
 
     fn receive(&mut self, id: u32, frame: &impl embedded_can::Frame) -> Answer {
-        let is_answer = |own: &u32| group_of::<T>(*own) == CONTROL_GROUP && link::<T>(*own) == link::<T>(id).reversed();
+        let link_of_message = link::<T>(id);
+        let is_answer = |own: &u32| {
+            let is_back = link::<T>(*own) == link_of_message.reversed();
+            is_back && group_of::<T>(*own) == CONTROL_GROUP
+        };
         let own = own_id::<T::Protocol>(frame).filter(is_answer);
         let own = own.and_then(|id| Frame::copied(id, T::Protocol::FRAME.is_extended(), Some(8), frame));
         match (self, own) {
-            (Self::Several { packets, .. }, Some(frame)) => packets.control(&frame.bytes()),
+            (Self::Several { packets, is_announced: true }, Some(frame)) => packets.control(&frame.bytes()),
             _ => Answer::Other,
         }
     }
