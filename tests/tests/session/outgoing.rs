@@ -118,6 +118,21 @@ fn a_message_that_begins_while_another_is_on_its_way_is_sent_from_its_beginning(
 }
 
 #[test]
+fn nobody_answers_frames_to_all() {
+    for head in
+        [CTS, [0x11, 0, 1, 0xFF, 0xFF], [0x11, 9, 1, 0xFF, 0xFF], [0xFF, 1, 0xFF, 0xFF, 0xFF], [0x13, 14, 0, 2, 0xFF]]
+    {
+        let mut outgoing = begun(0xFF);
+        let _ = sent(&mut outgoing, 0);
+        let [control, a, b, c, d] = head;
+        let answer = Frame::new_raw(0x1CEC_F4FF, true, [control, a, b, c, d, 0, 2, 0], 8);
+        assert_eq!(outgoing.receive(&answer, 10), Answer::Other, "{head:02X?}");
+        assert_eq!((outgoing.poll(10), sent(&mut outgoing, 50).len()), (Next::Wait(Some(50)), 1), "{head:02X?}");
+        assert_eq!((sent(&mut outgoing, 100).len(), outgoing.is_busy()), (1, false), "{head:02X?}");
+    }
+}
+
+#[test]
 fn frames_to_all_have_50_ms_between_them() {
     let mut outgoing = begun(0xFF);
     let mut times = Vec::new();

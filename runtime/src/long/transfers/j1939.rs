@@ -137,7 +137,7 @@ impl<T: Grouped> Frames<T> for Packets<'_> {
     fn receive(&mut self, id: u32, frame: &impl embedded_can::Frame) -> Answer {
         let link_of_message = link::<T>(id);
         let is_answer = |own: &u32| {
-            let is_back = link::<T>(*own) == link_of_message.reversed();
+            let is_back = link::<T>(*own) == link_of_message.reversed() && link_of_message.target != ALL;
             is_back && group_of::<T>(*own) == CONTROL_GROUP
         };
         let own = own_id::<T::Protocol>(frame).filter(is_answer);
