@@ -29,6 +29,9 @@ use crate::clock::{earlier, has_come};
 #[cfg(test)]
 mod tests;
 
+/// The longest time that is told from one that has passed.
+const LONGEST: u32 = u32::MAX >> 1;
+
 /// Times at which things are due, each with a key, with room for `N` of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule<K, const N: usize> {
@@ -69,13 +72,14 @@ impl<K: Copy + PartialEq, const N: usize> Schedule<K, N> {
     }
 
     /// Lets a key be due now, and again in each period, in milliseconds. A period of 0 counts as
-    /// 1 ms. What the key was due for before is forgotten.
+    /// 1 ms, and one above 2^31 - 1 as that, which is 24 days. What the key was due for before is forgotten.
     ///
     /// # Errors
     ///
     /// Refuses another key if there is no room for it.
     pub fn every(&mut self, key: K, period: u32, now: u32) -> Result<(), Full> {
-        self.put(Slot { key, at: now, period: Some(NonZeroU32::new(period).unwrap_or(NonZeroU32::MIN)) })
+        let period = NonZeroU32::new(period.min(LONGEST)).unwrap_or(NonZeroU32::MIN);
+        self.put(Slot { key, at: now, period: Some(period) })
     }
 
     /// Lets a key be due once, after a delay in milliseconds, less than 2^31. What the key was due for before
@@ -117,7 +121,8 @@ impl<K: Copy + PartialEq, const N: usize> Schedule<K, N> {
         Some(slot.key)
     }
 
-    /// Returns when the next key is due, if there is one. A key that is due already is due now.
+    /// Returns when the next key is due, if there is one. A key that is due already is due now, even if it
+    /// may not take its turn. So the program then waits for what it needs, and not for a time.
     pub fn next(&self, now: u32) -> Option<u32> {
         let times = self.slots.iter().flatten().map(|slot| if has_come(slot.at, now) { now } else { slot.at });
         times.reduce(|one, other| if earlier(other, one, now) { other } else { one })

@@ -3,7 +3,7 @@ use std::vec::Vec;
 use super::{Full, Schedule};
 
 fn due<const N: usize>(schedule: &mut Schedule<u8, N>, now: u32) -> Vec<u8> {
-    core::iter::from_fn(|| schedule.due(now, |_| true)).collect()
+    core::iter::from_fn(|| schedule.due(now, |_| true)).take(N + 1).collect()
 }
 
 #[test]
@@ -16,6 +16,16 @@ fn what_is_sent_in_cycles_keeps_its_rounds() {
     assert_eq!((due(&mut schedule, 207), schedule.next(207)), ([1].into(), Some(257)), "two rounds are left out");
     assert_eq!((schedule.every(2, 0, 207), due(&mut schedule, 207)), (Ok(()), [2].into()));
     assert_eq!(schedule.next(207), Some(208));
+}
+
+#[test]
+fn a_period_is_at_most_half_of_what_the_clock_counts() {
+    for period in [(1 << 31) - 1, 1 << 31, (1 << 31) + 1, u32::MAX] {
+        let mut schedule = Schedule::<u8, 1>::new();
+        assert_eq!((schedule.every(1, period, 7), due(&mut schedule, 7)), (Ok(()), [1].into()), "{period}");
+        assert_eq!((schedule.next(7), due(&mut schedule, 0x8000_0005)), (Some(0x8000_0006), [].into()), "{period}");
+        assert_eq!(due(&mut schedule, 0x8000_0006), [1], "{period}");
+    }
 }
 
 #[test]
