@@ -17,7 +17,14 @@ pub struct Sender<'a> {
     allowed: u16,
     /// The last packet that was sent. All before it were sent, too.
     sent: u16,
+    /// The last packet from which on packets were asked for.
+    asked: u16,
+    /// How often they were asked for again.
+    repetitions: u8,
 }
+
+/// How often a receiver may ask again for the packets from one on.
+const REPETITIONS: u8 = 2;
 
 /// What a control frame of the receiver changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +38,8 @@ pub enum Answer {
     /// It is about another message, or none of a receiver. So is one that leaves out packets that were
     /// never sent: an acknowledgement, or a request for those after them.
     Other,
-    /// It asks for packets that the message does not have, or acknowledges another size. The
-    /// transfer is to be aborted.
+    /// It asks for packets that the message does not have, or for the third time again for the same
+    /// ones, or acknowledges another size. The transfer is to be aborted.
     Wrong,
 }
 
@@ -41,18 +48,23 @@ impl<'a> Sender<'a> {
     /// Returns `None` unless there are 9 to 1,785 bytes.
     pub fn new(group: u32, data: &'a [u8], limit: u8) -> Option<Self> {
         let (packets, limit) = (packets(data.len())?, limit.max(1));
-        Some(Self { data, group, packets, limit, next: 1, allowed: 0, sent: 0 })
+        Some(Self { data, group, packets, limit, next: 1, allowed: 0, sent: 0, asked: 0, repetitions: 0 })
     }
 
     /// Returns what goes on with the same message, whose data lie elsewhere.
     pub(crate) fn over<'b>(&self, data: &'b [u8]) -> Sender<'b> {
-        let Self { group, packets, limit, next, allowed, sent, .. } = *self;
-        Sender { data, group, packets, limit, next, allowed, sent }
+        let Self { group, packets, limit, next, allowed, sent, asked, repetitions, .. } = *self;
+        Sender { data, group, packets, limit, next, allowed, sent, asked, repetitions }
     }
 
     /// Returns the data.
     pub(crate) const fn data(&self) -> &'a [u8] {
         self.data
+    }
+
+    /// Returns why the transfer is given up after an answer that is wrong.
+    pub(crate) const fn wrong(&self) -> Reason {
+        if self.repetitions > REPETITIONS { Reason::REPETITIONS } else { Reason::OTHER }
     }
 
     /// Returns the control frame that begins a message to one receiver.
@@ -100,8 +112,21 @@ impl<'a> Sender<'a> {
         if next > self.sent.saturating_add(1) {
             return Answer::Other;
         }
+        self.count(next);
+        if self.repetitions > REPETITIONS {
+            return Answer::Wrong;
+        }
         (self.next, self.allowed) = (next, last);
         Answer::Allowed(packets)
+    }
+
+    /// Counts how often packets are asked for again.
+    fn count(&mut self, next: u16) {
+        let is_further = next > self.asked;
+        let before = if is_further { 0 } else { self.repetitions };
+        let is_again = !is_further || next <= self.sent;
+        self.repetitions = before.saturating_add(is_again.into());
+        self.asked = self.asked.max(next);
     }
 
     /// Returns the number of data bytes, which is at most 1,785.

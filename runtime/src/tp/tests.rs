@@ -224,6 +224,21 @@ fn a_sender_takes_an_acknowledgement_only_of_all_packets() {
 }
 
 #[test]
+fn a_sender_refuses_to_send_a_packet_for_the_fourth_time() {
+    let data = [1; 40];
+    let cts = |packets, next| Control::Cts { packets, next }.encode(0x0600);
+    let asked = |packets: &[u8]| {
+        let mut sender = Sender::new(0x0600, &data, 255).expect("40 bytes, which are six packets");
+        assert_eq!((sender.control(&cts(6, 1)), (&mut sender).count()), (Answer::Allowed(6), 6));
+        let answer = |next: &u8| (sender.control(&cts(1, *next)), sender.next()).0;
+        packets.iter().map(answer).position(|answer| answer == Answer::Wrong)
+    };
+    assert_eq!(asked(&[2, 2, 2]), Some(2));
+    assert_eq!(asked(&[2, 2, 3, 3, 4, 5, 5, 6, 6]), None, "each is asked for twice again at most");
+    assert_eq!(asked(&[2, 3, 2, 3]), Some(3), "packets in turn end, too");
+}
+
+#[test]
 fn a_sender_refuses_what_no_receiver_may_ask() {
     let mut sender = Sender::new(0x1500, &[1; 20], 2).expect("twenty bytes");
     let wrong = [

@@ -118,6 +118,26 @@ fn a_message_that_begins_while_another_is_on_its_way_is_sent_from_its_beginning(
 }
 
 #[test]
+fn a_receiver_may_ask_for_a_packet_twice_again_and_may_ask_to_wait_for_as_long_as_it_likes() {
+    let mut outgoing = begun(0x56);
+    let _ = sent(&mut outgoing, 0);
+    for now in (1000..100_000).step_by(1000) {
+        assert_eq!(outgoing.receive(&control([0x11, 0, 1, 0xFF, 0xFF]), now), Answer::Allowed(0));
+        assert_eq!(outgoing.poll(now), Next::Wait(Some(now + 1050)));
+    }
+    assert_eq!(outgoing.receive(&control(CTS), 100_000), Answer::Allowed(2));
+    assert_eq!(sent(&mut outgoing, 100_000), PACKETS);
+    for now in [100_100, 100_200] {
+        assert_eq!(outgoing.receive(&control([0x11, 1, 2, 0xFF, 0xFF]), now), Answer::Allowed(1));
+        assert_eq!(sent(&mut outgoing, now), PACKETS[1..]);
+    }
+    assert_eq!(outgoing.receive(&control([0x11, 1, 2, 0xFF, 0xFF]), 100_300), Answer::Wrong);
+    // Reason 5 of J1939-21 is too many requests.
+    assert_eq!(sent(&mut outgoing, 100_300), ["lost 1CEC56F4#FF05FFFFFF000200"]);
+    assert!(!outgoing.is_busy());
+}
+
+#[test]
 fn nobody_answers_frames_to_all() {
     for head in
         [CTS, [0x11, 0, 1, 0xFF, 0xFF], [0x11, 9, 1, 0xFF, 0xFF], [0xFF, 1, 0xFF, 0xFF, 0xFF], [0x13, 14, 0, 2, 0xFF]]

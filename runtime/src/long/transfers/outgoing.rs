@@ -45,7 +45,7 @@ pub enum Next {
     /// It sends a frame now.
     Send(Frame),
     /// The message comes to nothing: the receiver was silent for too long, or asked for what the message does
-    /// not have. The program sends a frame that says so.
+    /// not have, or for the same packets too often. The program sends a frame that says so.
     Lost(Frame),
     /// It waits for a frame, and calls `poll` at this time at the latest, if there is one.
     Wait(Option<u32>),
@@ -100,7 +100,7 @@ impl<T: Grouped, M: Memory> Outgoing<T, M> {
                 (course.since, course.patience) = (now, if packets == 0 { HELD } else { ANSWER });
             }
             Answer::Done | Answer::Aborted(_) => self.course = None,
-            Answer::Wrong => course.reason = Some(Reason::OTHER),
+            Answer::Wrong => course.reason = Some(course.sender.frames.wrong()),
             Answer::Other => {}
         }
         answer
@@ -155,6 +155,14 @@ impl Packets<'_> {
         match self {
             Self::One(_) => &[],
             Self::Several { packets, .. } => packets.data(),
+        }
+    }
+
+    /// Returns why the message is given up after an answer that is wrong.
+    const fn wrong(&self) -> Reason {
+        match self {
+            Self::One(_) => Reason::OTHER,
+            Self::Several { packets, .. } => packets.wrong(),
         }
     }
 }
