@@ -6,8 +6,8 @@ use super::charger::Charger;
 use super::side::{Phase, Station};
 use super::vehicle::Vehicle;
 
-/// The longest time until both sides have ended, whatever happens: three times each wait of section 8.3.
-const LONGEST: u32 = 3 * (5 + 30 + 60 + 60 + 120) * 1000;
+/// The longest time until both sides have ended, whatever happens: four times each wait of section 8.3.
+const LONGEST: u32 = 4 * (5 + 30 + 60 + 60 + 120) * 1000;
 
 /// A session that has ended.
 pub struct Session {

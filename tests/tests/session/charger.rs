@@ -6,7 +6,7 @@ use canspec_protocols::gbt27930::{
     Readiness, Recognition, StopState, TIMING, Target, Text, TimeoutState, Tp,
 };
 
-use super::side::{ATTEMPTS, GENERAL, LAST_WORDS, Phase, READY, STATISTICS, Side, Station};
+use super::side::{GENERAL, LAST_WORDS, Phase, READY, STATISTICS, Side, Station};
 
 pub struct Charger {
     pub side: Side,
@@ -79,7 +79,7 @@ impl Charger {
         self.side.attempts += 1;
         self.side.missed = missed;
         self.side.repeat(&["cem"], now);
-        self.side.wait(if self.side.attempts == ATTEMPTS { "failed" } else { "again" }, LAST_WORDS, now);
+        self.side.wait(if self.side.is_last() { "failed" } else { "again" }, LAST_WORDS, now);
     }
 
     /// Returns what says for what it has waited in vain. Section 5.22.
@@ -137,6 +137,7 @@ impl Station for Charger {
             }
             (Phase::Configuration, Message::Bcl(demand)) if self.is_ready => {
                 self.demand = Some(*demand);
+                self.side.has(&["bcl"]);
                 self.charge(now);
             }
             (Phase::Charging, Message::Bcl(demand)) => {
@@ -146,7 +147,8 @@ impl Station for Charger {
             (Phase::Charging, Message::Bsm(_)) => self.side.wait("bsm", GENERAL, now),
             (Phase::Charging, Message::Bst(_)) => self.stop(true, now),
             (Phase::Stop, Message::Bst(_)) => self.side.has(&["bst"]),
-            (Phase::Stop, Message::Bsd(_)) => {
+            // Section 8.1: BST and CST answer each other before the end.
+            (Phase::Stop, Message::Bsd(_)) if !self.side.lacks("bst") => {
                 self.side.rest();
                 self.side.go(Phase::End);
                 self.side.repeat(&["csd"], now);
@@ -170,6 +172,7 @@ impl Station for Charger {
             self.side.wait("bro_ready", READY, now);
         } else if whole.values::<Bcs>().is_some() && self.is_ready_to_charge() {
             self.state = whole.values();
+            self.side.has(&["bcs"]);
             self.charge(now);
         } else if whole.values::<Bcs>().is_some() && self.side.phase == Phase::Charging {
             self.side.wait("bcs", GENERAL, now);

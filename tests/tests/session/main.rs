@@ -183,7 +183,7 @@ struct Loss {
 const LOST: Loss = Loss { formats: &[], first: None, from: 0, error: ("", ""), since: ("", ""), wait: 0 };
 
 /// The data of errors are those of 5.21 and 5.22, with ones by 3.5. S33 and S35 are among them.
-const LOSSES: [Loss; 11] = [
+const LOSSES: [Loss; 12] = [
     Loss { formats: &[0x02], error: ("cem", "FDF0C0FC"), since: ("bhm", "F61C"), wait: 5000, ..LOST },
     Loss { formats: &[0x01], first: Some(0xAA), error: ("bem", "F4F0F0FC"), since: ("crm", "00"), wait: 5000, ..LOST },
     Loss { formats: &[0x06], error: ("cem", "FCF1C0FC"), since: ("brm", ""), wait: 5000, ..LOST },
@@ -192,6 +192,7 @@ const LOSSES: [Loss; 11] = [
     // It is ready 600 ms after CML, and the charger 900 ms after BRO.
     Loss { formats: &[0x0A], error: ("bem", "F0F4F0FC"), since: ("cml", ""), wait: 5600, ..LOST },
     Loss { formats: &[0x10], error: ("cem", "FCF0C4FC"), since: ("bro", "AA"), wait: 5900, ..LOST },
+    Loss { formats: &[0x11], error: ("cem", "FCF0C1FC"), since: ("bro", "AA"), wait: 5900, ..LOST },
     // Without CRM the charger gives up first. If nobody hears that, the vehicle waits on.
     Loss { formats: &[0x01, 0x1F], error: ("bem", "F1F0F0FC"), since: ("chm", ""), wait: 30_000, ..LOST },
     Loss { formats: &[0x10], from: 9000, error: ("cem", "FCF0C4FC"), since: ("bcl", ""), wait: 1000, ..LOST },
@@ -200,10 +201,11 @@ const LOSSES: [Loss; 11] = [
 ];
 
 /// The waits of a side that stops begin when it sends, which is a millisecond before that comes.
-const STOPS: [(Option<u32>, Loss); 4] = [
+const STOPS: [(Option<u32>, Loss); 5] = [
     (None, Loss { formats: &[0x1A], error: ("bem", "F0F0F4FC"), since: ("bst", ""), wait: 4999, ..LOST }),
     (None, Loss { formats: &[0x1D], error: ("bem", "F0F0F0FD"), since: ("bst", ""), wait: 9999, ..LOST }),
     (Some(5000), Loss { formats: &[0x19, 0x1C], error: ("cem", "FCF0D0FC"), since: ("cst", ""), wait: 4999, ..LOST }),
+    (Some(5000), Loss { formats: &[0x19], error: ("cem", "FCF0D0FC"), since: ("cst", ""), wait: 4999, ..LOST }),
     (Some(5000), Loss { formats: &[0x1C], error: ("cem", "FCF0C0FD"), since: ("cst", ""), wait: 9999, ..LOST }),
 ];
 
@@ -247,6 +249,16 @@ fn a_message_that_never_comes_leads_to_the_error_message_of_the_document() {
     }
     for (enough, loss) in &STOPS {
         notices(loss, &run_with(loss, Charger::new(*enough)));
+    }
+}
+
+#[test]
+fn the_connector_has_to_be_plugged_after_three_attempts_to_connect_again() {
+    // Section 8.3.
+    let session = run(Vehicle::new(25_000), Charger::new(None), |frame, _| message_of(frame) == 0x02);
+    for side in [&session.vehicle.side, &session.charger.side] {
+        let count = |wanted| side.phases.iter().filter(|phase| **phase == wanted).count();
+        assert_eq!([Phase::Handshake, Phase::Error, Phase::Failed].map(count), [4, 4, 1], "{:?}", side.phases);
     }
 }
 

@@ -26,14 +26,17 @@ pub enum Phase {
     Failed,
 }
 
-/// How often a side begins anew, and the wait for any message without a time of its own. Sections 8.2 and 8.3.
-pub const ATTEMPTS: u32 = 3;
+/// Section 8.3: how often a side begins anew after a time-out.
+const ATTEMPTS: u32 = 3;
+/// Section 8.2: the wait for any message without a time of its own.
 pub const GENERAL: u32 = 5000;
 /// Section 8.3: the wait until the other side is ready.
 pub const READY: u32 = 60_000;
 /// Section 8.3: the wait for the statistics of the other side.
 pub const STATISTICS: u32 = 10_000;
-/// How long a side tells of its last time-out. The document does not say.
+/// How long a side tells of a time-out, before the charger begins anew or the session has failed. For the charger,
+/// section 8.3 has 30 s after CEM, and erratum N12 of the spec: for what it waits is unclear. Here it begins sooner, since
+/// a vehicle that has sent BEM waits no longer than 30 s for CRM.
 pub const LAST_WORDS: u32 = 3000;
 
 /// Messages that are longer than a frame. Section 4.
@@ -62,6 +65,7 @@ pub struct Came {
 pub struct Side {
     pub phase: Phase,
     pub phases: Vec<Phase>,
+    /// How many attempts have failed.
     pub attempts: u32,
     /// What it has waited for in vain, in the last attempt.
     pub missed: Option<&'static str>,
@@ -128,6 +132,16 @@ impl Side {
         for name in names {
             self.waits.cancel(name);
         }
+    }
+
+    /// Tests whether it waits for something.
+    pub fn lacks(&self, name: &'static str) -> bool {
+        self.waits.has(name)
+    }
+
+    /// Tests whether the last attempt has failed.
+    pub const fn is_last(&self) -> bool {
+        self.attempts > ATTEMPTS
     }
 
     /// Neither sends nor waits.

@@ -6,7 +6,7 @@ use canspec_protocols::gbt27930::{
 };
 use canspec_runtime::Bytes;
 
-use super::side::{ATTEMPTS, GENERAL, LAST_WORDS, Phase, READY, STATISTICS, Side, Station};
+use super::side::{GENERAL, LAST_WORDS, Phase, READY, STATISTICS, Side, Station};
 
 /// Section 8.3: the wait for CRM after CHM, and after BEM.
 const RECOGNITION: u32 = 30_000;
@@ -82,8 +82,7 @@ impl Vehicle {
         self.side.attempts += 1;
         self.side.missed = missed;
         self.side.repeat(&["bem"], now);
-        let is_last = self.side.attempts == ATTEMPTS;
-        self.side.wait("failed", if is_last { LAST_WORDS } else { RECOGNITION }, now);
+        self.side.wait("failed", if self.side.is_last() { LAST_WORDS } else { RECOGNITION }, now);
     }
 
     /// Returns what says for what it has waited in vain. Section 5.21.
@@ -110,7 +109,7 @@ impl Station for Vehicle {
     }
 
     fn hear(&mut self, message: &Message, now: u32) {
-        let is_over = matches!(self.side.phase, Phase::Done | Phase::Failed) || self.side.attempts == ATTEMPTS;
+        let is_over = matches!(self.side.phase, Phase::Done | Phase::Failed) || self.side.is_last();
         match (self.side.phase, message) {
             _ if is_over => {}
             (phase, Message::Chm(_)) if phase != Phase::Handshake => self.begin(now),
