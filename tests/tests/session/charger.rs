@@ -23,7 +23,7 @@ pub struct Charger {
 
 impl Charger {
     pub fn new(enough: Option<u32>) -> Self {
-        let mut charger = Self {
+        Self {
             side: Side::new(),
             enough,
             getting_ready: 900,
@@ -32,12 +32,10 @@ impl Charger {
             is_stopped_by_vehicle: false,
             demand: None,
             state: None,
-        };
-        charger.begin(0);
-        charger
+        }
     }
 
-    fn begin(&mut self, now: u32) {
+    pub fn begin(&mut self, now: u32) {
         (self.is_recognised, self.is_ready, self.is_stopped_by_vehicle) = (false, false, false);
         (self.demand, self.state) = (None, None);
         self.side.rest();

@@ -9,7 +9,7 @@ mod outgoing;
 mod side;
 mod vehicle;
 
-use bus::{Session, message_of, run};
+use bus::{Session, message_of, run, run_from};
 use canspec_protocols::gbt27930::Frame;
 use canspec_runtime::sim::Random;
 use charger::Charger;
@@ -101,9 +101,8 @@ fn messages_come_in_the_cycles_of_the_document() {
     ];
     for (lost, id, cycle) in cycles {
         let session = run(Vehicle::new(25_000), Charger::new(None), |frame, _| message_of(frame) == lost);
-        let gaps: Vec<_> = session.times(id).windows(2).map(|pair| pair[1] - pair[0]).collect();
-        // Between attempts there are seconds.
-        assert!(gaps.len() > 3 && gaps.iter().all(|gap| *gap == cycle || *gap > 1000), "{id:08X}: {gaps:?}");
+        let gaps = session.gaps(|frame| frame.raw_id() == id);
+        assert!(gaps.len() > 3 && gaps.iter().all(|gap| *gap == cycle), "{id:08X}: {gaps:?}");
     }
     let session = undisturbed();
     // Of messages by the transport, the announcements. Others can be on their way.
@@ -114,6 +113,57 @@ fn messages_come_in_the_cycles_of_the_document() {
         let is_kept = |pair: &[u32]| (pair[1] - pair[0]).abs_diff(cycle) <= 50;
         assert!(times.windows(2).all(is_kept), "{data}: {times:?}");
     }
+}
+
+#[test]
+fn a_long_message_is_repeated_in_its_cycle_and_one_without_an_answer_after_a_time_of_the_transport() {
+    // Section 8.4, of BRM without CRM (0xAA) and BCP without CML. T3 of section 7.5, of a BRM that gets lost.
+    let losses: [(&'static [u32], _, _, _); 3] =
+        [(&[0x01], Some(0xAA), 0x02, 250), (&[0x08], None, 0x06, 500), (&[0x02], None, 0x02, 1250)];
+    for (formats, first, format, cycle) in losses {
+        let session = run_with(&Loss { formats, first, ..LOST }, Charger::new(None));
+        let is_announced =
+            |frame: &Frame| frame.raw_id() == 0x1CEC_56F4 && frame.bytes()[0] == 0x10 && message_of(frame) == format;
+        let gaps = session.gaps(is_announced);
+        assert!(gaps.len() > 3 && gaps.iter().all(|gap| *gap == cycle), "{format:02X} without {formats:X?}: {gaps:?}");
+    }
+}
+
+#[test]
+fn a_message_is_not_sent_after_the_one_that_ends_it() {
+    // Section 8.1. BST and CST answer each other, and go on in some time if CSD gets lost.
+    let ends = [
+        (("chm", ""), ("bhm", "")),
+        (("bhm", ""), ("crm", "00")),
+        (("crm", "00"), ("brm", "")),
+        (("brm", ""), ("crm", "AA")),
+        (("crm", "AA"), ("bcp", "")),
+        (("bcp", ""), ("cml", "")),
+        (("cts", ""), ("bro", "AA")),
+        (("cml", ""), ("bro", "AA")),
+        (("bro", ""), ("cro", "AA")),
+        (("cro", ""), ("bcl", "")),
+        (("bcl", ""), ("cst", "")),
+        (("ccs", ""), ("bst", "")),
+        (("bst", ""), ("cst", "")),
+        (("cst", ""), ("bsd", "")),
+    ];
+    let (came, _) = until_error(&run_with(&Loss { formats: &[0x1D], ..LOST }, Charger::new(None)));
+    let times = |(name, data): (&str, &str)| -> Vec<u32> {
+        came.iter().filter(|came| came.name == name && came.data.starts_with(data)).map(|came| came.at).collect()
+    };
+    for (message, end) in ends {
+        let last = times(message).last().copied().zip(times(end).first().copied());
+        // One can be on its way when the other comes.
+        assert!(last.is_some_and(|(last, end)| last <= end + 1), "{message:?} until {end:?}: {last:?}");
+    }
+}
+
+#[test]
+fn a_clock_that_wraps_around_changes_nothing() {
+    let wrapped = run_from(u32::MAX - 12_000, Vehicle::new(25_000), Charger::new(None), |_, _| false);
+    assert_eq!(wrapped.phases(), [Phase::Done; 2]);
+    assert!(wrapped.frames == undisturbed().frames);
 }
 
 /// Returns the data of an announcement with 2 packets at once, as the document prints them.

@@ -23,9 +23,12 @@ pub struct Vehicle {
 
 impl Vehicle {
     pub fn new(enough: u32) -> Self {
-        let mut side = Side::new();
-        side.wait("start", READY, 0);
-        Self { side, enough, getting_ready: 600, is_ready: false, is_stopped_by_charger: false }
+        Self { side: Side::new(), enough, getting_ready: 600, is_ready: false, is_stopped_by_charger: false }
+    }
+
+    /// Starts with the plug of the connector.
+    pub fn plug(&mut self, now: u32) {
+        self.side.wait("start", READY, now);
     }
 
     fn begin(&mut self, now: u32) {
