@@ -45,7 +45,7 @@ pub enum Next {
     /// It sends a frame now.
     Send(Frame),
     /// The message comes to nothing: the receiver was silent for too long, or asked for what the message does
-    /// not have, or for the same packets too often. The program sends a frame that says so.
+    /// not have. Or it asked for the same packets too often. The program sends a frame that says so.
     Lost(Frame),
     /// It waits for a frame, and calls `poll` at this time at the latest, if there is one.
     Wait(Option<u32>),
