@@ -35,8 +35,8 @@ pub enum Answer {
     Done,
     /// The receiver has given up.
     Aborted(Reason),
-    /// It is about another message, or none of a receiver. An acknowledgement of packets that were never
-    /// sent counts as one, and so does a request for those after them.
+    /// It is about another message, or none of a receiver. Or it leaves out packets that were
+    /// never sent: an acknowledgement of all, or a request for those after them.
     Other,
     /// It asks for packets that the message does not have, or for the third time again for the same
     /// ones, or acknowledges another size. The transfer is to be aborted.
