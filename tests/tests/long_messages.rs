@@ -220,15 +220,16 @@ fn what_goes_to_a_module_is_not_mixed_with_what_comes_from_it() {
     let answer = |frame: &Frame| Frame::new_raw(frame.raw_id() | 0x10, false, frame.bytes(), 8);
     let mut assembler = Assembler::<Program, 4>::new(100);
     let frames = sent.flat_map(|frame| [frame, answer(&frame)]).collect::<Vec<_>>();
-    // Byte 0 has the number of steps, which the parts of both directions then have.
+    // Byte 0 has the number of steps of what the module says. What it is sent may have another one.
     let state = Frame::new_raw(0x053, false, [3, 0, 0, 0, 0, 0, 0, 0], 8);
     let ended: Vec<_> = [state].iter().chain(&frames).flat_map(|frame| assembler.receive(frame, 0)).collect();
     let whole = ended.iter().map(|outcome| match outcome {
         Outcome::Whole(whole) => (whole.values, whole.is_to_module()),
         other => panic!("{other:?}"),
     });
-    assert_eq!(whole.collect::<Vec<_>>(), [(program(210.0), true), (program(210.0), false)]);
-    // A bare request begins anew what the module sends, and leaves alone what it is sent.
+    assert_eq!(whole.collect::<Vec<_>>(), [(program(210.0), false)]);
+    // The next message ends what the module was sent. A bare request begins anew what the module sends, and leaves
+    // alone what it is sent.
     let [first, answered, last, _] = frames[..] else { panic!("four frames") };
     let bare = Frame::new_raw(0x083, false, [0; 8], 8);
     let ended: Vec<_> = [first, answered, bare, last].iter().flat_map(|frame| assembler.receive(frame, 0)).collect();
@@ -237,5 +238,5 @@ fn what_goes_to_a_module_is_not_mixed_with_what_comes_from_it() {
         Outcome::Incomplete(partial) => (false, partial.is_to_module()),
         Outcome::Full(frame) => panic!("no room for {frame}"),
     });
-    assert_eq!(is_whole.collect::<Vec<_>>(), [(false, false), (true, true)]);
+    assert_eq!(is_whole.collect::<Vec<_>>(), [(true, true), (false, false)]);
 }

@@ -234,12 +234,13 @@ impl<M: Clone> Assembly<M> {
         }
     }
 
-    /// Returns how many elements the array of a message really has, if the device has said it.
+    /// Returns how many elements the array of a message really has, if the device has said it. What is sent to the
+    /// device may change that number.
     fn count(&self, protocol: &Protocol, transfer: &Transfer<M>) -> Option<usize> {
         if self.count.is_some() {
             return self.count;
         }
-        let signal = protocol[transfer.long].parts()?.count?;
+        let signal = protocol[transfer.long].parts()?.count.filter(|_| transfer.sender == Side::Module)?;
         let node = module(protocol, &transfer.peers);
         self.counts.iter().find(|known| (&known.node, known.signal) == (&node, signal)).map(|known| known.value)
     }

@@ -152,7 +152,8 @@ local function take_part(frame, decoded, ended)
   end
   if not is_its or open.last >= part.index then
     if open then end_parts(open, nil, ended) end
-    local counted = peers(frame, decoded, true) .. " " .. message.name
+    -- What is sent to a device may change how many elements it has.
+    local counted = not is_to_module(decoded.layout) and peers(frame, decoded, true) .. " " .. message.name
     open = { key = this, counted = counted, long = long, first = first, parts = {} }
     open.counter, open.announced = part.counter, part.announced
     open.interface, open.number = frame.interface, frame.number

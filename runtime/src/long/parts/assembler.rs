@@ -200,9 +200,11 @@ impl<L: Parted, const N: usize> Assembler<L, N> {
         }
     }
 
-    /// Returns how many elements the arrays of a message have, if its node has said it.
+    /// Returns how many elements the arrays of a message have, if its node has said it. What is sent to the node may
+    /// change that number.
     fn count(&self, open: &Transfer<L>) -> Option<usize> {
-        let known = self.counts.iter().flatten().find(|known| known.node.are_of_module(&open.peers));
+        let mut own = self.counts.iter().flatten().filter(|_| !open.peers.is_to_module());
+        let known = own.find(|known| known.node.are_of_module(&open.peers));
         known.map(|known| known.elements)
     }
 
