@@ -155,7 +155,10 @@ def add_whole(fields, whole, dissector, is_isotp):
         more |= {of + key: whole[key] for key in ("access", "kind")}
         more |= {f"{dissector.groups['selector']}.{key}": str(value) for key, value in whole["selectors"].items()}
     for signal, known in [] if refused else alone(name, whole["signals"], dissector):
-        more |= signal_fields(f"{name}.{signal}", known)[0] if known["raw"] is not None else {}
+        # A part may have a signal of the same name.
+        apart = f"{name}.whole.{signal}"
+        place = apart if apart in dissector.types else f"{name}.{signal}"
+        more |= signal_fields(place, known)[0] if known["raw"] is not None else {}
     rules = [known["rule"] for known in whole["notes"] if known["rule"] in (*OF_VALUES, "model_dependent", "count") and not refused]
     rules += ["incomplete"] * ("incomplete" in whole)
     more = with_names(more, dissector.types) | {f"{note}.{rule}": ",".join("1" for known in rules if known == rule) for rule in rules}
@@ -402,8 +405,6 @@ def main():
     canspec, frames = (os.path.abspath(path) for path in sys.argv[1:])
     protocols = sorted(glob.glob(os.path.join(ROOT, "specs", "*.yaml")))
     features = sorted(glob.glob(os.path.join(ROOT, "tests", "specs", "features", "*.yaml")))
-    # Fields of its whole have the names of fields of its parts, so the dissector puts `whole` before them.
-    features = [path for path in features if os.path.basename(path) != "parts_of_controller.yaml"]
     features += sorted(glob.glob(os.path.join(PEERS, "tshark*.yaml")))
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(canspec, frames, folder)
