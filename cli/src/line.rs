@@ -1,6 +1,7 @@
 //! The JSON object of a frame, which `decode` writes and `encode` reads.
 
 mod input;
+mod json;
 mod output;
 mod transport;
 
