@@ -3,7 +3,7 @@
 use canspec_protocols::gbt27930::transfers::Whole;
 use canspec_protocols::gbt27930::{
     Bcd, Bcl, Bcp, Bcs, Brm, Ccs, Cem, ChargerPermission, Chm, Cml, Crm, Cro, Csd, Cst, Cts, Frame, Layout, Message,
-    Readiness, Recognition, StopState, TIMING, Target, Text, TimeoutState, Tp,
+    Readiness, Recognition, StopState, TIMING, Target, Text, Tp,
 };
 
 use super::side::{GENERAL, LAST_WORDS, Phase, READY, STATISTICS, Side, Station};
@@ -72,20 +72,13 @@ impl Charger {
     }
 
     fn fail(&mut self, missed: Option<&'static str>, now: u32) {
-        self.side.rest();
-        self.side.go(Phase::Error);
-        self.side.attempts += 1;
-        self.side.missed = missed;
-        self.side.repeat(&["cem"], now);
+        self.side.fail(missed, "cem", now);
         self.side.wait(if self.side.is_last() { "failed" } else { "again" }, LAST_WORDS, now);
     }
 
     /// Returns what says for what it has waited in vain. Section 5.22.
     fn error(&self) -> Cem {
-        let missed = |names: &[&str]| {
-            let is_missed = self.side.missed.is_some_and(|missed| names.contains(&missed));
-            if is_missed { TimeoutState::Timeout } else { TimeoutState::Normal }
-        };
+        let missed = |names: &[&str]| self.side.missed(names);
         Cem {
             brm: missed(&["brm"]),
             bcp: missed(&["bcp"]),

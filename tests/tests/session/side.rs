@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use canspec_protocols::gbt27930::transfers::{Assembler, Whole};
-use canspec_protocols::gbt27930::{Frame, LongLayout, Message, Tp, Transferred};
+use canspec_protocols::gbt27930::{Frame, LongLayout, Message, TimeoutState, Tp, Transferred};
 use canspec_runtime::Exchange;
 use canspec_runtime::schedule::Schedule;
 use canspec_runtime::transfers::{Next, Outgoing};
@@ -149,6 +149,21 @@ impl Side {
         self.cycles.clear();
         self.waits.clear();
         self.outgoing.cancel();
+    }
+
+    /// Tells the other side that an attempt has failed, from now on.
+    pub fn fail(&mut self, missed: Option<&'static str>, last_words: &'static str, now: u32) {
+        self.rest();
+        self.go(Phase::Error);
+        self.attempts += 1;
+        self.missed = missed;
+        self.repeat(&[last_words], now);
+    }
+
+    /// Says whether it has waited in vain for one of these.
+    pub fn missed(&self, names: &[&str]) -> TimeoutState {
+        let is_missed = self.missed.is_some_and(|missed| names.contains(&missed));
+        if is_missed { TimeoutState::Timeout } else { TimeoutState::Normal }
     }
 
     /// Begins to send a long message.

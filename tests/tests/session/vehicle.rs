@@ -2,7 +2,7 @@
 
 use canspec_protocols::gbt27930::{
     BatteryType, Bcl, Bcp, Bcs, Bem, Bhm, Bmt, Bmv, Brm, Bro, Bsd, Bsm, Bsp, Bst, ChargingMode, Elements, Exchange,
-    Frame, Layout, Message, Ownership, ReachedState, Readiness, Recognition, StopState, TIMING, Text, TimeoutState,
+    Frame, Layout, Message, Ownership, ReachedState, Readiness, Recognition, StopState, TIMING, Text,
 };
 use canspec_runtime::Bytes;
 
@@ -80,20 +80,13 @@ impl Vehicle {
     }
 
     fn fail(&mut self, missed: Option<&'static str>, now: u32) {
-        self.side.rest();
-        self.side.go(Phase::Error);
-        self.side.attempts += 1;
-        self.side.missed = missed;
-        self.side.repeat(&["bem"], now);
+        self.side.fail(missed, "bem", now);
         self.side.wait("failed", if self.side.is_last() { LAST_WORDS } else { RECOGNITION }, now);
     }
 
     /// Returns what says for what it has waited in vain. Section 5.21.
     fn error(&self) -> Bem {
-        let missed = |names: &[&str]| {
-            let is_missed = self.side.missed.is_some_and(|missed| names.contains(&missed));
-            if is_missed { TimeoutState::Timeout } else { TimeoutState::Normal }
-        };
+        let missed = |names: &[&str]| self.side.missed(names);
         Bem {
             crm_not_recognised: missed(&["crm", "start"]),
             crm_recognised: missed(&["crm_recognised"]),
