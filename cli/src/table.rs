@@ -209,12 +209,12 @@ fn lines(lines: &mut Lines, item: &mut String, outcome: &Outcome<'_>, room: usiz
 /// Returns the fields of the header that neither the message nor its access fixes, and their values. Those that tell an
 /// error are none, since a note says it.
 fn open_selectors<'a>(protocol: &'a Protocol, decoded: &'a Decoded) -> impl Iterator<Item = (&'a str, String)> {
-    let mut layouts = protocol.layouts_of(&protocol[decoded.message]);
-    let layout = layouts.find(|layout| (layout.access, layout.kind) == (decoded.access, decoded.kind));
-    let constants = layout.map_or(&[][..], |layout| &layout.constants);
-    let is_open = |(id, _): &&(SelectorId, u64)| {
-        protocol[*id].normal.is_none() && constants.iter().all(|constant| constant.selector != *id)
+    let is_fixed = |id: SelectorId| {
+        let mut layouts = protocol.layouts_of(&protocol[decoded.message]);
+        let layout = layouts.find(|layout| (layout.access, layout.kind) == (decoded.access, decoded.kind));
+        layout.is_some_and(|layout| layout.constants.iter().any(|constant| constant.selector == id))
     };
+    let is_open = move |(id, _): &&(SelectorId, u64)| protocol[*id].normal.is_none() && !is_fixed(*id);
     let open = decoded.selectors.iter().filter(is_open);
     open.map(|(id, raw)| (protocol[*id].name.as_str(), protocol.selector_value(*id, *raw)))
 }
