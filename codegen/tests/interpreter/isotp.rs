@@ -1,11 +1,10 @@
 //! Messages by ISO-TP, and what becomes of them if frames are lost, late, repeated or wrong.
 
-use canspec_codegen::interpret::{
-    Assembled, Assembly, Content, Form, Frame, Sent, decode, encode_long, requests, sent,
-};
+use canspec_codegen::interpret::{Assembled, Content, Frame, Sent, encode_long, requests, sent};
 use canspec_codegen::model::{Kind, Protocol};
 
-use super::protocol;
+use super::assembled::{Story, assembled};
+use super::{assembled, protocol};
 
 /// A unit's reply in three frames: 1000 rpm, 10, 30, 50 and 0 A, day 9. Then one in a single frame.
 const FIRST: &str = "7E8#100E62F19003E800";
@@ -17,41 +16,13 @@ fn units() -> Protocol {
     protocol("tests/specs/devices/units.yaml")
 }
 
-fn frame(text: &str) -> Frame {
-    let (id, data) = text.split_once('#').expect("an identifier and data");
-    let hex = |text| u8::from_str_radix(text, 16).expect("two digits");
-    let data = (0..data.len() / 2).map(|byte| hex(&data[2 * byte..2 * byte + 2])).collect();
-    let id = u32::from_str_radix(id, 16).expect("three digits");
-    Frame { id, extended: false, data, form: Form::Data }
-}
-
 fn text(frame: &Frame) -> String {
     let data: Vec<_> = frame.data.iter().map(|byte| format!("{byte:02X}")).collect();
     format!("{:03X}#{}", frame.id, data.concat())
 }
 
-/// Puts frames together. Each remembers its place. It returns the messages, and the places of frames that belong to none.
-fn assembled(protocol: &Protocol, frames: &[&str]) -> (Vec<Assembled<usize>>, Vec<usize>) {
-    let (mut assembly, mut ended, mut others) = (Assembly::default(), Vec::new(), Vec::new());
-    for (place, frame) in frames.iter().map(|known| frame(known)).enumerate() {
-        let decoded = decode(protocol, None, &frame).unwrap_or_else(|problem| panic!("{place}: {}", problem.text));
-        let taken = assembly.take(protocol, None, place, &frame, &decoded);
-        ended.extend(taken.ended);
-        if !taken.is_part {
-            others.push(place);
-        }
-    }
-    ended.extend(assembly.finish(protocol, None));
-    (ended, others)
-}
-
-/// What became of frames: the places and what is missing of each message, and the frames that belong to none.
-type Story<'a> = (Vec<(Vec<usize>, Option<&'a str>)>, Vec<usize>);
-
-fn check(frames: &[&str], (messages, others): Story) {
-    let (ended, left) = assembled(&units(), frames);
-    let told: Vec<_> = ended.iter().map(|whole| (whole.marks.clone(), whole.incomplete.as_deref())).collect();
-    assert_eq!((told, left), (messages, others), "{frames:?}");
+fn check(frames: &[&str], story: Story) {
+    assembled::check(&units(), frames, story);
 }
 
 fn hex(data: &[u8]) -> String {

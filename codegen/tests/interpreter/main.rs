@@ -1,9 +1,11 @@
 //! What the interpreter reads and writes: the frames of the documents, and frames calculated by hand.
 
 mod arrays;
+mod assembled;
 mod examples;
 mod isotp;
 mod j1939;
+mod parts;
 mod reading;
 mod requests;
 mod revisions;

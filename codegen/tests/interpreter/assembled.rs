@@ -1,0 +1,38 @@
+//! What becomes of the frames of long messages, with identifiers of 11 bits.
+
+use canspec_codegen::interpret::{Assembled, Assembly, Form, Frame, decode};
+use canspec_codegen::model::Protocol;
+
+/// Returns the frame of a text such as `7E8#0562`.
+pub fn frame(text: &str) -> Frame {
+    let (id, data) = text.split_once('#').expect("an identifier and data");
+    let hex = |text| u8::from_str_radix(text, 16).expect("two digits");
+    let data = (0..data.len() / 2).map(|byte| hex(&data[2 * byte..2 * byte + 2])).collect();
+    let id = u32::from_str_radix(id, 16).expect("three digits");
+    Frame { id, extended: false, data, form: Form::Data }
+}
+
+/// Puts frames together. Each remembers its place. It returns the messages, and the places of frames that belong to none.
+pub fn assembled(protocol: &Protocol, frames: &[&str]) -> (Vec<Assembled<usize>>, Vec<usize>) {
+    let (mut assembly, mut ended, mut others) = (Assembly::default(), Vec::new(), Vec::new());
+    for (place, frame) in frames.iter().map(|known| frame(known)).enumerate() {
+        let decoded = decode(protocol, None, &frame).unwrap_or_else(|problem| panic!("{place}: {}", problem.text));
+        let taken = assembly.take(protocol, None, place, &frame, &decoded);
+        ended.extend(taken.ended);
+        if !taken.is_part {
+            others.push(place);
+        }
+    }
+    ended.extend(assembly.finish(protocol, None));
+    (ended, others)
+}
+
+/// What became of frames: the places and what is missing of each message, and the frames that belong to none.
+pub type Story<'a> = (Vec<(Vec<usize>, Option<&'a str>)>, Vec<usize>);
+
+/// Tests what becomes of frames.
+pub fn check(protocol: &Protocol, frames: &[&str], (messages, others): Story) {
+    let (ended, left) = assembled(protocol, frames);
+    let told: Vec<_> = ended.iter().map(|whole| (whole.marks.clone(), whole.incomplete.as_deref())).collect();
+    assert_eq!((told, left), (messages, others), "{frames:?}");
+}

@@ -1,0 +1,61 @@
+//! Messages in numbered parts, and what becomes of them if parts are lost or messages overlap.
+
+use canspec_codegen::model::NoteRule;
+
+use super::assembled::{assembled, check};
+use super::feature;
+
+/// A battery's six cells in three parts of three words, without the cycles in the first two bytes.
+const FIRST: &str = "051#010201E8030A0000";
+const SECOND: &str = "051#020B000C004A0100";
+const THIRD: &str = "051#034B110000000000";
+const SIX: &str = "031#0600000000000000";
+
+#[test]
+fn a_message_in_parts_ends_with_the_part_that_its_count_needs() {
+    let parts = feature("parts");
+    check(&parts, &[SIX, FIRST, SECOND, THIRD], (vec![(vec![1, 2, 3], None)], vec![0]));
+    // Two cells and the cycles are six bytes.
+    check(
+        &parts,
+        &["031#0200000000000000", FIRST, SECOND],
+        (vec![(vec![1], None), (vec![2], Some("part 1 is missing"))], vec![0]),
+    );
+}
+
+#[test]
+fn a_part_whose_number_is_not_greater_ends_the_message_before() {
+    let again = "051#010300E8030A0000";
+    let lost = Some("the parts 2, 3 are missing");
+    check(
+        &feature("parts"),
+        &[SIX, FIRST, again, SECOND, THIRD],
+        (vec![(vec![1], lost), (vec![2, 3, 4], None)], vec![0]),
+    );
+    // The same frame at once is a repetition.
+    check(&feature("parts"), &[SIX, FIRST, FIRST, SECOND, THIRD], (vec![(vec![1, 3, 4], None)], vec![0]));
+}
+
+#[test]
+fn what_a_device_said_last_does_not_count_what_it_is_sent() {
+    let ovens = feature("parts_to_modules");
+    let frames = ["053#0100000000000000", "0A3#010A070807D00800", "0A3#0234000000000000"];
+    check(&ovens, &frames, (vec![(vec![1, 2], None)], vec![0]));
+    let (ended, _) = assembled(&ovens, &frames);
+    assert!(ended[0].decoded.notes.iter().any(|note| note.rule == NoteRule::Count));
+    // What the device says itself has one temperature, so the second part belongs to no message of it.
+    let own = frames.map(|frame| frame.replace("0A3", "0B3"));
+    let own = own.each_ref().map(String::as_str);
+    check(&ovens, &own, (vec![(vec![1], None), (vec![2], Some("part 1 is missing"))], vec![0]));
+}
+
+#[test]
+fn a_request_that_carries_no_part_ends_what_the_device_has_begun() {
+    let bare = "041#0000000000000000";
+    let lost = Some("the parts 2, 3 are missing");
+    check(
+        &feature("parts"),
+        &[SIX, FIRST, bare, SECOND],
+        (vec![(vec![1], lost), (vec![3], Some("the parts 1, 3 are missing"))], vec![0, 2]),
+    );
+}
